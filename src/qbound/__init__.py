@@ -1,0 +1,27 @@
+"""qbound: feasible joint and geometric workspaces through boundary functions.
+
+A companion to J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383. A robot file becomes a robot,
+the robot gives boundary functions, and these are harmonic forms.
+"""
+
+from importlib.metadata import version
+
+from qbound.boundary import clearance, components, pair_vector
+from qbound.circle import circle_arc, circle_roots
+from qbound.harmonic import HarmonicForm
+from qbound.robot import Robot
+from qbound.robotfile import RobotFileError, load_robot, packaged_robots
+
+__all__ = [
+    "HarmonicForm",
+    "Robot",
+    "RobotFileError",
+    "circle_arc",
+    "circle_roots",
+    "clearance",
+    "components",
+    "load_robot",
+    "packaged_robots",
+    "pair_vector",
+]
+__version__ = version("qbound")

@@ -1,0 +1,254 @@
+"""Figures of the book: each function draws what it is handed and returns what it drew.
+
+Angles come in radians and are drawn in degrees. The colours (Okabe and Ito) hold for colour-blind
+readers, and no meaning rests on colour alone: lines differ in dash, points in marker.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.robot import Robot
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+
+FEASIBLE: Final = "#0072B2"
+COLLIDING: Final = "#D55E00"
+USED: Final = "#007A5E"
+UNUSED: Final = "#CC79A7"
+SECOND: Final = "#E69F00"
+INK: Final = "#222222"
+LINKS: Final = ("#8C8C8C", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
+
+STYLE: Final[dict[str, Any]] = {
+    "figure.figsize": (6.4, 4.4),
+    "figure.constrained_layout.use": True,
+    "figure.facecolor": "white",
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 11,
+    "axes.titlelocation": "left",
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "font.size": 10,
+    "legend.frameon": False,
+    "lines.linewidth": 1.8,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "qbound",
+}
+"""The one style of the book; fixed salt and no date give the same SVG bytes on every run."""
+
+
+def use_style() -> None:
+    """Set the book's style and, inside Jupyter, SVG figures with the same bytes on every run."""
+    import matplotlib as mpl
+    from matplotlib_inline.backend_inline import set_matplotlib_formats
+
+    mpl.rcParams.update(STYLE)  # type: ignore[arg-type]
+    set_matplotlib_formats(  # type: ignore[no-untyped-call]
+        "svg", metadata={"Date": None, "Creator": None}, bbox_inches=None
+    )
+
+
+def joint_axes(
+    ax: Axes, robot: Robot, ranges: ArrayLike = ((-np.pi, np.pi), (-np.pi, np.pi))
+) -> None:
+    """Label the plane of two joints, degrees, and give both axes one scale."""
+    (x0, x1), (y0, y1) = np.degrees(np.asarray(ranges))
+    ax.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
+    ax.set_xlabel(f"${_tex(robot.joints[0].name)}$ / °")
+    ax.set_ylabel(f"${_tex(robot.joints[1].name)}$ / °")
+    ax.xaxis.set_major_locator(_every(x1 - x0))
+    ax.yaxis.set_major_locator(_every(y1 - y0))
+
+
+def plane_axes(ax: Axes, robot: Robot, limits: ArrayLike | None = None) -> None:
+    """Label the plane of motion x, z of a planar arm and give both axes one scale."""
+    ax.set_aspect("equal")
+    ax.set_xlabel(f"$x$ / {robot.length_unit}")
+    ax.set_ylabel(f"$z$ / {robot.length_unit}")
+    if limits is not None:
+        (x0, x1), (z0, z1) = np.asarray(limits)
+        ax.set(xlim=(x0, x1), ylim=(z0, z1))
+
+
+def draw_robot(
+    ax: Axes,
+    robot: Robot,
+    q: ArrayLike,
+    *,
+    points: Sequence[str] = (),
+    bodies: bool = True,
+    alpha: float = 1.0,
+) -> list[Artist]:
+    """Draw a planar arm at one configuration: bodies, links, joints, and points by name.
+
+    Parameters
+    ----------
+    q : array_like, shape (n,)
+    points : sequence of str
+        Points to mark and name.
+    """
+    frames = robot.frames(np.asarray(q, dtype=float))
+    artists: list[Artist] = []
+    for body in robot.bodies if bodies else ():
+        colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
+        local = np.insert(body.polygon, 1, 0.0, axis=1)
+        seen = local @ frames.rotation(robot.base, body.frame).T
+        seen += frames.position(robot.base, body.frame, robot.base)
+        artists += ax.fill(
+            *seen[:, [0, 2]].T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1
+        )
+    names = [robot.base, *(joint.frame for joint in robot.joints), robot.tool]
+    spine = np.array([frames.position(robot.base, name, robot.base) for name in names])
+    artists += ax.plot(spine[:, 0], spine[:, 2], color=INK, lw=2, alpha=alpha, zorder=3)
+    artists += ax.plot(
+        spine[1:-1, 0], spine[1:-1, 2], "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4
+    )
+    artists += ax.plot(spine[-1:, 0], spine[-1:, 2], "s", color=INK, ms=5, alpha=alpha, zorder=4)
+    for name in points:
+        x, _, z = frames.position(robot.base, name, robot.base)
+        artists += ax.plot(x, z, "o", color=COLLIDING, ms=5, zorder=5)
+        artists.append(
+            _halo(ax.annotate(name, (x, z), (6, 4), textcoords="offset points", zorder=6))
+        )
+    return artists
+
+
+def draw_bound(
+    ax: Axes, q: ArrayLike, *, used: bool, label: str | None = None, **style: Any
+) -> list[Artist]:
+    """Draw one bound, a curve of joint space of shape (m, 2): solid if used, else dashed."""
+    x, y = np.degrees(np.asarray(q)).T
+    look: dict[str, Any] = (
+        {"color": USED, "lw": 2} if used else {"color": UNUSED, "lw": 1.2, "ls": "--"}
+    )
+    return list(ax.plot(x, y, label=label, **(look | style)))
+
+
+def draw_region(ax: Axes, vertices: ArrayLike, **style: Any) -> list[Artist]:
+    """Fill a polygon of joint space, shape (m, 2)."""
+    look: dict[str, Any] = {"facecolor": FEASIBLE, "alpha": 0.18, "edgecolor": FEASIBLE, "lw": 1.8}
+    return list(ax.fill(*np.degrees(np.asarray(vertices)).T, **(look | style)))
+
+
+def draw_vertices(
+    ax: Axes, vertices: ArrayLike, *, centre: ArrayLike | None = None, distance: float = 12
+) -> list[Artist]:
+    """Mark and number vertices 1, 2, ...; numbers stand away from `centre` (default: the mean)."""
+    p = np.degrees(np.asarray(vertices))
+    middle = p.mean(axis=0) if centre is None else np.degrees(np.asarray(centre))
+    artists: list[Artist] = list(ax.plot(*p.T, "o", color=INK, ms=5, zorder=5))
+    return artists + number_points(ax, p, middle, distance)
+
+
+def number_points(
+    ax: Axes, places: ArrayLike, middle: ArrayLike, distance: float = 12, first: int = 1
+) -> list[Artist]:
+    """Write first, first + 1, ... beside places (in axis units), away from `middle`."""
+    artists: list[Artist] = []
+    for i, place in enumerate(np.asarray(places)):
+        away = place - np.asarray(middle)
+        shift = distance * away / max(float(np.hypot(*away)), 1e-9)
+        text = ax.annotate(
+            str(i + first), tuple(place), tuple(shift), textcoords="offset points",
+            ha="center", va="center", weight="bold", zorder=6,
+        )  # fmt: skip
+        artists.append(_halo(text))
+    return artists
+
+
+def draw_joint_path(ax: Axes, q: ArrayLike, stops: Sequence[int], **style: Any) -> list[Artist]:
+    """Draw a joint path with an arrow in the middle of each leg and its stops in order."""
+    return draw_path(ax, np.degrees(np.asarray(q)), stops, **style)
+
+
+def draw_path(ax: Axes, path: ArrayLike, stops: Sequence[int], **style: Any) -> list[Artist]:
+    """Draw a plane path, shape (m, 2), with arrows and numbered stops."""
+    p = np.asarray(path)
+    look: dict[str, Any] = {"color": FEASIBLE, "lw": 1.8} | style
+    artists: list[Artist] = list(ax.plot(*p.T, **look))
+    arrow = {"arrowstyle": "-|>", "color": look["color"], "lw": 1.5, "mutation_scale": 14}
+    for start, end in pairwise(stops):
+        middle = (start + end) // 2
+        ends = tuple(p[middle + 1]), tuple(p[middle])
+        artists.append(ax.annotate("", *ends, arrowprops=arrow))
+    closed = len(stops) > 2 and np.allclose(p[stops[0]], p[stops[-1]])
+    marked = p[list(stops[: len(stops) - closed])]
+    artists += ax.plot(*marked.T, "o", color=INK, ms=4.5, zorder=5)
+    return artists + number_points(ax, marked, p.mean(axis=0))
+
+
+def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
+    """Scatter places, shape (n, 2): free ones as blue dots, colliding ones as red crosses."""
+    x, y = np.asarray(places).T
+    free = np.asarray(free, dtype=bool)
+    artists: list[Artist] = []
+    for chosen, colour, marker, size, label in (
+        (~free, COLLIDING, "x", 6, "collision"),
+        (free, FEASIBLE, ".", 6, "free"),
+    ):
+        artists.append(
+            ax.scatter(x[chosen], y[chosen], s=size, c=colour, marker=marker, lw=0.6, label=label)
+        )
+    return artists
+
+
+def draw_arrow(
+    ax: Axes, start: ArrayLike, end: ArrayLike, label: str = "", *, colour: str = INK, **style: Any
+) -> list[Artist]:
+    """Draw a labelled vector of the plane from `start` to `end`."""
+    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    look = {"arrowstyle": "-|>", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0} | style
+    artists: list[Artist] = [ax.annotate("", tuple(end), tuple(start), arrowprops=look)]
+    if label:
+        side = np.array([-(end - start)[1], (end - start)[0]])
+        shift = 10 * side / max(float(np.hypot(*side)), 1e-9)
+        text = ax.annotate(
+            label, tuple((start + end) / 2), tuple(shift), textcoords="offset points",
+            ha="center", va="center", color=colour,
+        )  # fmt: skip
+        artists.append(_halo(text))
+    return artists
+
+
+def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
+    """Put the legend under the axes, where it hides nothing."""
+    return ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=columns, **style)
+
+
+def bound_label(label: str) -> str:
+    """Write a bound's label, such as beta_{1,3,1}, as mathtext."""
+    return f"$\\{label}$"
+
+
+def _tex(name: str) -> str:
+    letters = name.rstrip("0123456789")
+    return f"{letters}_{{{name[len(letters) :]}}}" if letters and letters != name else name
+
+
+def _every(span: float) -> Any:
+    from matplotlib.ticker import MultipleLocator
+
+    return MultipleLocator(60 if span > 180 else 30)
+
+
+def _halo(text: Any) -> Any:
+    """Outline a text in white, so that it reads on lines."""
+    from matplotlib.patheffects import withStroke
+
+    text.set_path_effects([withStroke(linewidth=3, foreground="white")])
+    return text

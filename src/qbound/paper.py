@@ -1,0 +1,185 @@
+"""The paper's printed data: tables and formulas as they stand in print. No mathematics reads this.
+
+J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383, doi:10.3390/app15105383. Labels follow the paper:
+x_{a,b} is the x component of r_{a,b}. Formulas are written in plain text; ``arctan(n, d)`` stands
+for the printed tan^-1(n / d), so that both readings of it, arctan and atan2, can be computed.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+if TYPE_CHECKING:
+    import sympy
+
+
+@dataclass(frozen=True)
+class Offset:
+    """A length as printed: its label, value, unit and table."""
+
+    label: str
+    value: float
+    unit: Literal["cm", "mm"]
+    table: int
+
+
+OFFSETS: Final = (
+    Offset("z_{0,1}", 22.5, "cm", 1),
+    Offset("z_{1,2}", 25.98, "cm", 1),
+    Offset("x_{1,2}", 15.0, "cm", 1),
+    Offset("x_{2,3}", 25.0, "cm", 1),
+    Offset("x_{0,6}", 7.5, "cm", 3),
+    Offset("z_{0,6}", 12.5, "cm", 3),
+    Offset("x_{1,7}", 11.5, "cm", 3),
+    Offset("z_{1,7}", 4.91, "cm", 3),
+    Offset("x_{0,8}", -7.5, "cm", 3),
+    Offset("z_{0,8}", 12.5, "cm", 3),
+    Offset("x_{1,9}", -1.5, "cm", 3),
+    Offset("z_{1,9}", 12.41, "cm", 3),
+    Offset("x_{1,10}", 17.82, "cm", 3),
+    Offset("z_{1,10}", 15.87, "cm", 3),
+    Offset("x_{2,11}", 9.09, "cm", 3),
+    Offset("z_{2,11}", -5.25, "cm", 3),
+    Offset("x_{1,12}", 4.83, "mm", 4),
+    Offset("z_{1,12}", 23.37, "mm", 4),
+    Offset("x_{2,13}", 9.00, "mm", 4),
+    Offset("z_{2,13}", 5.25, "mm", 4),
+    Offset("x_{min,1}", 15.0, "mm", 5),
+    Offset("x_{min,2}", -15.0, "mm", 5),
+    Offset("z_{min,1}", 11.32, "mm", 5),
+)
+"""Tables 1 and 3-5, in the printed units."""
+
+TABLE_1: Final = (
+    ("0", "1", "Offset z (base to joint 1)", "z_{0,1}"),
+    ("1", "2", "Offset z (joint 1 to joint 2)", "z_{1,2}"),
+    ("1", "2", "Offset x (joint 1 to joint 2)", "x_{1,2}"),
+    ("2", "3", "Offset x (joint 2 to joint 3)", "x_{2,3}"),
+)
+"""Table 1: frames connected, parameter, label; the values are among `OFFSETS`."""
+
+TABLE_2: Final = (
+    ("0", "0", r"[0\ 0\ 0]^T", "I"),
+    ("0", "1", r"[0\ 0\ z_{0,1}]^T", "R_y(q_1)"),
+    ("1", "2", r"[x_{1,2}\ 0\ z_{1,2}]^T", "R_y(q_2)"),
+    ("2", "3", r"[x_{2,3}\ 0\ 0]^T", "I"),
+    ("0", "2", r"\mathbf{r}_{0,1} + R_{0,1}\mathbf{r}_{1,2}", "R_{0,1}R_{1,2}"),
+    ("0", "3", r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}", "R_{0,2}R_{2,3}"),
+)
+"""Table 2: frames a and b, position vector r_{a,b}, orientation R_{a,b} (LaTeX)."""
+
+EQUATION_29: Final = {
+    "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
+    "beta_{1,3}": "z_0_1 - z_0_6 + z_1_7*cos(q1) - x_1_7*sin(q1)",
+    "beta_{2,1}": "x_1_9*cos(q1) - x_0_8 + z_1_9*sin(q1)",
+    "beta_{2,3}": "z_0_1 - z_0_8 + z_1_9*cos(q1) - x_1_9*sin(q1)",
+    "beta_{3,1}": "x_1_2 - x_1_10 + x_2_11*cos(q2) + z_2_11*sin(q2)",
+    "beta_{3,3}": "z_1_2 - z_1_10 + z_2_11*cos(q2) - x_2_11*sin(q2)",
+    "beta_{4,1}": "x_1_2 - x_1_12 + x_2_13*cos(q2) + z_2_13*sin(q2)",
+    "beta_{4,3}": "z_1_2 - z_1_12 + z_2_13*cos(q2) - x_2_13*sin(q2)",
+    "beta_{5,1}": (
+        "x_2_3*(cos(q1)*cos(q2) - sin(q1)*sin(q2)) - x_min_1 + x_1_2*cos(q1) + z_1_2*sin(q1)"
+    ),
+    "beta_{6,1}": (
+        "x_2_3*(cos(q1)*cos(q2) - sin(q1)*sin(q2)) - x_min_2 + x_1_2*cos(q1) + z_1_2*sin(q1)"
+    ),
+    "beta_{7,3}": (
+        "z_0_1 - z_min_1 - x_2_3*(cos(q1)*sin(q2) + cos(q2)*sin(q1))"
+        " + z_1_2*cos(q1) - x_1_2*sin(q1)"
+    ),
+}
+"""Eq. (29): the eleven components."""
+
+TABLE_6: Final = {
+    "beta_{1,1,1}": "arctan(z_1_7, x_1_7) + acos(x_0_6/sqrt(x_1_7**2 + z_1_7**2))",
+    "beta_{1,1,2}": "acos(x_0_6/sqrt(x_1_7**2 + z_1_7**2)) + arctan(z_1_7, x_1_7) - 2*pi",
+    "beta_{1,3,1}": "pi + arctan(-x_1_7, z_1_7) - acos((z_0_1 - z_0_6)/sqrt(x_1_7**2 + z_1_7**2))",
+    "beta_{1,3,2}": "-pi + arctan(-x_1_7, z_1_7) - acos((z_0_1 - z_0_6)/sqrt(x_1_7**2 + z_1_7**2))",
+    "beta_{2,1,1}": "arctan(z_1_9, x_1_9) + acos(x_0_8/sqrt(x_1_9**2 + z_1_9**2))",
+    "beta_{2,1,2}": "acos(x_0_8/sqrt(x_1_9**2 + z_1_9**2)) + arctan(z_1_9, x_1_9) - 2*pi",
+    "beta_{2,3,1}": "pi + arctan(-x_1_9, z_1_9) - acos((z_0_1 - z_0_8)/sqrt(x_1_9**2 + z_1_9**2))",
+    "beta_{2,3,2}": "-pi + arctan(-x_1_9, z_1_9) - acos((z_0_1 - z_0_8)/sqrt(x_1_9**2 + z_1_9**2))",
+    "beta_{3,1,1}": (
+        "pi + arctan(z_2_11, x_2_11) - acos((x_1_2 - x_1_10)/sqrt(x_2_11**2 + z_2_11**2))"
+    ),
+    "beta_{3,1,2}": (
+        "-pi + arctan(z_2_11, x_2_11) - acos((x_1_2 - x_1_10)/sqrt(x_2_11**2 + z_2_11**2))"
+    ),
+    "beta_{3,3,1}": (
+        "pi + arctan(-x_2_11, z_2_11) - acos((z_1_2 - z_1_10)/sqrt(x_2_11**2 + z_2_11**2))"
+    ),
+    "beta_{3,3,2}": (
+        "-pi + arctan(-x_2_11, z_2_11) - acos((z_1_2 - z_1_10)/sqrt(x_2_11**2 + z_2_11**2))"
+    ),
+    "beta_{4,1,1}": (
+        "pi + arctan(z_2_13, x_2_13) - acos((x_1_2 - x_1_12)/sqrt(x_2_13**2 + z_2_13**2))"
+    ),
+    "beta_{4,1,2}": (
+        "-pi + arctan(z_2_13, x_2_13) - acos((x_1_2 - x_1_12)/sqrt(x_2_13**2 + z_2_13**2))"
+    ),
+    "beta_{4,3,1}": (
+        "pi + arctan(-x_2_13, z_2_13) - acos((z_1_2 - z_1_12)/sqrt(x_2_13**2 + z_2_13**2))"
+    ),
+    "beta_{4,3,2}": (
+        "-pi + arctan(-x_2_13, z_2_13) - acos((z_1_2 - z_1_12)/sqrt(x_2_13**2 + z_2_13**2))"
+    ),
+    "beta_{5,1,1}": "pi - q1 - acos((x_1_2*cos(q1) - x_min_1 + z_1_2*sin(q1))/x_2_3)",
+    "beta_{5,1,2}": "-q1 - pi - acos((x_1_2*cos(q1) - x_min_1 + z_1_2*sin(q1))/x_2_3)",
+    "beta_{6,1,1}": "pi - q1 - acos((x_1_2*cos(q1) - x_min_2 + z_1_2*sin(q1))/x_2_3)",
+    "beta_{6,1,2}": "-q1 - pi - acos((x_1_2*cos(q1) - x_min_2 + z_1_2*sin(q1))/x_2_3)",
+    "beta_{7,3,1}": "asin((z_0_1 - z_min_1 + z_1_2*cos(q1) - x_1_2*sin(q1))/x_2_3) - q1",
+    "beta_{7,3,2}": "-q1 - pi - asin((z_0_1 - z_min_1 + z_1_2*cos(q1) - x_1_2*sin(q1))/x_2_3)",
+}
+"""Table 6: k = 1 is the right (upper) bound, k = 2 the left (lower) one."""
+
+FIGURE_4_BOUNDS: Final = (
+    "beta_{1,3,1}",
+    "beta_{2,1,2}",
+    "beta_{3,3,2}",
+    "beta_{4,1,2}",
+    "beta_{7,3,1}",
+    "beta_{7,3,2}",
+)
+"""The six bounds that the caption of Figure 4 names."""
+
+
+def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
+    """Return every offset by its label, in cm; converted here and nowhere else.
+
+    Parameters
+    ----------
+    mm_means : {"cm", "mm"}
+        How to read the "mm" printed in Tables 4 and 5: as the slip it is (default), or literally.
+    """
+    scale = {"cm": 1.0, "mm": 0.1 if mm_means == "mm" else 1.0}
+    return {o.label: o.value * scale[o.unit] for o in OFFSETS}
+
+
+def expression(text: str, *, arctan: Literal["arctan", "atan2"] = "arctan") -> sympy.Expr:
+    """Turn a printed formula of this module into a SymPy expression.
+
+    Parameters
+    ----------
+    text : str
+        An entry of `EQUATION_29` or `TABLE_6`.
+    arctan : {"arctan", "atan2"}
+        How to read the printed tan^-1 of a quotient.
+    """
+    import sympy
+
+    readings = {"arctan": lambda n, d: sympy.atan(n / d), "atan2": sympy.atan2}
+    names: dict[str, Any] = {
+        name: sympy.Symbol(label(name), real=True)
+        for name in re.findall(r"\b[xz]_\w+|\bq\d\b", text)
+    }
+    return sympy.parse_expr(text, local_dict=names | {"arctan": readings[arctan]})
+
+
+def label(name: str) -> str:
+    """Return the paper's label of a name in a formula: x_1_10 -> x_{1,10}, q1 -> q_1."""
+    if name.startswith("q"):
+        return f"q_{name[1:]}"
+    letter, a, b = name.split("_")
+    return f"{letter}_{{{a},{b}}}"

@@ -1,0 +1,53 @@
+"""Polygons in joint space: area, centroid, scaling about a point (Figures 5 and 6)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def area(vertices: ArrayLike) -> float:
+    """Return the signed area of a polygon, positive anticlockwise; product of the joints' units.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (m, 2)
+    """
+    return float(_cross(np.asarray(vertices, dtype=float)).sum() / 2)
+
+
+def centroid(vertices: ArrayLike) -> Floats:
+    """Return the centroid of the area, shape (2,), by Green's theorem.
+
+    Raises
+    ------
+    ValueError
+        If the polygon has no area.
+    """
+    p = np.asarray(vertices, dtype=float)
+    p0 = p.mean(axis=0)  # moments about a near point: less cancellation
+    doubled = _cross(p - p0)
+    if doubled.sum() == 0:
+        raise ValueError("a polygon without area has no centroid of the area")
+    sums = (p - p0) + np.roll(p - p0, -1, axis=0)
+    return np.asarray(p0 + doubled @ sums / (3 * doubled.sum()))
+
+
+def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
+    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy (Figure 6)."""
+    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
+    return np.asarray(g + factor * (p - g))
+
+
+def along_edges(vertices: ArrayLike, t: ArrayLike) -> Floats:
+    """Return points at fractions `t` of every edge of the closed polygon, shape (m, len(t), 2)."""
+    p = np.asarray(vertices, dtype=float)
+    step = np.roll(p, -1, axis=0) - p
+    return np.asarray(p[:, None] + np.asarray(t)[None, :, None] * step[:, None])
+
+
+def _cross(p: Floats) -> Floats:
+    x, y = p.T
+    return np.asarray(x * np.roll(y, -1) - y * np.roll(x, -1))

@@ -1,0 +1,104 @@
+"""Random sampling of joint space: the traditional method that the paper argues against (Figure 11).
+
+It sees boundary functions only, no region: whatever it finds, it finds by drawing. What "collision"
+means for a drawn configuration the paper does not say, so the predicate is a choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.boundary import clearance, components, position
+from qbound.harmonic import HarmonicForm
+from qbound.robot import Pair, Robot
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Predicate = Callable[[Robot, Floats], Bools]
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Random configurations, where the tool goes, and which are free of collision.
+
+    Attributes
+    ----------
+    q : ndarray, shape (n, joints)
+        rad or length.
+    tool : ndarray, shape (n, 3)
+        Tool positions seen from the base; length.
+    free : ndarray of bool, shape (n,)
+    """
+
+    q: Floats
+    tool: Floats
+    free: Bools
+
+    @property
+    def fraction_free(self) -> float:
+        """Part of the configurations that are free."""
+        return float(self.free.mean())
+
+    @property
+    def standard_error(self) -> float:
+        """Standard error of `fraction_free` (binomial)."""
+        p = self.fraction_free
+        return float(np.sqrt(p * (1 - p) / len(self.free)))
+
+
+def sample(
+    robot: Robot, n: int, predicate: Predicate, *, seed: int, limits: ArrayLike | None = None
+) -> Sample:
+    """Draw `n` configurations evenly and judge each (Figure 11).
+
+    Parameters
+    ----------
+    predicate : callable
+        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision.
+    seed : int
+        Of NumPy's default generator; the same seed draws the same configurations.
+    limits : array_like, shape (joints, 2), optional
+        Range of each joint; default: its limits, or (-pi, pi) where it turns all the way round.
+    """
+    low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
+    q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
+    return Sample(q, position(robot, robot.tool)(q), predicate(robot, q))
+
+
+def joint_ranges(robot: Robot) -> Floats:
+    """Return the limits of every joint, (-pi, pi) where a joint has none; shape (joints, 2)."""
+    return np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+
+
+def keeps_clear(robot: Robot, q: Floats) -> Bools:
+    """Every boundary in use keeps its clearance: eqs. (11) and (12)."""
+    return _respected((clearance(robot, b) for b in robot.boundaries if b.used), q)
+
+
+def misses_points(robot: Robot, q: Floats) -> Bools:
+    """No pair of points coincides exactly: eq. (17) to the letter."""
+    pairs = [b for b in robot.boundaries if isinstance(b, Pair) and b.used]
+    return np.asarray(
+        np.all([(components(robot, pair)(q) != 0).any(axis=-1) for pair in pairs], axis=0)
+    )
+
+
+def keeps_components_positive(robot: Robot, q: Floats) -> Bools:
+    """No component of a boundary function in use is negative: eq. (9) to the letter."""
+    return _respected((components(robot, b) for b in robot.boundaries if b.used), q)
+
+
+def keeps_geometric(robot: Robot, q: Floats) -> Bools:
+    """Every half-space in use is respected; pairs of points are not looked at: eq. (12) alone."""
+    walls = [b for b in robot.boundaries if b.used and not isinstance(b, Pair)]
+    return _respected((clearance(robot, wall) for wall in walls), q)
+
+
+def _respected(forms: Iterable[HarmonicForm], q: Floats) -> Bools:
+    """No form of any stack is negative."""
+    values = [form(q).reshape(len(q), -1) for form in forms]
+    return np.asarray((np.concatenate(values, axis=1) >= 0).all(axis=1))
