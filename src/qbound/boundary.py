@@ -50,7 +50,7 @@ def squared_distance(
     coordinates, squared = _walk(robot, point, observer)
     centre = np.asarray(centre)
     cross = coordinates.dot(-2 * centre).coefficients
-    return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.dot(centre, centre)
+    return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.asarray(centre @ centre)
 
 
 def observer(robot: Robot, pair: Pair) -> str:
