@@ -6,7 +6,7 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
@@ -228,6 +228,16 @@ def draw_arrow(
 def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
     """Put the legend under the axes, where it hides nothing."""
     return ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=columns, **style)
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
+    """Return a table for a notebook's output, written in Markdown; cells may hold formulas."""
+    from IPython.display import Markdown
+
+    lines = [header, ["---"] * len(header), *rows]
+    return Markdown(  # type: ignore[no-untyped-call]
+        "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+    )
 
 
 def bound_label(label: str) -> str:
