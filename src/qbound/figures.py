@@ -119,12 +119,15 @@ def draw_robot(
         spine[1:-1, 0], spine[1:-1, 2], "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4
     )
     artists += ax.plot(spine[-1:, 0], spine[-1:, 2], "s", color=INK, ms=5, alpha=alpha, zorder=4)
-    for name in points:
+    # Names go left and right by turns: the two points of a pair in contact are at one place.
+    for i, name in enumerate(points):
         x, _, z = frames.position(robot.base, name, robot.base)
         artists += ax.plot(x, z, "o", color=COLLIDING, ms=5, zorder=5)
-        artists.append(
-            _halo(ax.annotate(name, (x, z), (6, 4), textcoords="offset points", zorder=6))
-        )
+        left = i % 2 == 0 and len(points) > 1
+        shift = (-6, -9) if left else (6, 4)
+        text = ax.annotate(name, (x, z), shift, textcoords="offset points", zorder=6)
+        text.set_horizontalalignment("right" if left else "left")
+        artists.append(_halo(text))
     return artists
 
 

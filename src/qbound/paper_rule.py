@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary import clearance, pair_vector
-from qbound.circle import circle_roots
+from qbound.circle import CircleRoots, circle_roots
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
 from qbound.tolerances import ON_BOUNDARY
@@ -127,12 +127,10 @@ def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
     Returns
     -------
     ndarray, shape (2, ...)
-        Lower and upper end of the arc of feasible values, rad, not wrapped; NaN where the
-        half-space does not cut the circle.
+        Lower and upper end of the arc of feasible values, rad, around a centre in (-pi, pi];
+        NaN where the half-space does not cut the circle.
     """
-    wall = robot.boundary(boundary)
-    c0, a, b = np.moveaxis(clearance(robot, wall).along(len(robot.joints) - 1, q), -1, 0)
-    roots = circle_roots(a, b, -c0)
+    roots = _roots_along_last(robot, boundary, q)
     return np.where(roots.count > 0, roots.q, np.nan)
 
 
@@ -263,25 +261,35 @@ def _crossings(form: HarmonicForm, start: Floats, end: Floats) -> list[float]:
     return [float((q - start[joint]) / (end - start)[joint]) for q in turned if low < q < high]
 
 
+def _roots_along_last(robot: Robot, boundary: str, q: ArrayLike) -> CircleRoots:
+    form = clearance(robot, robot.boundary(boundary))
+    c0, a, b = np.moveaxis(form.along(len(robot.joints) - 1, q), -1, 0)
+    return circle_roots(a, b, -c0)
+
+
 def _wall_curves(
     robot: Robot, wall: HalfSpace, ranges: Floats, n: int
 ) -> Iterator[tuple[Bound, Floats]]:
     """Yield both roots of a half-space over the first joint's range, once per turn in range."""
     component = int(np.argmax(np.abs(wall.normal))) + 1
     q1 = np.linspace(ranges[0, 0], ranges[0, 1], n)
-    low, high = ranges[1]
-    for k, roots in zip(
-        (LOWER, UPPER), geometric_bounds(robot, wall.name, np.stack([q1, q1], -1)), strict=True
-    ):
-        if np.isnan(roots).all():
-            continue
-        first, last = np.nanmin(roots), np.nanmax(roots)
-        for turn in range(
-            math.ceil((low - last) / math.tau), math.floor((high - first) / math.tau) + 1
-        ):
-            q2 = roots + turn * math.tau
-            inside = (q2 >= low) & (q2 <= high)
-            yield Bound(wall.name, component, k), np.stack([q1, np.where(inside, q2, np.nan)], -1)
+    roots = _roots_along_last(robot, wall.name, np.stack([q1, q1], -1))
+    alpha = np.where(roots.count > 0, roots.alpha, np.nan)
+    centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn
+    for k, sign in ((LOWER, -1), (UPPER, +1)):
+        for q2 in _turns_within(centre + sign * alpha, *ranges[1]):
+            yield Bound(wall.name, component, k), np.stack([q1, q2], -1)
+
+
+def _turns_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
+    """Yield a curve of angles once per full turn that brings it into a range, NaN outside."""
+    if np.isnan(q).all():
+        return
+    first = math.ceil((low - np.nanmax(q)) / math.tau)
+    last = math.floor((high - np.nanmin(q)) / math.tau)
+    for turn in range(first, last + 1):
+        shifted = q + turn * math.tau
+        yield np.where((shifted >= low) & (shifted <= high), shifted, np.nan)
 
 
 def _wall_bound(wall: HalfSpace, form: HarmonicForm, q: Floats) -> Bound:
