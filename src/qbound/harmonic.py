@@ -164,16 +164,15 @@ class HarmonicForm:
 
     def _combine(self, factors: Sequence[Array]) -> Array:
         """Contract every joint axis with its factor of shape (..., 3)."""
-        ones = np.ones((*np.shape(factors[0])[:-1], 1)) if factors else np.ones(1)
-        products = reduce(
-            lambda left, right: (left[..., :, None] * right[..., None, :]).reshape(
-                *left.shape[:-1], -1
-            ),
-            factors,
-            ones,
-        )
-        matrix = self.coefficients.reshape(*self.shape, -1)
-        return np.tensordot(products, matrix, axes=([-1], [-1]))
+        monomials = reduce(_outer, factors, np.ones(1))
+        matrix = self.coefficients.reshape(*self.shape, 3 ** len(self.kinds))
+        return np.tensordot(monomials, matrix, axes=([-1], [-1]))
+
+
+def _outer(left: Array, right: Array) -> Array:
+    """Multiply (..., m) by (..., 3) into all products, (..., 3 m)."""
+    products = left[..., :, None] * right[..., None, :]
+    return products.reshape(*products.shape[:-2], 3 * left.shape[-1])
 
 
 def add_constant(coefficients: Array, constant: ArrayLike) -> Array:

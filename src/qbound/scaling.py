@@ -61,7 +61,7 @@ def largest_safe_scale(
 
     Notes
     -----
-    Rays are searched at 256 places and edges at 1025: a form that dips below zero between two of
+    Rays are searched at 128 places and edges at 257: a form that dips below zero between two of
     them is missed. The result is a computation, not a proof.
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
@@ -89,7 +89,7 @@ def _edge_scale(
     """Least scale at which the edge start-end meets the form; `highest` where it does not."""
     low, high = 0.0, 1.0
     for _ in range(12):
-        t = np.linspace(low, high, 1025)
+        t = np.linspace(low, high, 257)
         rays = start + t[:, None] * (end - start) - centre
         scales = _first_crossing(form, centre, rays, highest)
         i = int(scales.argmin())
@@ -101,7 +101,7 @@ def _edge_scale(
 
 def _first_crossing(form: Form, centre: Floats, rays: Floats, highest: float) -> Floats:
     """Least s in (0, highest] with form(centre + s ray) = 0 for every ray, else `highest`."""
-    s = np.linspace(0, highest, 257)
+    s = np.linspace(0, highest, 129)
     negative = form(centre + s[:, None, None] * rays) < 0
     hit = negative.any(axis=0)
     first = np.where(hit, negative.argmax(axis=0), len(s) - 1)
