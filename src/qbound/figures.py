@@ -174,13 +174,10 @@ def number_points(
     return artists
 
 
-def draw_joint_path(ax: Axes, q: ArrayLike, stops: Sequence[int], **style: Any) -> list[Artist]:
-    """Draw a joint path with an arrow in the middle of each leg and its stops in order."""
-    return draw_path(ax, np.degrees(np.asarray(q)), stops, **style)
-
-
-def draw_path(ax: Axes, path: ArrayLike, stops: Sequence[int], **style: Any) -> list[Artist]:
-    """Draw a plane path, shape (m, 2), with arrows and numbered stops."""
+def draw_path(
+    ax: Axes, path: ArrayLike, stops: Sequence[int], *, distance: float = 12, **style: Any
+) -> list[Artist]:
+    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and numbered stops."""
     p = np.asarray(path)
     look: dict[str, Any] = {"color": FEASIBLE, "lw": 1.8} | style
     artists: list[Artist] = list(ax.plot(*p.T, **look))
@@ -192,11 +189,14 @@ def draw_path(ax: Axes, path: ArrayLike, stops: Sequence[int], **style: Any) -> 
     closed = len(stops) > 2 and np.allclose(p[stops[0]], p[stops[-1]])
     marked = p[list(stops[: len(stops) - closed])]
     artists += ax.plot(*marked.T, "o", color=INK, ms=4.5, zorder=5)
-    return artists + number_points(ax, marked, p.mean(axis=0))
+    return artists + number_points(ax, marked, p.mean(axis=0), distance)
 
 
 def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
-    """Scatter places, shape (n, 2): free ones as blue dots, colliding ones as red crosses."""
+    """Scatter places, shape (n, 2): free ones as blue dots, colliding ones as red crosses.
+
+    The points are drawn as one picture inside the SVG: thousands of them would weigh megabytes.
+    """
     x, y = np.asarray(places).T
     free = np.asarray(free, dtype=bool)
     artists: list[Artist] = []
@@ -204,9 +204,8 @@ def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
         (~free, COLLIDING, "x", 6, "collision"),
         (free, FEASIBLE, ".", 6, "free"),
     ):
-        artists.append(
-            ax.scatter(x[chosen], y[chosen], s=size, c=colour, marker=marker, lw=0.6, label=label)
-        )
+        style: dict[str, Any] = {"color": colour, "marker": marker, "label": label, "rasterized": True}
+        artists.append(ax.scatter(x[chosen], y[chosen], s=size, lw=0.6, **style))
     return artists
 
 

@@ -273,6 +273,10 @@ def _wall_curves(
     """Yield both roots of a half-space over the first joint's range, once per turn in range."""
     component = int(np.argmax(np.abs(wall.normal))) + 1
     q1 = np.linspace(ranges[0, 0], ranges[0, 1], n)
+    for _ in range(3):  # closer and closer to where the roots appear, so that a curve meets itself
+        there = np.isfinite(geometric_bounds(robot, wall.name, np.stack([q1, q1], -1))[0])
+        fold = np.nonzero(there[1:] != there[:-1])[0]
+        q1 = np.sort(np.concatenate([q1, np.linspace(q1[fold], q1[fold + 1], 42)[1:-1].ravel()]))
     roots = _roots_along_last(robot, wall.name, np.stack([q1, q1], -1))
     alpha = np.where(roots.count > 0, roots.alpha, np.nan)
     centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn

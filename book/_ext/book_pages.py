@@ -1,0 +1,119 @@
+"""What the book's pages need beyond the theme: verdicts, links to the notebooks, sound ids."""
+
+from __future__ import annotations
+
+import re
+from base64 import b64encode
+from pathlib import Path
+from typing import Any
+
+import nbformat
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.transforms import SphinxTransform
+from sphinx.util.docutils import SphinxRole
+from sphinx.util.typing import ExtensionMetadata
+
+VERDICTS = (
+    "confirmed",
+    "confirmed with a condition",
+    "misprint",
+    "refuted",
+    "not determined by the paper",
+)
+
+# Chapters are built from executed copies; readers run and edit the notebooks themselves.
+COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
+
+# A link between notebooks, as it works beside them: [Theorem 1](03_theorem_1.md).
+LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
+
+# The theme drops empty parts of the page at 500 and fills its buttons in at 501.
+BEFORE_THEME, AFTER_THEME = 400, 600
+
+
+class VerdictRole(SphinxRole):
+    """Show one of the ledger's verdicts as a badge: {verdict}`confirmed`."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        if self.text not in VERDICTS:
+            problem = self.inliner.reporter.error(
+                f"unknown verdict {self.text!r}: one of {', '.join(VERDICTS)}", line=self.lineno
+            )
+            return [], [problem]
+        classes = ["verdict", f"verdict-{nodes.make_id(self.text)}"]
+        return [nodes.inline(self.rawtext, self.text, classes=classes)], []
+
+
+class UniqueProofIds(SphinxTransform):
+    """Number the ids of theorem bodies and proofs: sphinx-proof repeats them on a page."""
+
+    default_priority = 200
+
+    def apply(self, **kwargs: Any) -> None:
+        repeated = (["proof-content"], ["proof"])
+        found = [n for n in self.document.findall(nodes.Element) if n.get("ids") in repeated]
+        for count, node in enumerate(found, start=1):
+            node["ids"] = [f"{node['ids'][0]}-{count}"]
+
+
+def link_to_chapters(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Lead a chapter's links to the executed copies: they have no text twins beside them."""
+    if docname.startswith("chapters/"):
+        source[0] = LINK_TO_TWIN.sub(r"\1.ipynb", source[0])
+
+
+def link_to_notebooks(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Lead launch buttons to the notebook, the edit button to its text twin."""
+    for button in flat(context["header_buttons"]):
+        if COPIES in button.get("url", ""):
+            button["url"] = button["url"].replace(COPIES, NOTEBOOKS)
+            if button.get("label") == "source-edit-button":
+                button["url"] = button["url"].removesuffix(".ipynb") + ".md"
+    context["launches"] = [b for b in flat(context["header_buttons"]) if is_launch(b)]
+
+
+def carry_notebook(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Let the page of a chapter carry its notebook, without outputs, as a download.
+
+    A link to the file would do on a server; on a page opened from the file system it shows the
+    file's text instead.
+    """
+    if context.get("page_source_suffix") == ".ipynb":
+        file = Path(app.env.doc2path(pagename))
+        context["notebook_name"] = file.name
+        context["notebook_data"] = b64encode(without_outputs(file).encode()).decode()
+
+
+def without_outputs(file: Path) -> str:
+    """Return a notebook's text with its outputs and counts removed."""
+    notebook = nbformat.read(file, as_version=4)
+    for cell in notebook.cells:
+        cell.metadata.pop("execution", None)  # the times of the run
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    return nbformat.writes(notebook)
+
+
+def is_launch(button: dict[str, Any]) -> bool:
+    """Tell whether a button starts the notebook somewhere."""
+    return button.get("text") in ("Binder", "Colab")
+
+
+def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the buttons of the header, those inside its groups too."""
+    return [one for button in buttons for one in button.get("buttons", [button])]
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register role, transform and links with Sphinx."""
+    app.add_role("verdict", VerdictRole())
+    app.add_transform(UniqueProofIds)
+    app.connect("source-read", link_to_chapters)
+    app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
+    app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,48 @@
+// Opened from the file system, a page may not fetch others: search then lists titles, no excerpts.
+if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
+
+// Formulas, tables and output wider than the page scroll in their own box. Mark such a box and the
+// sides where more is to see, for the style sheet, and let the keyboard reach it.
+const BOXES =
+  "mjx-container, .pst-scrollable-table-container, .cell_output .text_html, .highlight pre";
+
+function markWide(box) {
+  const hidden = box.scrollWidth - box.clientWidth;
+  box.classList.toggle("wide", hidden > 1);
+  box.classList.toggle("more-left", hidden > 1 && box.scrollLeft > 1);
+  box.classList.toggle("more-right", hidden > 1 && box.scrollLeft < hidden - 1);
+  if (hidden > 1) box.tabIndex = 0;
+  else box.removeAttribute("tabindex");
+}
+
+// A box changes its size with the window, and when the cell that hides it is opened.
+function watchBoxes() {
+  const sizes = new ResizeObserver((changes) => changes.forEach(({ target }) => markWide(target)));
+  for (const box of document.querySelectorAll(BOXES)) {
+    box.addEventListener("scroll", () => markWide(box));
+    sizes.observe(box);
+  }
+}
+
+// The theme scrolls its list of chapters to the open one; where that is in sight, keep the top.
+function showTopOfSidebar() {
+  const sidebar = document.querySelector(".bd-sidebar-primary");
+  const chapter = sidebar?.querySelector(".current.active");
+  const bottom = chapter ? chapter.getBoundingClientRect().bottom + sidebar.scrollTop : 0;
+  if (sidebar && bottom < window.innerHeight) sidebar.scrollTop = 0;
+}
+
+// On paper the page is light, whatever the screen shows.
+const root = document.documentElement;
+let themeOnScreen = "light";
+window.addEventListener("beforeprint", () => {
+  themeOnScreen = root.dataset.theme;
+  root.dataset.theme = "light";
+});
+window.addEventListener("afterprint", () => (root.dataset.theme = themeOnScreen));
+
+window.addEventListener("load", () => {
+  showTopOfSidebar();
+  const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
+  formulasShown.then(watchBoxes);
+});

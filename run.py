@@ -1,0 +1,328 @@
+#!/usr/bin/env python3
+"""One command for everything: make the book, run the tests, lint, lock, clean.
+
+    python3 run.py book     execute the notebooks and build the book
+    python3 run.py test     run the tests (further arguments go to pytest)
+    python3 run.py lint     check style, types and the direction of imports
+    python3 run.py lock     pin every dependency again, by hash
+    python3 run.py clean    remove what the other commands made
+
+It needs Python alone. The tools are installed once, in .venv, as requirements.lock pins them.
+docs/decisions/0001-one-command.md says why this is one file of the standard library.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+# Before the first definition, and in words that Python 3.6 can read.
+if sys.version_info < (3, 11):  # noqa: UP036
+    sys.exit("qbound needs Python 3.11 or newer; this is Python " + sys.version.split()[0] + ".")
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+LOCK = ROOT / "requirements.lock"
+CHAPTERS = ROOT / "book" / "chapters"
+BUILD = ROOT / "book" / "_build"
+GENERATED = ROOT / "book" / "generated"
+FRONT_PAGE = BUILD / "html" / "index.html"
+BOOK_STAMP = BUILD / "made-from"
+
+# What the book is made from (a change of any of it makes the book stale), and what is no source.
+SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
+PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
+CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
+BUILT = ["build", "dist", "src/qbound.egg-info"]
+
+Command = list[str | Path]
+
+
+class Failed(Exception):
+    """A step went wrong: what to tell the reader, and the exit status."""
+
+    def __init__(self, message: str, status: int = 1) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+# --- saying and calling ---------------------------------------------------------------------------
+
+
+def say(text: str) -> None:
+    print(text, flush=True)
+
+
+def call(title: str, command: Command, quiet: bool = False) -> int:
+    """Run a step in the repository, say how long it took, and return its exit status.
+
+    A quiet command gets a sign of life every 15 seconds; the others show their own progress.
+    """
+    say(f"-- {title}")
+    start = time.monotonic()
+    with subprocess.Popen(command, cwd=ROOT, env=environment()) as process:
+        while process.poll() is None:
+            try:
+                process.wait(timeout=15 if quiet else None)
+            except subprocess.TimeoutExpired:
+                say(f"   ... {time.monotonic() - start:.0f} s")
+    outcome = "done" if process.returncode == 0 else "FAILED"
+    say(f"   {outcome} in {time.monotonic() - start:.1f} s")
+    return process.returncode
+
+
+def must(title: str, command: Command, quiet: bool = False) -> None:
+    """Run a step that the next ones need."""
+    status = call(title, command, quiet)
+    if status != 0:
+        raise Failed(f"Stopped at: {title}.", status)
+
+
+def environment() -> dict[str, str]:
+    """Return the shell's environment, without what would mix in the user's code and settings."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return kept | {
+        "IPYTHONDIR": str(VENV / "ipython"),
+        "JUPYTER_PREFER_ENV_PATH": "1",
+        "MPLCONFIGDIR": str(VENV / "matplotlib"),
+        "PYTHONNOUSERSITE": "1",
+    }
+
+
+def remove(path: Path) -> None:
+    if path.exists():
+        shutil.rmtree(path)
+
+
+def digest(*parts: object) -> str:
+    return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()
+
+
+# --- the environment ------------------------------------------------------------------------------
+
+
+def prepare() -> None:
+    """Make .venv as the lock says. Each stamp is written last: a killed install starts over."""
+    if not is_stamped("lock"):
+        remove(VENV)
+        make_venv(VENV)
+        install_lock()
+        stamp("lock").write_text(wanted("lock"))
+    if not is_stamped("package"):
+        options = ["--no-deps", "--no-build-isolation", "--editable", "."]
+        must("Installing qbound itself", [*pip(VENV), *options], quiet=True)
+        stamp("package").write_text(wanted("package"))
+
+
+def stamp(name: str) -> Path:
+    return VENV / f"{name}.stamp"
+
+
+def is_stamped(name: str) -> bool:
+    made = in_venv("python").exists() and stamp(name).exists()
+    return made and stamp(name).read_text() == wanted(name)
+
+
+def wanted(name: str) -> str:
+    """Return what the stamp says when .venv is up to date (a moved one would call the old path)."""
+    if name == "lock":
+        return digest(LOCK.read_text(encoding="utf-8"), sys.version_info[:2], VENV)
+    return digest((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def install_lock() -> None:
+    """Install with uv where there is one (it is faster), else, or where it fails, with pip."""
+    title = "Installing the packages of requirements.lock (once; a minute or so)"
+    options = ["--require-hashes", "--requirement", LOCK]
+    uv = shutil.which("uv")
+    if uv is not None:
+        command = [uv, "pip", "install", "--quiet", "--python", in_venv("python"), *options]
+        if call(title, command, quiet=True) == 0:
+            return
+    must(title, [*pip(VENV), *options], quiet=True)
+
+
+def make_venv(place: Path) -> None:
+    # Not sys.executable: that may lie in the .venv that is just being replaced.
+    python = getattr(sys, "_base_executable", sys.executable)
+    if call(f"Making {place.name}", [python, "-m", "venv", place]) != 0:
+        remove(place)
+        raise Failed("No virtual environment. On Debian or Ubuntu: apt install python3-venv")
+
+
+def in_venv(program: str, place: Path | None = None) -> Path:
+    """Return the path of a program of the environment, on Windows too."""
+    venv = place or VENV
+    return venv / "Scripts" / f"{program}.exe" if os.name == "nt" else venv / "bin" / program
+
+
+def pip(venv: Path) -> Command:
+    quietly = ["--quiet", "--disable-pip-version-check"]
+    return [in_venv("python", venv), "-m", "pip", "install", *quietly]
+
+
+# --- the book -------------------------------------------------------------------------------------
+
+
+def make_book() -> None:
+    """Execute the notebooks, once, and build the pages from the executed copies."""
+    made_from = fingerprint(ROOT)
+    remove(BUILD)
+    remove(GENERATED)
+    chapters = copy_notebooks()
+    nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
+    pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
+    must(f"Executing {len(chapters)} notebooks", [*pytest, *nbmake, CHAPTERS])
+    for chapter in chapters:
+        if unrun_cells(chapter):
+            raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
+    strict = ["-W", "-n", "--keep-going", "-q", "-d", BUILD / "doctrees"]
+    sphinx = [in_venv("python"), "-m", "sphinx", *strict, ROOT / "book", BUILD / "html"]
+    must("Building the pages", sphinx, quiet=True)
+    if fingerprint(ROOT) != made_from:
+        raise Failed("The sources changed while the book was made: make it again.")
+    BOOK_STAMP.write_text(made_from)
+
+
+def copy_notebooks() -> list[Path]:
+    """Copy the notebooks to where they are executed; the committed ones stay without outputs."""
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    if not notebooks:
+        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
+    remove(CHAPTERS)
+    CHAPTERS.mkdir(parents=True)
+    return [Path(shutil.copy(notebook, CHAPTERS)) for notebook in notebooks]
+
+
+def unrun_cells(notebook: Path) -> list[int]:
+    """Return the numbers (from 1) of the code cells that have not run."""
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    return [
+        number
+        for number, cell in enumerate(cells, start=1)
+        if cell["cell_type"] == "code"
+        and "".join(cell["source"]).strip()
+        and cell.get("execution_count") is None
+    ]
+
+
+def fingerprint(root: Path) -> str:
+    """Return one hash of everything that the book is made from."""
+    found = [path for name in SOURCES for path in [root / name, *(root / name).rglob("*")]]
+    names = sorted(path.relative_to(root) for path in found if path.is_file())
+    sources = [name for name in names if not is_product(name)]
+    hashes = [hashlib.sha256((root / name).read_bytes()).hexdigest() for name in sources]
+    return digest(*map(Path.as_posix, sources), *hashes)
+
+
+def is_product(name: Path) -> bool:
+    return any(part in PRODUCTS or part.endswith(".egg-info") for part in name.parts)
+
+
+def book_is_fresh() -> bool:
+    made = FRONT_PAGE.exists() and BOOK_STAMP.exists()
+    return made and BOOK_STAMP.read_text() == fingerprint(ROOT)
+
+
+# --- the commands ---------------------------------------------------------------------------------
+
+
+def book() -> int:
+    """Execute the notebooks and build the book."""
+    prepare()
+    make_book()
+    say(f"The book: {FRONT_PAGE.as_uri()}")
+    return 0
+
+
+def test(*arguments: str) -> int:
+    """Run the tests; further arguments go to pytest (run.py test -k name)."""
+    prepare()
+    if not book_is_fresh():
+        say("The tests read the book, and it is not up to date.")
+        make_book()
+    say(f"The book: {FRONT_PAGE.as_uri()}")
+    # Nothing is said after pytest: its summary is the last line.
+    command = [in_venv("python"), "-m", "pytest", "-n", "2", *arguments]
+    return subprocess.call(command, cwd=ROOT, env=environment())
+
+
+def lint() -> int:
+    """Check style, types and the direction of imports."""
+    prepare()
+    checks: dict[str, Command] = {
+        "Style (ruff check)": [in_venv("ruff"), "check", "--quiet"],
+        "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
+        "Types (mypy)": [in_venv("mypy")],
+        "Imports (import-linter)": [in_venv("lint-imports")],
+    }
+    failed = [title for title, command in checks.items() if call(title, command) != 0]
+    if failed:
+        raise Failed("Lint failed: " + ", ".join(failed))
+    return 0
+
+
+def lock() -> int:
+    """Pin every dependency again, by hash, into requirements.lock."""
+    options = ["--all-extras", "--universal", "--python-version", "3.11", "--upgrade", "--quiet"]
+    options += ["--fork-strategy", "fewest", "--generate-hashes"]
+    options += ["--no-emit-index-url", "--no-emit-find-links", "--no-header", "--no-annotate"]
+    with tempfile.TemporaryDirectory() as scratch:
+        uv = find_uv(Path(scratch, "uv"))
+        command = [uv, "pip", "compile", "pyproject.toml", *options, "--output-file", LOCK.name]
+        must("Pinning the dependencies", command, quiet=True)
+    say("requirements.lock is written. Run book and test before you commit it.")
+    return 0
+
+
+def find_uv(scratch: Path) -> str | Path:
+    """Return the uv of this machine, or one installed for the moment."""
+    found = shutil.which("uv")
+    if found is None:
+        make_venv(scratch)
+        must("Installing uv for the moment", [*pip(scratch), "uv"], quiet=True)
+    return found or in_venv("uv", scratch)
+
+
+def clean() -> int:
+    """Remove the environment, the book and the caches; results/ stays."""
+    for path in [VENV, CHAPTERS, BUILD, GENERATED, *(ROOT / name for name in CACHES + BUILT)]:
+        remove(path)
+    say("Removed the environment, the book and the caches.")
+    return 0
+
+
+def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
+    parser = argparse.ArgumentParser(prog="run.py", description=(__doc__ or "").split("\n")[0])
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for function in [book, test, lint, lock, clean]:
+        text = function.__doc__
+        commands.add_parser(
+            function.__name__, help=text, description=text, allow_abbrev=False
+        ).set_defaults(function=function)
+    chosen, rest = parser.parse_known_args(words)
+    if rest and chosen.function is not test:
+        parser.error(f"{chosen.command} takes no arguments, found: {' '.join(rest)}")
+    return chosen, rest
+
+
+def main(words: list[str]) -> int:
+    chosen, rest = read_command_line(words)
+    try:
+        return chosen.function(*rest)
+    except Failed as failure:
+        say(str(failure))
+        return failure.status
+    except KeyboardInterrupt:
+        say("Stopped.")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,7 @@
+"""Settings of the property tests: the same examples on every run; `explore` looks for new ones."""
+
+from hypothesis import settings
+
+settings.register_profile("steady", deadline=None, max_examples=40, derandomize=True)
+settings.register_profile("explore", deadline=None, max_examples=1000)
+settings.load_profile("steady")

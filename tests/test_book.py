@@ -1,0 +1,202 @@
+"""The built pages, read as text: complete, self-contained, and well formed."""
+
+import re
+import shutil
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import nbformat
+import pytest
+from bs4 import BeautifulSoup, Tag
+from sphinx.testing.util import SphinxTestApp
+
+ROOT = Path(__file__).resolve().parents[1]
+BOOK = ROOT / "book"
+HTML = BOOK / "_build" / "html"
+PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
+PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
+NOTEBOOKS = sorted(path.stem for path in (ROOT / "notebooks").glob("*.ipynb"))
+
+REMOTE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
+LOADED = {"src", "srcset", "poster", "data", "xlink:href", "action"}
+
+
+@cache
+def read(page: str) -> BeautifulSoup:
+    file = HTML / page
+    assert file.exists(), "run `python3 run.py book` first"
+    return BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
+
+
+def loaded_by(page: Tag) -> list[str]:
+    """Return every address that a browser fetches by itself for a page."""
+    addresses = [tag[name] for tag in page.find_all(True) for name in LOADED & tag.attrs.keys()]
+    sheets = [link["href"] for link in page.find_all("link", href=True) if is_resource(link)]
+    return addresses + sheets
+
+
+def is_resource(link: Tag) -> bool:
+    """Tell a style sheet or an icon from a hint like ``next`` or ``canonical``."""
+    return not {"stylesheet", "icon", "preload", "modulepreload"}.isdisjoint(link.get("rel", []))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_loads_nothing_from_another_host(page):
+    assert [address for address in loaded_by(read(page)) if REMOTE.match(address)] == []
+
+
+@pytest.mark.parametrize("sheet", ["book.css", "pygments.css"])
+def test_a_style_sheet_loads_nothing_from_another_host(sheet):
+    assert read("index.html")
+    text = (HTML / "_static" / sheet).read_text(encoding="utf-8")
+    assert re.findall(r"url\(\s*['\"]?(?:https?:)?//|@import", text) == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_whatever_a_page_loads_is_there(page):
+    local = [a for a in loaded_by(read(page)) if not re.match(r"^(data:|#|\w+://)", a)]
+    here = (HTML / page).parent
+    assert [a for a in local if not (here / re.split(r"[?#]", a)[0]).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_has_one_heading_and_its_words_in_the_title(page):
+    headings = [h.get_text().rstrip("#").strip() for h in read(page).select("main h1")]
+    headings = list(dict.fromkeys(headings))  # the print version repeats it
+    assert len(headings) == 1
+    assert headings[0].split()[0] in read(page).title.get_text()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_image_has_words(page):
+    assert [i["src"] for i in read(page).find_all("img") if not i.get("alt", "").strip()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_figure_is_drawn_in_lines(page):
+    figures = [img["src"] for img in read(page).select("article img")]
+    assert [src for src in figures if not src.endswith(".svg")] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_an_id_is_used_once(page):
+    ids = Counter(tag["id"] for tag in read(page).find_all(id=True))
+    assert [name for name, times in ids.items() if times > 1] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_link_inside_the_book_leads_somewhere(page):
+    lost = []
+    for link in read(page).select("article a[href]"):
+        target, _, anchor = link["href"].partition("#")
+        if re.match(r"^\w+:", link["href"]) or target.startswith("//"):
+            continue
+        file = ((HTML / page).parent / target).resolve() if target else HTML / page
+        if not file.exists() or (anchor and not has_id(file, anchor)):
+            lost.append(link["href"])
+    assert lost == []
+
+
+def has_id(file: Path, anchor: str) -> bool:
+    return read(str(file.relative_to(HTML.resolve()))).find(id=anchor) is not None
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_no_page_shows_a_failed_cell(page):
+    assert [e.get_text()[:200] for e in read(page).select(".output.traceback")] == []
+
+
+def test_every_notebook_is_a_chapter():
+    chapters = [Path(page).stem for page in PAGES if page.startswith("chapters/")]
+    assert read("index.html")
+    assert chapters == NOTEBOOKS
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_chapter_offers_its_notebook(name):
+    page = read(f"chapters/{name}.html")
+    [carried] = page.select(".notebook-line a[download]")
+    assert carried["download"] == f"{name}.ipynb"
+    executed = page.select_one("a.btn-download-source-button")["href"]
+    assert (HTML / "chapters" / executed).is_file()
+
+
+def test_the_search_index_holds_the_words_of_the_chapters():
+    assert read("search.html")
+    assert "boundari" in (HTML / "searchindex.js").read_text(encoding="utf-8")  # the stem
+
+
+PYPROJECT = """
+[project]
+name = "qbound"
+version = "1.2.3"
+authors = [{{ name = "qbound maintainers" }}]
+[tool.qbound]
+title = "Feasible workspaces"
+repository = "{repository}"
+"""
+TRIAL_INDEX = "# Trial\n\n{verdict}`misprint`\n\n```{toctree}\nchapters/01_trial\n```\n"
+
+
+def build_trial(folder: Path, repository: str, index: str = TRIAL_INDEX) -> Path:
+    """Build a book of one chapter with the real configuration and an address of our choice."""
+    book = folder / "book"
+    for name in ("_ext", "_static", "_templates"):
+        shutil.copytree(BOOK / name, book / name)
+    for name in ("conf.py", "references.bib"):
+        shutil.copy(BOOK / name, book)
+    (folder / "pyproject.toml").write_text(PYPROJECT.format(repository=repository), "utf-8")
+    (book / "index.md").write_text(index, "utf-8")
+    (book / "chapters").mkdir()
+    output = [nbformat.v4.new_output("stream", text="2")]
+    cells = [
+        nbformat.v4.new_markdown_cell("# Trial chapter"),
+        nbformat.v4.new_code_cell("1 + 1", outputs=output, execution_count=7),
+    ]
+    python = {"language_info": {"name": "python"}}
+    notebook = nbformat.v4.new_notebook(cells=cells, metadata=python)
+    nbformat.write(notebook, book / "chapters" / "01_trial.ipynb")
+    app = SphinxTestApp("html", srcdir=book, builddir=folder)
+    try:
+        app.build()
+        assert app.warning.getvalue() == ""
+    finally:
+        app.cleanup()
+    return Path(app.outdir)
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Return the links of a chapter whose repository is known."""
+    html = build_trial(tmp_path_factory.mktemp("published"), "https://github.com/someone/qbound")
+    page = BeautifulSoup((html / "chapters" / "01_trial.html").read_text("utf-8"), "html.parser")
+    return [link["href"] for link in page.select("a[href]")]
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "https://mybinder.org/v2/gh/someone/qbound/main?urlpath=lab/tree/notebooks/01_trial.ipynb",
+        "https://colab.research.google.com/github/someone/qbound/blob/main/notebooks/01_trial.ipynb",
+        "https://github.com/someone/qbound/edit/main/notebooks/01_trial.md",
+        "https://github.com/someone/qbound",
+    ],
+)
+def test_with_an_address_a_chapter_leads_to_its_notebook_in_the_repository(published, address):
+    assert address in published
+
+
+def test_with_an_address_a_chapter_lets_a_reader_report(published):
+    assert any(a.startswith("https://github.com/someone/qbound/issues/new") for a in published)
+
+
+def test_without_an_address_no_link_needs_one(tmp_path):
+    html = build_trial(tmp_path, "")
+    text = (html / "chapters" / "01_trial.html").read_text("utf-8")
+    assert re.findall(r"mybinder|colab\.research|github\.com|/edit/|issues/new", text) == []
+
+
+def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
+    with pytest.raises(AssertionError, match="unknown verdict 'plausible'"):
+        build_trial(tmp_path, "", TRIAL_INDEX.replace("misprint", "plausible"))

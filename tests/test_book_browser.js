@@ -1,0 +1,124 @@
+// What test_book_browser.py asks of a page. Each question is answered with a list of what is wrong.
+
+const FORMULA_ERROR = "mjx-merror, [data-mml-node=merror], mjx-container [fill=red]";
+const TEX = /\\\(|\\\[|\$[^$]+\$|\\(frac|begin|mathbf|beta)/;
+
+function openEverything() {
+  for (const part of document.querySelectorAll("details")) part.open = true;
+}
+
+function beginning(element) {
+  return (element.closest(".math") ?? element).textContent.trim().slice(0, 60);
+}
+
+function* textsOf(root) {
+  const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+  for (let text = walker.nextNode(); text; text = walker.nextNode())
+    if (text.data.trim()) yield text;
+}
+
+function unshownFormulas() {
+  const all = [...document.querySelectorAll(".math")];
+  const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
+  const wrong = [...document.querySelectorAll(FORMULA_ERROR)];
+  const raw = [...textsOf(document.querySelector(".bd-article") ?? document.body)]
+    .filter((text) => !text.parentElement.closest("pre, code, script, style, mjx-container"))
+    .filter((text) => TEX.test(text.data));
+  return [
+    ...bare.map((formula) => `not typeset: ${beginning(formula)}`),
+    ...wrong.map((part) => `an error in: ${beginning(part)}`),
+    ...raw.map((text) => `TeX in the text: ${text.data.trim().slice(0, 60)}`),
+  ];
+}
+
+const THAT_MAY_BE_WIDE =
+  ".bd-article :is(mjx-container > svg, table, pre, img, figure, p, li, dt, h1, h2, h3, .verdict)," +
+  ".prev-next-area a, .notebook-line, .bd-footer-content p";
+
+// A reader reaches whatever lies in a box that scrolls, as long as the box itself is on the page;
+// what a box cuts off, or what leaves the page, is lost.
+function lostToTheRight() {
+  const { scrollWidth, clientWidth } = document.documentElement;
+  const wide = [...document.querySelectorAll(THAT_MAY_BE_WIDE)].filter((e) => e.checkVisibility());
+  const lost = wide.filter((element) => isLost(element, clientWidth));
+  const page = scrollWidth > clientWidth ? [`a page ${scrollWidth} wide on ${clientWidth}`] : [];
+  return [...page, ...lost.map((element) => `${element.tagName}: ${beginning(element)}`)];
+}
+
+function isLost(element, pageWidth) {
+  const overflow = (box) => getComputedStyle(box).overflowX;
+  const right = (box) => box.getBoundingClientRect().right;
+  let box = element.parentElement;
+  while (box && overflow(box) === "visible") box = box.parentElement;
+  if (!box) return right(element) > pageWidth + 1;
+  if (/auto|scroll/.test(overflow(box))) return right(box) > pageWidth + 1;
+  return right(element) > right(box) + 1;
+}
+
+const THAT_SCROLLS = "mjx-container, .pst-scrollable-table-container, .text_html, .highlight pre";
+
+function wideBoxesWithoutHint() {
+  return [...document.querySelectorAll(THAT_SCROLLS)]
+    .filter((box) => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1)
+    .filter((box) => !box.matches(".wide.more-right") || box.tabIndex !== 0)
+    .map(beginning);
+}
+
+function badImages() {
+  return [...document.images]
+    .filter((image) => !image.alt.trim() || !image.naturalWidth)
+    .map((image) => `${image.getAttribute("src")} (alt: "${image.alt}")`);
+}
+
+// Contrast as WCAG 2 counts it: 4.5 to 1, for large text 3 to 1.
+function faintText(theme) {
+  document.documentElement.dataset.theme = theme;
+  const faint = new Set();
+  for (const text of textsOf(document.body)) {
+    const element = text.parentElement;
+    if (element.closest("script, style, mjx-assistive-mml, .headerlink, kbd")) continue;
+    if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue;
+    const ratio = contrast(element);
+    if (ratio < (isLarge(element) ? 3 : 4.5))
+      faint.add(`${ratio.toFixed(1)} to 1: ${element.className} "${text.data.trim().slice(0, 40)}"`);
+  }
+  return [...faint];
+}
+
+function isLarge(element) {
+  const { fontSize, fontWeight } = getComputedStyle(element);
+  return parseFloat(fontSize) >= (fontWeight >= 700 ? 18.66 : 24);
+}
+
+function contrast(element) {
+  const ground = groundOf(element);
+  const ink = over(rgba(getComputedStyle(element).color), ground);
+  const [dark, light] = [luminance(ink), luminance(ground)].sort((a, b) => a - b);
+  return (light + 0.05) / (dark + 0.05);
+}
+
+function groundOf(element) {
+  if (!element) return [255, 255, 255];
+  const own = rgba(getComputedStyle(element).backgroundColor);
+  return own[3] === 1 ? own.slice(0, 3) : over(own, groundOf(element.parentElement));
+}
+
+// A canvas reads every notation of a colour.
+function rgba(colour) {
+  rgba.pen ??= document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  rgba.pen.clearRect(0, 0, 1, 1);
+  rgba.pen.fillStyle = colour;
+  rgba.pen.fillRect(0, 0, 1, 1);
+  const [red, green, blue, alpha] = rgba.pen.getImageData(0, 0, 1, 1).data;
+  return [red, green, blue, alpha / 255];
+}
+
+function over(top, ground) {
+  return [0, 1, 2].map((i) => top[i] * top[3] + ground[i] * (1 - top[3]));
+}
+
+function luminance(rgb) {
+  const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const [red, green, blue] = rgb.map((v) => linear(v / 255));
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}

@@ -1,0 +1,183 @@
+"""What a browser makes of the built book, opened from the file system, without a network."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright import sync_api as playwright
+
+HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
+PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
+PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
+WIDTHS = {"wide screen": 1280, "phone": 390}
+THEMES = ["light", "dark"]
+
+CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
+HOW_TO_GET_CHROMIUM = (
+    "The browser tests need Chromium: install it from your system's packages "
+    "(apt-get install chromium, brew install --cask chromium, ...)."
+)
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+LOCAL = ("file:", "data:", "blob:")
+
+QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
+
+
+@dataclass
+class Seen:
+    """What was found wrong on one page; everything empty is a good page."""
+
+    requests: list[str] = field(default_factory=list)
+    console: list[str] = field(default_factory=list)
+    formulas: list[str] = field(default_factory=list)
+    images: list[str] = field(default_factory=list)
+    lost: dict[str, list[str]] = field(default_factory=dict)
+    unmarked: dict[str, list[str]] = field(default_factory=dict)
+    faint: dict[str, list[str]] = field(default_factory=dict)
+
+
+def chromium() -> str:
+    """Return the path of the system's Chromium; without one skip, or fail where it is required."""
+    path = next(filter(None, map(shutil.which, CHROMIUM_NAMES)), None)
+    if path is None and os.environ.get("QBOUND_REQUIRE_BROWSER") == "1":
+        pytest.fail(HOW_TO_GET_CHROMIUM)
+    return path or pytest.skip(HOW_TO_GET_CHROMIUM)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    path = chromium()
+    with playwright.sync_playwright() as run:
+        browser = run.chromium.launch(executable_path=path, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+def refuse_remote(page: Any, seen: Seen) -> None:
+    """Record every request that leaves the machine, and let none pass."""
+
+    def handle(route: Any) -> None:
+        if route.request.url.startswith(LOCAL):
+            route.continue_()
+        else:
+            seen.requests.append(route.request.url)
+            route.abort()
+
+    page.route("**/*", handle)
+
+
+def open_page(page: Any, name: str) -> None:
+    """Open a page of the book and wait until its formulas are typeset."""
+    file = HTML / name
+    assert file.exists(), "run `python3 run.py book` first"
+    page.goto(file.as_uri())
+    page.evaluate("() => window.MathJax?.startup?.promise.then(() => {})")
+    settle(page)
+
+
+def settle(page: Any) -> None:
+    """Wait for two frames: by then a new width is laid out."""
+    page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
+
+
+@pytest.fixture(scope="module", params=PAGES)
+def seen(browser: Any, request: pytest.FixtureRequest) -> Iterator[Seen]:
+    """Open one page once; look at it at both widths and in both themes."""
+    seen = Seen()
+    page = browser.new_page(reduced_motion="reduce")
+    refuse_remote(page, seen)
+    page.on("pageerror", lambda error: seen.console.append(str(error)))
+    page.on("console", lambda m: m.type == "error" and seen.console.append(m.text))
+    open_page(page, request.param)
+    page.add_script_tag(content=QUESTIONS)
+    page.evaluate("openEverything()")
+    for name, width in WIDTHS.items():
+        page.set_viewport_size({"width": width, "height": 900})
+        settle(page)
+        seen.lost[name] = page.evaluate("lostToTheRight()")
+        seen.unmarked[name] = page.evaluate("wideBoxesWithoutHint()")
+    seen.formulas = page.evaluate("unshownFormulas()")
+    seen.images = page.evaluate("badImages()")
+    for theme in THEMES:
+        seen.faint[theme] = page.evaluate("faintText", theme)
+    yield seen
+    page.close()
+
+
+def test_a_page_asks_nothing_of_the_network(seen):
+    assert seen.requests == []
+
+
+def test_the_console_shows_no_error(seen):
+    assert seen.console == []
+
+
+def test_every_formula_is_typeset_without_error(seen):
+    assert seen.formulas == []
+
+
+def test_every_image_loads_and_has_words(seen):
+    assert seen.images == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_nothing_leaves_the_page(seen, width):
+    assert seen.lost[width] == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_what_scrolls_shows_that_it_does_and_the_keyboard_reaches_it(seen, width):
+    assert seen.unmarked[width] == []
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_text_stands_out_from_its_ground(seen, theme):
+    assert seen.faint[theme] == []
+
+
+@pytest.fixture
+def page(browser: Any) -> Iterator[Any]:
+    page = browser.new_page(color_scheme="dark")
+    yield page
+    page.close()
+
+
+def test_a_reader_who_prefers_the_dark_gets_it(page):
+    open_page(page, "index.html")
+    assert page.evaluate("() => document.documentElement.dataset.theme") == "dark"
+
+
+def test_a_search_from_any_page_finds_the_word(page):
+    complaints: list[str] = []
+    page.on("console", lambda m: m.type == "error" and complaints.append(m.text))
+    open_page(page, "index.html")
+    page.keyboard.press("Control+k")
+    page.keyboard.type("boundary")
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/search.html?q=boundary*")
+    results = page.locator("#search-results li a")
+    results.first.wait_for()
+    found = results.all_inner_texts()
+    assert any("oundary" in title for title in found)
+    assert complaints == []
+
+
+def test_a_chapter_downloads_its_notebook(page):
+    chapter = sorted(HTML.glob("chapters/*.html"))[0]
+    open_page(page, f"chapters/{chapter.name}")
+    with page.expect_download(timeout=5000) as download:
+        page.click(".notebook-line a[download]")
+    assert download.value.suggested_filename == f"{chapter.stem}.ipynb"
+    assert '"cells"' in download.value.path().read_text(encoding="utf-8")

@@ -1,0 +1,647 @@
+"""The ground: run.py, the lock, the metadata, the import contract, what the repository may hold."""
+
+import ast
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+import yaml
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+from packaging.version import Version
+
+ROOT = Path(__file__).resolve().parent.parent
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = PYPROJECT["project"]
+LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+
+
+def load_run() -> ModuleType:
+    """A fresh run.py, so that a test may move its paths."""
+    spec = importlib.util.spec_from_file_location("run", ROOT / "run.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def run() -> ModuleType:
+    return load_run()
+
+
+@pytest.fixture
+def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small copy of the repository's layout to which run.py's paths point."""
+    for folder in ("src/qbound", "notebooks", "book"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "src/qbound/circle.py").write_text("TURN = 6.28\n")
+    (tmp_path / "notebooks/01_a.ipynb").write_text(notebook({"source": ["1 + 1"]}))
+    (tmp_path / "book/conf.py").write_text("project = 'qbound'\n")
+    for name in ("pyproject.toml", "requirements.lock"):
+        shutil.copy(ROOT / name, tmp_path)
+    book = tmp_path / "book"
+    places = {
+        "ROOT": tmp_path,
+        "VENV": tmp_path / ".venv",
+        "LOCK": tmp_path / "requirements.lock",
+        "CHAPTERS": book / "chapters",
+        "BUILD": book / "_build",
+        "GENERATED": book / "generated",
+        "FRONT_PAGE": book / "_build/html/index.html",
+        "BOOK_STAMP": book / "_build/made-from",
+    }
+    for name, place in places.items():
+        monkeypatch.setattr(run, name, place)
+    return tmp_path
+
+
+def notebook(*cells: dict[str, object]) -> str:
+    """The JSON of a notebook of code cells."""
+    blank = {"cell_type": "code", "execution_count": None, "outputs": [], "metadata": {}}
+    return json.dumps({"cells": [blank | cell for cell in cells], "metadata": {}})
+
+
+# --- run.py: the command line ---------------------------------------------------------------------
+
+
+def test_run_needs_the_standard_library_alone() -> None:
+    tree = ast.parse((ROOT / "run.py").read_text(encoding="utf-8"))
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    names = {
+        name.split(".")[0]
+        for node in imports
+        for name in (
+            [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else [alias.name for alias in node.names]
+        )
+    }
+    assert names
+    assert names <= sys.stdlib_module_names
+
+
+def test_an_old_python_can_read_run_far_enough_to_be_refused() -> None:
+    source = (ROOT / "run.py").read_text(encoding="utf-8")
+    tree = ast.parse(source, feature_version=(3, 7))
+    guard = next(i for i, node in enumerate(tree.body) if isinstance(node, ast.If))
+    oldest = f"({Requirement('x' + PROJECT['requires-python']).specifier})"
+    assert ast.unparse(tree.body[guard]).startswith("if sys.version_info < (3, 11):"), oldest
+    assert oldest == "(>=3.11)"
+    before = tree.body[1:guard]
+    assert all(isinstance(node, ast.Import | ast.ImportFrom) for node in before)
+
+
+@pytest.mark.parametrize("words", [[], ["frobnicate"], ["book", "-x"], ["lint", "src"]])
+def test_a_wrong_command_line_exits_with_2(words: list[str]) -> None:
+    done = subprocess.run(
+        [sys.executable, ROOT / "run.py", *words], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "usage: run.py" in done.stderr
+
+
+def test_further_words_of_test_go_to_pytest(run: ModuleType) -> None:
+    chosen, rest = run.read_command_line(["test", "-k", "circle or frames", "--pdb"])
+    assert chosen.function is run.test
+    assert rest == ["-k", "circle or frames", "--pdb"]
+
+
+def test_the_programs_of_the_environment_are_found_on_windows_too(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    venv = Path("env")
+    assert run.in_venv("ruff", venv).parts == (
+        ("env", "Scripts", "ruff.exe") if os.name == "nt" else ("env", "bin", "ruff")
+    )
+    monkeypatch.setattr(run.os, "name", "nt")
+    assert run.in_venv("ruff", venv).as_posix() == "env/Scripts/ruff.exe"
+
+
+# --- run.py: the environment ----------------------------------------------------------------------
+
+
+def install(run: ModuleType) -> None:
+    """What an installation leaves behind, without installing."""
+    python = run.in_venv("python")
+    python.parent.mkdir(parents=True, exist_ok=True)
+    python.touch()
+
+
+def record_steps(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Replace the installation by a list of what it would have done."""
+    steps: list[str] = []
+
+    def note(title: str, *_: object, **__: object) -> None:
+        steps.append(title)
+
+    monkeypatch.setattr(run, "must", note)
+    monkeypatch.setattr(run, "make_venv", lambda _: install(run))
+    monkeypatch.setattr(run, "install_lock", lambda: steps.append("lock"))
+    return steps
+
+
+def test_a_warm_environment_is_not_installed_again(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = record_steps(run, monkeypatch)
+    run.prepare()
+    assert steps == ["lock", "Installing qbound itself"]
+    run.prepare()
+    assert len(steps) == 2
+
+
+def test_a_new_lock_makes_a_new_environment(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = record_steps(run, monkeypatch)
+    run.prepare()
+    leftover = run.VENV / "leftover"
+    leftover.touch()
+    run.LOCK.write_text(LOCK.replace("numpy==", "numpy==1"))
+    run.prepare()
+    assert steps == ["lock", "Installing qbound itself"] * 2
+    assert not leftover.exists()
+
+
+def test_a_new_pyproject_installs_the_package_alone_again(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = record_steps(run, monkeypatch)
+    run.prepare()
+    with (house / "pyproject.toml").open("a") as pyproject:
+        pyproject.write("# changed\n")
+    run.prepare()
+    assert steps == ["lock", "Installing qbound itself", "Installing qbound itself"]
+
+
+def test_an_interrupted_installation_starts_over(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = record_steps(run, monkeypatch)
+    whole = run.install_lock
+
+    def killed() -> None:
+        whole()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "install_lock", killed)
+    with pytest.raises(KeyboardInterrupt):
+        run.prepare()
+    assert run.in_venv("python").exists()
+    monkeypatch.setattr(run, "install_lock", whole)
+    run.prepare()
+    assert steps == ["lock", "lock", "Installing qbound itself"]
+
+
+@pytest.mark.parametrize(
+    ("uv", "uv_status", "expected"),
+    [(None, 1, ["pip"]), ("uv", 0, ["uv"]), ("uv", 1, ["uv", "pip"])],
+)
+def test_uv_installs_where_it_can_and_pip_elsewhere(
+    run: ModuleType,
+    house: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    uv: str | None,
+    uv_status: int,
+    expected: list[str],
+) -> None:
+    used: list[str] = []
+
+    def call(title: str, command: list[object], quiet: bool = False) -> int:
+        used.append("uv" if command[0] == "uv" else "pip")
+        assert "--require-hashes" in command
+        return uv_status if command[0] == "uv" else 0
+
+    monkeypatch.setattr(run, "call", call)
+    monkeypatch.setattr(run.shutil, "which", lambda _: uv)
+    run.install_lock()
+    assert used == expected
+
+
+def test_the_code_of_the_user_does_not_mix_in(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", "elsewhere")
+    monkeypatch.setenv("QBOUND_REQUIRE_BROWSER", "1")
+    environment = run.environment()
+    assert "PYTHONPATH" not in environment
+    assert environment["PYTHONNOUSERSITE"] == "1"
+    assert environment["QBOUND_REQUIRE_BROWSER"] == "1"
+
+
+# --- run.py: the book -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "source", ["src/qbound/circle.py", "notebooks/01_a.ipynb", "book/conf.py", "pyproject.toml",
+               "requirements.lock"]
+)  # fmt: skip
+def test_a_changed_source_makes_the_book_stale(run: ModuleType, house: Path, source: str) -> None:
+    before = run.fingerprint(house)
+    with (house / source).open("a") as file:
+        file.write(" \n")
+    assert run.fingerprint(house) != before
+
+
+@pytest.mark.parametrize("change", ["rename", "add", "remove"])
+def test_a_source_that_comes_or_goes_makes_the_book_stale(
+    run: ModuleType, house: Path, change: str
+) -> None:
+    before = run.fingerprint(house)
+    module = house / "src/qbound/circle.py"
+    if change == "rename":
+        module.rename(module.with_name("round.py"))
+    elif change == "add":
+        module.with_name("empty.py").touch()
+    else:
+        module.unlink()
+    assert run.fingerprint(house) != before
+
+
+@pytest.mark.parametrize(
+    "product",
+    ["book/chapters/01_a.ipynb", "book/_build/html/index.html", "book/generated/qbound.rst",
+     "src/qbound/__pycache__/circle.pyc", "src/qbound.egg-info/PKG-INFO",
+     "notebooks/.ipynb_checkpoints/01_a.ipynb", "results/region.json"],
+)  # fmt: skip
+def test_what_was_made_does_not_make_the_book_stale(
+    run: ModuleType, house: Path, product: str
+) -> None:
+    before = run.fingerprint(house)
+    (house / product).parent.mkdir(parents=True, exist_ok=True)
+    (house / product).write_text("made\n")
+    assert run.fingerprint(house) == before
+
+
+def fake_steps(run: ModuleType, monkeypatch: pytest.MonkeyPatch, executed: bool) -> list[str]:
+    """Replace nbmake and Sphinx by what they leave behind."""
+    titles: list[str] = []
+
+    def must(title: str, command: list[object], quiet: bool = False) -> None:
+        titles.append(title.split(maxsplit=1)[0])
+        if title.startswith("Executing") and executed:
+            for chapter in run.CHAPTERS.glob("*.ipynb"):
+                chapter.write_text(notebook({"source": ["1 + 1"], "execution_count": 1}))
+        if title.startswith("Building"):
+            run.FRONT_PAGE.parent.mkdir(parents=True)
+            run.FRONT_PAGE.touch()
+
+    monkeypatch.setattr(run, "must", must)
+    return titles
+
+
+def test_the_book_is_made_once_and_again_when_a_source_changes(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles = fake_steps(run, monkeypatch, executed=True)
+    monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run.subprocess, "call", lambda *_, **__: 0)
+    assert [run.test(), run.test()] == [0, 0]
+    assert titles == ["Executing", "Building"]
+    (house / "src/qbound/circle.py").write_text("TURN = 6.283\n")
+    run.test()
+    assert titles == ["Executing", "Building"] * 2
+
+
+def test_the_committed_notebooks_are_not_written(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    committed = house / "notebooks/01_a.ipynb"
+    before = committed.read_bytes()
+    fake_steps(run, monkeypatch, executed=True)
+    run.make_book()
+    assert committed.read_bytes() == before
+    assert run.unrun_cells(run.CHAPTERS / "01_a.ipynb") == []
+
+
+def test_a_cell_that_did_not_run_stops_the_book(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles = fake_steps(run, monkeypatch, executed=False)
+    with pytest.raises(run.Failed, match=r"01_a\.ipynb: cells that did not run: \[1\]"):
+        run.make_book()
+    assert titles == ["Executing"]
+    assert not run.book_is_fresh()
+
+
+def test_the_cells_that_did_not_run_are_named(run: ModuleType, tmp_path: Path) -> None:
+    path = tmp_path / "a.ipynb"
+    path.write_text(
+        notebook(
+            {"cell_type": "markdown", "source": ["# A"]},
+            {"source": ["1 + 1"], "execution_count": 1},
+            {"source": ["2 + 2"]},
+            {"source": ["  \n", ""]},
+            {"source": "3 + 3"},
+        )
+    )
+    assert run.unrun_cells(path) == [3, 5]
+
+
+def test_a_source_that_changes_meanwhile_is_noticed(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake_steps(run, monkeypatch, executed=True)
+    step = run.must
+
+    def must(title: str, command: list[object], quiet: bool = False) -> None:
+        step(title, command, quiet)
+        (house / "book/conf.py").write_text("project = 'changed'\n")
+
+    monkeypatch.setattr(run, "must", must)
+    with pytest.raises(run.Failed, match="changed while"):
+        run.make_book()
+    assert not run.book_is_fresh()
+
+
+def test_a_failing_step_ends_the_run_with_its_status(
+    run: ModuleType,
+    house: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run, "call", lambda *_, **__: 3)
+    assert run.main(["book"]) == 3
+    assert "Stopped at: Executing 1 notebooks" in capsys.readouterr().out
+    assert run.main(["lint"]) == 1
+
+
+def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -> None:
+    kept = house / "results/region.json"
+    made = [run.VENV, run.CHAPTERS, run.BUILD, house / ".mypy_cache", house / "dist"]
+    for folder in (kept.parent, *made):
+        folder.mkdir(parents=True)
+        (folder / "region.json").touch()
+    assert run.main(["clean"]) == 0
+    assert kept.exists()
+    assert (house / "notebooks/01_a.ipynb").exists()
+    assert not any(folder.exists() for folder in made)
+
+
+# --- the lock and the metadata --------------------------------------------------------------------
+
+
+def locked() -> dict[str, list[tuple[Requirement, int]]]:
+    """Every pin of the lock, by name, with the number of its hashes."""
+    pins: dict[str, list[tuple[Requirement, int]]] = {}
+    for block in re.split(r"\n(?=\S)", LOCK.strip()):
+        line, *hashes = block.replace("\\\n", "\n").split("\n")
+        requirement = Requirement(line)
+        count = sum(bool(re.fullmatch(r"\s+--hash=sha256:[0-9a-f]{64}\s*", h)) for h in hashes)
+        assert count == len(hashes), f"not a hash in the block of {requirement.name}"
+        pins.setdefault(canonicalize_name(requirement.name), []).append((requirement, count))
+    return pins
+
+
+def test_every_line_of_the_lock_is_a_pin_with_hashes() -> None:
+    pins = [pin for found in locked().values() for pin in found]
+    assert len(pins) > 100
+    for requirement, hashes in pins:
+        assert re.fullmatch(r"==[\w.+!]+", str(requirement.specifier)), requirement
+        assert hashes > 0, requirement
+
+
+def test_the_lock_holds_no_address() -> None:
+    assert "://" not in LOCK
+    assert not re.search(r"^\s*(-i|-f|-e|--index|--extra-index|--find-links|#)", LOCK, re.MULTILINE)
+
+
+def test_the_lock_answers_every_name_in_pyproject() -> None:
+    extras = PROJECT["optional-dependencies"]
+    assert {"symbolic", "figures", "book", "test", "lint", "build"} <= set(extras)
+    pins = locked()
+    for text in (*PROJECT["dependencies"], *(name for names in extras.values() for name in names)):
+        wanted = Requirement(text)
+        found = pins[canonicalize_name(wanted.name)]
+        for pin, _ in found:
+            (pinned,) = pin.specifier
+            assert wanted.specifier.contains(pinned.version), f"{text}: {pin}"
+
+
+def test_all_pythons_compute_with_the_same_packages() -> None:
+    split = [name for name, pins in locked().items() if len(pins) > 1]
+    assert not {"numpy", "sympy", "scipy", "matplotlib", "shapely"} & set(split)
+
+
+def test_environment_yml_uses_the_lock() -> None:
+    conda = yaml.safe_load((ROOT / "environment.yml").read_text(encoding="utf-8"))
+    *plain, pip = conda["dependencies"]
+    assert pip == {"pip": ["-r requirements.lock"]}
+    python = next(name for name in plain if name.startswith("python="))
+    oldest = Requirement("x" + PROJECT["requires-python"]).specifier
+    assert oldest.contains(python.removeprefix("python="))
+    assert all(name.split("=")[0] in ("python", "pip") for name in plain)
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    zenodo = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"^## \[(\S+)\] - (\S+)$", changes, re.MULTILINE)
+    assert newest is not None
+    versions = {PROJECT["version"], citation["version"], zenodo["version"], newest[1]}
+    assert versions == {version("qbound")}
+    dates = {str(citation["date-released"]), zenodo["publication_date"], newest[2]}
+    assert len(dates) == 1
+    assert str(Version(PROJECT["version"])) == PROJECT["version"]
+
+
+def test_the_citation_is_of_this_package_and_refers_to_the_paper() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= set(citation)
+    assert "preferred-citation" not in citation
+    assert citation["title"].startswith("qbound")
+    (paper,) = citation["references"]
+    assert paper["doi"] == "10.3390/app15105383"
+    assert len(paper["authors"]) == 9
+    zenodo = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+    assert [link["identifier"] for link in zenodo["related_identifiers"]] == [paper["doi"]]
+    assert zenodo["license"] == citation["license"] == PROJECT["license"]
+
+
+# --- the package ----------------------------------------------------------------------------------
+
+
+def test_the_wheel_holds_every_file_of_the_package(tmp_path: Path) -> None:
+    copy = tmp_path / "copy"
+    skip = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    shutil.copytree(ROOT / "src", copy / "src", ignore=skip)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, copy)
+    build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
+    subprocess.run(
+        [sys.executable, "-c", build, tmp_path], cwd=copy, check=True, capture_output=True
+    )
+    (wheel,) = tmp_path.glob("*.whl")
+    assert wheel.name.startswith(f"qbound-{PROJECT['version']}-py3-none-any")
+    with zipfile.ZipFile(wheel) as archive:
+        packed = {name for name in archive.namelist() if name.startswith("qbound/")}
+    package = copy / "src/qbound"
+    sources = {f"qbound/{p.relative_to(package).as_posix()}" for p in package.rglob("*.*")}
+    assert "qbound/py.typed" in sources
+    assert packed == sources
+
+
+WRONG_IMPORTS = [
+    ("harmonic", "robot", "a pillar knows the other"),
+    ("circle", "frames", "a pillar knows the other"),
+    ("robot", "circle", "a pillar knows the other"),
+    ("frames", "harmonic", "a pillar knows the other"),
+    ("boundary", "region", "a call upward"),
+    ("robot", "boundary", "a call upward"),
+    ("scaling", "figures", "a call upward"),
+    ("sampling", "circle", "no fair opponent"),
+    ("sampling", "robotfile", "side by side"),
+    ("paper_rule", "paper", "mathematics that reads the printed numbers"),
+    ("boundary", "paper", "mathematics that reads the printed numbers"),
+    ("paper", "polygon", "data that computes"),
+    ("check", "tolerances", "a checker that does not stand alone"),
+    ("results", "tolerances", "a writer that does not stand alone"),
+]
+RIGHT_IMPORTS = [
+    ("cli", "figures"),
+    ("figures", "paper"),
+    ("scaling", "polygon"),
+    ("paper_rule", "circle"),
+    ("sampling", "boundary"),
+    ("robotfile", "robot"),
+    ("boundary", "harmonic"),
+    ("boundary", "robot"),
+    ("robot", "frames"),
+    ("decomposition", "circle"),
+    ("circle", "tolerances"),
+]
+
+
+def check_imports(folder: Path, imports: list[tuple[str, str]]) -> subprocess.CompletedProcess[str]:
+    """Write a package of the drawn modules with these imports, and lint it by our contract."""
+    package = folder / "qbound"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    for pair in (*RIGHT_IMPORTS, *imports):
+        for name in pair:
+            (package / f"{name}.py").touch()
+    for importer, imported in imports:
+        with (package / f"{importer}.py").open("a") as module:
+            module.write(f"import qbound.{imported}\n")
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    command = "from importlinter.cli import lint_imports_command as c; c()"
+    return subprocess.run(
+        [sys.executable, "-c", command, "--no-cache"],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+    )
+
+
+def test_the_import_contract_keeps_the_drawing(tmp_path: Path) -> None:
+    done = check_imports(tmp_path, RIGHT_IMPORTS)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(("importer", "imported", "why"), WRONG_IMPORTS)
+def test_the_import_contract_refuses(
+    tmp_path: Path, importer: str, imported: str, why: str
+) -> None:
+    done = check_imports(tmp_path, [(importer, imported)])
+    assert done.returncode == 1, f"{why}: {done.stdout}{done.stderr}"
+    assert f"qbound.{importer} -> qbound.{imported}" in done.stdout, done.stdout
+
+
+def test_the_import_contract_refuses_a_module_without_a_place(tmp_path: Path) -> None:
+    done = check_imports(tmp_path, [("attic", "circle")])
+    assert done.returncode == 1
+    assert "attic" in done.stdout
+
+
+# --- what the repository holds --------------------------------------------------------------------
+
+
+def tracked() -> list[Path]:
+    """Every file that is, or would be, committed."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a git checkout: nothing says which files belong to the repository")
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    paths = [ROOT / name for name in listed.split("\0") if name]
+    return [path for path in paths if path.is_file()]
+
+
+# Written in pieces, or this file would be found.
+REGISTRIES = [".".join(parts) for parts in (
+    ("pypi", "org"), ("pythonhosted", "org"), ("anaconda", "org"), ("npmjs", "org"),
+    ("npmjs", "com"), ("jsdelivr", "net"), ("unpkg", "com"), ("deb", "debian", "org"),
+)]  # fmt: skip
+
+
+def test_no_file_names_a_registry_or_a_place_on_this_machine() -> None:
+    banned = [*REGISTRIES, str(ROOT) + os.sep, str(Path.home()) + os.sep]
+    found = [
+        f"{path.relative_to(ROOT)}: {word}"
+        for path in tracked()
+        for word in banned
+        if word.encode() in path.read_bytes()
+    ]
+    assert not found
+
+
+def test_the_products_are_not_committed(run: ModuleType) -> None:
+    products = [run.VENV, run.CHAPTERS, run.BUILD, run.GENERATED]
+    assert not [p for p in tracked() if any(place in p.parents for place in products)]
+
+
+def workflows() -> dict[str, dict[object, object]]:
+    folder = ROOT / ".github/workflows"
+    return {p.stem: yaml.safe_load(p.read_text(encoding="utf-8")) for p in folder.glob("*.yml")}
+
+
+def steps(workflow: dict[object, object]) -> list[dict[str, str]]:
+    return [step for job in workflow["jobs"].values() for step in job["steps"]]
+
+
+def test_the_workflows_run_the_commands_of_run_py() -> None:
+    found = {name: [s["run"] for s in steps(w) if "run" in s] for name, w in workflows().items()}
+    check = [f"python3 run.py {command}" for command in ("lint", "book", "test")]
+    assert found["ci"] == check
+    assert found["book"] == check[1:2]
+    assert [line for line in found["release"] if line in check] == check
+    matrix = workflows()["ci"]["jobs"]["check"]["strategy"]["matrix"]
+    assert matrix["python"] == ["3.11", "3.13"]
+
+
+def test_the_workflows_ask_for_little_and_name_the_versions_of_what_they_use() -> None:
+    for name, workflow in workflows().items():
+        assert workflow["permissions"] == {"contents": "read"}, name
+        assert "concurrency" in workflow, name
+        uses = [step["uses"] for step in steps(workflow) if "uses" in step]
+        assert uses, name
+        assert all(re.fullmatch(r"actions/[\w-]+@v\d+", use) for use in uses), uses
+
+
+def test_the_hooks_download_nothing() -> None:
+    hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))
+    assert {repo["repo"] for repo in hooks["repos"]} == {"local"}
+    languages = {hook["language"] for repo in hooks["repos"] for hook in repo["hooks"]}
+    assert languages == {"system"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no bit for it")
+def test_the_check_in_a_clean_clone_can_be_started() -> None:
+    assert os.access(ROOT / ".ci/run", os.X_OK)
+    assert "QBOUND_REQUIRE_BROWSER=1" in (ROOT / ".ci/run").read_text(encoding="utf-8")

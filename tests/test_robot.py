@@ -1,0 +1,175 @@
+"""A robot as data: forward kinematics against 4 x 4 matrices, labels for the printed formulas."""
+
+from math import radians
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from oracles import (ANGLES, QUARTER_TURNS, UNIT_AXES, frame_matrix, packaged_table, point_seen_from, robot_tables)
+
+from qbound import load_robot, paper
+from qbound.boundary import position
+from qbound.robot import joint_symbols, with_symbols
+from qbound.robotfile import parse_robot
+
+MINERVA = load_robot("minervabot-v2")
+
+
+def values(data: st.DataObject, n: int) -> list[float]:
+    return data.draw(st.lists(ANGLES, min_size=n, max_size=n))
+
+
+@given(robot_tables(), st.data())
+def test_forward_kinematics_are_a_product_of_matrices(table, data) -> None:
+    """Any chain: prismatic joints, mounts, oblique axes, 1 to 4 joints."""
+    robot, q = parse_robot(table), values(data, len(table["joint"]))
+    frames = robot.frames(q)
+    for joint in table["joint"]:
+        expected = frame_matrix(table, joint["frame"], q)
+        assert_allclose(frames.frame("0", joint["frame"]), expected[:3], atol=1e-10)
+    for point in table["point"]:
+        seen = point_seen_from(table, point["name"], "0", q)
+        assert_allclose(frames.position("0", point["name"], "0"), seen, atol=1e-10)
+
+
+@given(robot_tables(st.just(2)), st.data())
+def test_many_configurations_are_one_call(table, data) -> None:
+    robot, q = parse_robot(table), np.array([[values(data, 2)], [values(data, 2)]])
+    frames = robot.frames(q)
+    assert frames.frame("0", "2").shape == (2, 1, 3, 4)
+    for i in range(2):
+        alone = robot.frames(q[i, 0])
+        assert_allclose(frames.frame("1", "p2")[i, 0], alone.frame("1", "p2"), atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "row", paper.TABLE_2, ids=[f"r_{{{a},{b}}}" for a, b, *_ in paper.TABLE_2]
+)
+def test_direct_kinematics_are_table_2(row) -> None:
+    """The chain's own symbols give the printed positions and orientations."""
+    a, b, vector, orientation = row
+    robot, _ = with_symbols(MINERVA)
+    frames = robot.frames(list(joint_symbols(robot)))
+    known = _table_2_symbols()
+    assert sympy.simplify(sympy.Matrix(frames.rotation(a, b)) - known[orientation]) == sympy.zeros(3)
+    printed = known[vector]
+    assert sympy.simplify(sympy.Matrix(frames.position(a, b, a)) - printed) == sympy.zeros(3, 1)
+
+
+def _table_2_symbols() -> dict[str, sympy.Matrix]:
+    """What the printed entries of Table 2 mean, by SymPy's own matrices."""
+    q1, q2, z01, x12, z12, x23 = sympy.symbols(
+        "q_1 q_2 z_{0\\,1} x_{1\\,2} z_{1\\,2} x_{2\\,3}", real=True
+    )
+    # R_y(q) takes z to x: SymPy's rot_axis2 turns the other way.
+    r01, r12 = sympy.rot_axis2(-q1), sympy.rot_axis2(-q2)
+    v01, v12, v23 = (sympy.Matrix(v) for v in ([0, 0, z01], [x12, 0, z12], [x23, 0, 0]))
+    return {
+        "I": sympy.eye(3), "R_y(q_1)": r01, "R_y(q_2)": r12,
+        "R_{0,1}R_{1,2}": r01 * r12, "R_{0,2}R_{2,3}": r01 * r12,
+        r"[0\ 0\ 0]^T": sympy.zeros(3, 1), r"[0\ 0\ z_{0,1}]^T": v01,
+        r"[x_{1,2}\ 0\ z_{1,2}]^T": v12, r"[x_{2,3}\ 0\ 0]^T": v23,
+        r"\mathbf{r}_{0,1} + R_{0,1}\mathbf{r}_{1,2}": v01 + r01 * v12,
+        r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}": v01 + r01 * v12 + r01 * r12 * v23,
+    }  # fmt: skip
+
+
+def test_home_pose_holds_the_tool_where_the_offsets_add_up() -> None:
+    """x: 15 + 25, z: 22.5 + 25.98 (cm)."""
+    assert_allclose(MINERVA.frames(MINERVA.home).position("0", "3", "0"), [40, 0, 48.48])
+
+
+def test_symbols_are_the_printed_labels_with_their_values() -> None:
+    """Rule 8: every offset of Tables 1 and 3-5 by its label, nothing else; cm."""
+    _, labelled = with_symbols(MINERVA)
+    assert {s.name: v for s, v in labelled.items()} == paper.offsets_in_cm()
+    assert all(s.is_real for s in labelled)
+
+
+def test_symbolic_robot_has_the_same_positions() -> None:
+    robot, labelled = with_symbols(MINERVA)
+    q = joint_symbols(robot)
+    x, y, z = (sympy.sympify(e) for e in position(robot, "3").symbolic(q))
+    at = {**labelled, q[0]: 0.4, q[1]: -1.1}
+    seen = [float(e.subs(at)) for e in (x, y, z)]
+    assert_allclose(seen, point_seen_from(packaged_table(), "3", "0", [0.4, -1.1]), atol=1e-12)
+    assert not (x.atoms(sympy.Float) | z.atoms(sympy.Float))
+
+
+@settings(max_examples=15)
+@given(robot_tables(st.integers(1, 3), UNIT_AXES, QUARTER_TURNS))
+def test_symbols_stand_for_the_numbers_of_any_chain(table) -> None:
+    """Labels replaced by their values give the numeric form again; mounts stay whole numbers."""
+    robot = parse_robot(table)
+    labelled, known = with_symbols(robot)
+    form = position(labelled, robot.tool)
+    entries = [sympy.sympify(e) for e in form.coefficients.ravel()]
+    assert all(e.is_integer for joint in labelled.joints for e in joint.mount.ravel())
+    assert not any(e.atoms(sympy.Float) for e in entries)
+    expected = position(robot, robot.tool).coefficients.ravel()
+    assert_allclose([float(e.subs(known)) for e in entries], expected, atol=1e-10)
+
+
+def test_oblique_axes_get_symbols_too() -> None:
+    """Offsets become labels, the axis stays the number that it is."""
+    table = packaged_table()
+    table["joint"][1] |= {"axis": [1, 2, -3], "rpy": [10, 20, 30]}
+    robot = parse_robot(table)
+    labelled, known = with_symbols(robot)
+    entries = position(labelled, "13").coefficients.ravel()
+    expected = position(robot, "13").coefficients.ravel()
+    found = [float(sympy.sympify(e).subs(known)) for e in entries]
+    assert_allclose(found, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "symbol"),
+    [("q1", "q_1"), ("q12", "q_12"), ("shoulder", "shoulder"), ("7", "7"), ("a1b2", "a1b_2")],
+)
+def test_joint_symbols_write_the_number_below(name, symbol) -> None:
+    table = packaged_table()
+    table["joint"][0]["name"] = name
+    table["home"] = {name: 0.0, "q2": 0.0}
+    assert [s.name for s in joint_symbols(parse_robot(table))] == [symbol, "q_2"]
+
+
+def test_base_and_kinds_come_from_the_joints() -> None:
+    table = packaged_table()
+    table["joint"][1] |= {"type": "prismatic", "limits": [0, 5]}
+    robot = parse_robot(table)
+    assert (robot.base, robot.kinds) == ("0", ("revolute", "prismatic"))
+
+
+def test_prismatic_joint_slides_along_its_mounted_axis() -> None:
+    """A mount turned by 90 degrees about z: x of the mount is y of the parent."""
+    table = packaged_table()
+    table["joint"][0] |= {
+        "type": "prismatic", "axis": [2, 0, 0], "rpy": [0, 0, 90], "limits": [0, 5]
+    }  # fmt: skip
+    frames = parse_robot(table).frames([3.0, 0.0])
+    assert_allclose(frames.position("0", "1", "0"), [0, 3, 22.5], atol=1e-14)
+    assert_allclose(frames.rotation("0", "1") @ [1, 0, 0], [0, 1, 0], atol=1e-15)
+
+
+def test_lookups_name_what_there_is() -> None:
+    assert MINERVA.point("7").frame == "1"
+    assert MINERVA.boundary("B7").offset == 11.32
+    with pytest.raises(ValueError, match="no point '5'; there are 3, 6, 7"):
+        MINERVA.point("5")
+    with pytest.raises(ValueError, match="no boundary 'B8'; there are B1, B2"):
+        MINERVA.boundary("B8")
+
+
+@pytest.mark.parametrize("q", [[0.0], [0.0, 0.0, 0.0]])
+def test_a_wrong_number_of_joint_values_is_refused(q) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        MINERVA.frames(q)
+
+
+def test_degrees_of_a_file_are_radians_of_a_robot() -> None:
+    table = packaged_table()
+    table["home"] = {"q1": 90.0, "q2": -45.0}
+    assert_allclose(parse_robot(table).home, [radians(90), radians(-45)])
