@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
-from itertools import product
+from itertools import pairwise, product
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -252,7 +252,7 @@ def crosses_itself(path: Floats) -> bool:
 
 def crossing_points(path: Floats) -> list[tuple[float, float]]:
     """Every point shared by two pieces that are no neighbours, by shapely, pair by pair."""
-    pieces = [LineString(pair) for pair in zip(path[:-1], path[1:], strict=True)]
+    pieces = [LineString(pair) for pair in pairwise(path)]
     return [
         (float(point.x), float(point.y))
         for i, one in enumerate(pieces)

@@ -135,7 +135,6 @@ def with_pair(table: dict, first: int, second: int, apart: float = 0.0) -> tuple
     return robot, robot.boundary("B1")
 
 
-
 @given(robot_tables(), st.data())
 def test_theorem_1_holds_for_any_chain_and_either_order(table, data) -> None:
     """Eq. (16): B is r_{a+n,b+m} seen from frame a, turned by R_{0,a} it is eq. (25)."""
@@ -286,9 +285,9 @@ def test_printed_points_never_quite_meet(name, expected) -> None:
     assert found.fun == pytest.approx(distance, abs=1e-12)
     assert found.x == pytest.approx(q, abs=1e-7)
     grid = np.linspace(-pi, pi, 100_001)
-    assert np.sqrt(sum(v**2 for k, v in equation_29(grid, grid).items() if k[6] == name[1])).min() > (
-        distance - 1e-12
-    )
+    assert np.sqrt(
+        sum(v**2 for k, v in equation_29(grid, grid).items() if k[6] == name[1])
+    ).min() > (distance - 1e-12)
     assert clearance(MINERVA, MINERVA.boundary(name)).joints() == (joint,)
 
 
@@ -296,6 +295,16 @@ def test_joint_values_of_closest_approach() -> None:
     """Degrees: near the bounds that the paper takes for contacts, B4 two degrees off."""
     found = [degrees(closest_approach(MINERVA, MINERVA.boundary(b))[0]) for b in CLOSEST]
     assert_allclose(found, [76.25, -136.24, 44.41, -164.14], atol=0.005)
+
+
+@pytest.mark.parametrize(
+    ("name", "largest"), [("minervabot-v2-mended", 0.0044), ("minervabot-v2-symmetric", 1e-14)]
+)
+def test_points_of_the_siblings_come_as_close_as_their_digits(name, largest) -> None:
+    """Without the misprint every pair closes to the print's rounding; unrounded, all the way."""
+    robot = load_robot(name)
+    gaps = [closest_approach(robot, robot.boundary(b))[1] for b in CLOSEST]
+    assert max(gaps) < largest
 
 
 @given(robot_tables(st.just(1)))
@@ -330,7 +339,7 @@ def test_closest_approach_needs_one_turn(points, change, says) -> None:
 
 
 def test_contact_is_met_when_the_offsets_close() -> None:
-    """With point 6 put where point 7 passes, B_1 = 0 has its solution: the print's rounding alone."""
+    """With point 6 put where point 7 passes, B_1 = 0 has a solution: rounding took it away."""
     table = packaged_table()
     at = point_seen_from(table, "7", "0", [1.3, 0.0])
     row_of(table, "point", "6")["at"] = at.tolist()

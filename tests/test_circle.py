@@ -44,7 +44,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("a", "b", "c", "count", "multiplicity", "half"), CASES.values(), ids=CASES)
+@pytest.mark.parametrize(
+    ("a", "b", "c", "count", "multiplicity", "half"), CASES.values(), ids=CASES
+)
 def test_every_case_of_theorem_2(a, b, c, count, multiplicity, half) -> None:
     roots, arc = circle_roots(a, b, c), circle_arc(a, b, c)
     assert (roots.count, roots.multiplicity) == (count, multiplicity)

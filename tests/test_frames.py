@@ -87,7 +87,9 @@ def test_precedence_follows_the_parents(tree, data) -> None:
 
 def test_precedence_of_a_branched_tree() -> None:
     """0 < 1 < 2 and 0 < 3: the branches do not precede each other."""
-    frames = Frames("0", [Frame(n, p, EYE, EYE[0]) for n, p in [("1", "0"), ("2", "1"), ("3", "0")]])
+    frames = Frames(
+        "0", [Frame(n, p, EYE, EYE[0]) for n, p in [("1", "0"), ("2", "1"), ("3", "0")]]
+    )
     pairs = {(a, b) for a in frames.names for b in frames.names if frames.precedes(a, b)}
     assert pairs == {("0", "1"), ("0", "2"), ("0", "3"), ("1", "2")}
     assert frames.names == ("0", "1", "2", "3")
@@ -139,7 +141,9 @@ def test_leading_axes_are_many_frames_at_once() -> None:
 
     def tree(x: np.ndarray) -> Frames:
         one = Frame("1", "0", axis_rotation((0, 1, 0), x), np.array([1.0, 2, 3]))
-        return Frames("0", [one, Frame("2", "1", axis_rotation((1, 0, 0), x), np.array([3.0, 1, 0]))])
+        return Frames(
+            "0", [one, Frame("2", "1", axis_rotation((1, 0, 0), x), np.array([3.0, 1, 0]))]
+        )
 
     many = tree(q)
     assert many.frame("1", "2").shape == (7, 2, 3, 4)
@@ -152,7 +156,9 @@ def test_leading_axes_are_many_frames_at_once() -> None:
 @given(AXES, ANGLES)
 def test_axis_rotation_is_the_rotation_vector(axis, angle) -> None:
     k = np.array(axis) / np.linalg.norm(axis)
-    assert_allclose(axis_rotation(k, angle), Rotation.from_rotvec(k * angle).as_matrix(), atol=1e-14)
+    assert_allclose(
+        axis_rotation(k, angle), Rotation.from_rotvec(k * angle).as_matrix(), atol=1e-14
+    )
 
 
 def test_rotation_about_y_takes_z_to_x() -> None:
@@ -179,7 +185,9 @@ def test_symbols_and_numbers_come_from_one_definition() -> None:
             "0",
             [
                 Frame("1", "0", axis_rotation(axis, q[0]), origin),
-                Frame("2", "1", roll_pitch_yaw(q[1], q[0], q[1]) @ axis_rotation(axis, q[1]), origin),
+                Frame(
+                    "2", "1", roll_pitch_yaw(q[1], q[0], q[1]) @ axis_rotation(axis, q[1]), origin
+                ),
             ],
         )
 

@@ -73,9 +73,7 @@ def test_along_a_joint_is_the_form_with_the_others_held(form, data) -> None:
     joint = data.draw(st.integers(0, len(q) - 1))
     one_joint = form.along(joint, q)
     moved = np.where(np.arange(len(q)) == joint, other, q)
-    assert_allclose(
-        one_joint @ basis(form.kinds[joint], other), form(moved), **tolerance(form)
-    )
+    assert_allclose(one_joint @ basis(form.kinds[joint], other), form(moved), **tolerance(form))
     assert_array_equal(form.along(joint, moved), one_joint)  # its own entry is not read
 
 

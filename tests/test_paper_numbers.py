@@ -9,6 +9,11 @@ from bs4 import BeautifulSoup, Tag
 from sphinx.errors import ExtensionError
 from sphinx.testing.util import SphinxTestApp
 
+# What the extensions call will leave Sphinx one day: their matter, not this book's.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
+)
+
 EXTENSIONS = Path(__file__).resolve().parents[1] / "book" / "_ext"
 
 CONF = """

@@ -1,4 +1,4 @@
-"""The paper's rule: the 22 bounds, the box, the six vertices, and what other readings would give."""
+"""The paper's rule: the 22 bounds, the box, the six vertices, and what other readings give."""
 
 import re
 from math import degrees, pi
@@ -48,7 +48,14 @@ VERTICES = [
     (-136.2393, 44.3813, {"beta_{3,3,1}", "beta_{2,1,2}"}),
     (-136.2393, -50.1707, {"beta_{2,1,2}", "beta_{7,3,2}"}),
 ]
-NAMED = {"beta_{1,3,1}", "beta_{2,1,2}", "beta_{3,3,1}", "beta_{4,1,2}", "beta_{7,3,1}", "beta_{7,3,2}"}
+NAMED = {
+    "beta_{1,3,1}",
+    "beta_{2,1,2}",
+    "beta_{3,3,1}",
+    "beta_{4,1,2}",
+    "beta_{7,3,1}",
+    "beta_{7,3,2}",
+}
 
 
 def window_bounds(robot: Robot) -> dict[str, float]:
@@ -223,10 +230,12 @@ def test_bound_curves_lie_on_their_components_and_in_the_range() -> None:
 @pytest.mark.parametrize("ranges", [[[-pi, pi], [-pi, pi]], [[-1, 2], [2, 9]]])
 def test_no_root_of_a_half_space_in_range_is_left_out(ranges) -> None:
     """At each of 13 values of q1 the curves of B7 meet it as often as bisection does."""
-    curves = [c for b, c in bound_curves(MINERVA, ranges, n=13) if b.boundary == "B7"]
-    (low, high) = ranges[1]
-    for i, q1 in enumerate(np.linspace(*ranges[0], 13)):
-        drawn = sorted(c[i, 1] for c in curves if not np.isnan(c[i, 1]))
+    curves = [c for b, c in bound_curves(MINERVA, ranges, n=121) if b.boundary == "B7"]
+    low, high = ranges[1]
+    for q1 in np.linspace(*ranges[0], 13):
+        rows = [c[np.abs(c[:, 0] - q1).argmin()] for c in curves]
+        assert_allclose([row[0] for row in rows], q1, atol=1e-12)
+        drawn = sorted(q2 for _, q2 in rows if not np.isnan(q2))
         roots = circle_zeros(lambda q2, q1=q1: equation_29(q1, q2)["beta_{7,3}"])
         turned = [r + 2 * pi * k for r in roots for k in range(-3, 4)]
         assert_allclose(drawn, sorted(r for r in turned if low <= r <= high), atol=1e-9)
@@ -242,14 +251,18 @@ def test_a_bound_has_the_papers_label() -> None:
 
 
 def test_arctan_gives_another_box() -> None:
-    """E-34: with arctan for tan^-1(b/a), two rows of Table 6 are no roots and the box is another."""
+    """E-34: with arctan for tan^-1(b/a), two rows of Table 6 are no roots: another box."""
     read = table_6(arctan_of_quotient)
     wrong = [b for b in POINT_BOUNDS if angle_gap(read[b], BOUNDS[b]) > 1e-9]
     assert wrong == ["beta_{2,1,1}", "beta_{2,1,2}", "beta_{3,3,1}", "beta_{3,3,2}"]
     for label in wrong:
         assert abs(equation_29(read[label], read[label])[label[:9] + "}"]) > 10  # cm, not 0
-    lower = [max(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "2") for row in ("12", "34")]
-    upper = [min(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "1") for row in ("12", "34")]
+    lower = [
+        max(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "2") for row in ("12", "34")
+    ]
+    upper = [
+        min(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "1") for row in ("12", "34")
+    ]
     assert_allclose(np.degrees(lower), [-209.98, -135.62], atol=0.01)
     assert_allclose(np.degrees(upper), [43.76, 44.41], atol=0.01)
     assert np.abs(np.degrees(lower - box(MINERVA).lower)).min() > 26
@@ -291,7 +304,12 @@ def in_unit(table: Table, unit: str, scale: float) -> Table:
 
 def with_contacts(table: Table) -> Table:
     """The nearer point of each pair put where the farther one comes closest: pairs that do meet."""
-    for near, far, name in (("6", "7", "B1"), ("8", "9", "B2"), ("10", "11", "B3"), ("12", "13", "B4")):
+    for near, far, name in (
+        ("6", "7", "B1"),
+        ("8", "9", "B2"),
+        ("10", "11", "B3"),
+        ("12", "13", "B4"),
+    ):
         q, _ = closest_approach(MINERVA, MINERVA.boundary(name))
         row = row_of(table, "point", near)
         row["at"] = point_seen_from(table, far, row["frame"], [q, q]).tolist()
@@ -328,6 +346,13 @@ def test_mirrored_robot_has_the_mirrored_region() -> None:
     assert_allclose(sorted(polygon_of(mirror).tolist()), expected, atol=1e-8)
 
 
+def test_symmetric_robot_has_a_symmetric_region() -> None:
+    """q1 -> -60 - q1, q2 -> -120 - q2 degrees: the region that the printed offsets almost have."""
+    p = np.degrees(polygon_of(load_robot("minervabot-v2-symmetric")))
+    assert_allclose(sorted(([-60, -120] - p).tolist()), sorted(p.tolist()), atol=1e-9)
+    assert_allclose(p, np.degrees(polygon_of(MINERVA)), atol=2.2)
+
+
 def test_printed_offsets_have_no_mirror_image() -> None:
     """E-37: with one root kept, x windows mirror and z windows do not; 0.4 degrees at most here."""
     mirror = parse_robot(mirrored(packaged_table()))
@@ -361,7 +386,11 @@ def test_unused_boundaries_do_not_bound() -> None:
     row_of(table, "boundary", "B7")["used"] = False
     robot = parse_robot(table)
     region = box(MINERVA)
-    corners = {(x, y) for x in (region.lower[0], region.upper[0]) for y in (region.lower[1], region.upper[1])}
+    corners = {
+        (x, y)
+        for x in (region.lower[0], region.upper[0])
+        for y in (region.lower[1], region.upper[1])
+    }
     assert {tuple(v.q) for v in vertices(robot)} == corners
     row_of(table, "boundary", "B1")["used"] = False
     assert "B1" not in {w.boundary for w in windows(parse_robot(table))}
@@ -381,7 +410,9 @@ def three_joints() -> Table:
     table["joint"].append(wrist | {"axis": [0, 1, 0]})
     table["point"].append({"name": "14", "frame": "2", "at": [20, 0, 3]})
     table["point"].append({"name": "15", "frame": "4", "at": [-4, 0, 4]})
-    table["boundary"].append({"name": "B8", "type": "pair", "points": ["14", "15"], "clearance": 0.1})
+    table["boundary"].append(
+        {"name": "B8", "type": "pair", "points": ["14", "15"], "clearance": 0.1}
+    )
     table["home"]["q3"] = 0.0
     return table
 

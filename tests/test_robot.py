@@ -8,7 +8,15 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import (ANGLES, QUARTER_TURNS, UNIT_AXES, frame_matrix, packaged_table, point_seen_from, robot_tables)
+from oracles import (
+    ANGLES,
+    QUARTER_TURNS,
+    UNIT_AXES,
+    frame_matrix,
+    packaged_table,
+    point_seen_from,
+    robot_tables,
+)
 
 from qbound import load_robot, paper
 from qbound.boundary import position
@@ -45,16 +53,16 @@ def test_many_configurations_are_one_call(table, data) -> None:
         assert_allclose(frames.frame("1", "p2")[i, 0], alone.frame("1", "p2"), atol=1e-11)
 
 
-@pytest.mark.parametrize(
-    "row", paper.TABLE_2, ids=[f"r_{{{a},{b}}}" for a, b, *_ in paper.TABLE_2]
-)
+@pytest.mark.parametrize("row", paper.TABLE_2, ids=[f"r_{{{a},{b}}}" for a, b, *_ in paper.TABLE_2])
 def test_direct_kinematics_are_table_2(row) -> None:
     """The chain's own symbols give the printed positions and orientations."""
     a, b, vector, orientation = row
     robot, _ = with_symbols(MINERVA)
     frames = robot.frames(list(joint_symbols(robot)))
     known = _table_2_symbols()
-    assert sympy.simplify(sympy.Matrix(frames.rotation(a, b)) - known[orientation]) == sympy.zeros(3)
+    assert sympy.simplify(sympy.Matrix(frames.rotation(a, b)) - known[orientation]) == sympy.zeros(
+        3
+    )
     printed = known[vector]
     assert sympy.simplify(sympy.Matrix(frames.position(a, b, a)) - printed) == sympy.zeros(3, 1)
 

@@ -1,4 +1,4 @@
-"""What the book's pages need beyond the theme: verdicts, links to the notebooks, sound ids."""
+"""What the pages need beyond the theme: verdicts, links to notebooks, sound ids, a calm API."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 import nbformat
 from docutils import nodes
+from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 from sphinx.util.docutils import SphinxRole
@@ -21,6 +22,9 @@ VERDICTS = (
     "refuted",
     "not determined by the paper",
 )
+
+# As long as a number or a name; a table is read in the chapters.
+LONGEST_VALUE = 40
 
 # Chapters are built from executed copies; readers run and edit the notebooks themselves.
 COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
@@ -55,6 +59,17 @@ class UniqueProofIds(SphinxTransform):
         found = [n for n in self.document.findall(nodes.Element) if n.get("ids") in repeated]
         for count, node in enumerate(found, start=1):
             node["ids"] = [f"{node['ids'][0]}-{count}"]
+
+
+class ShortValuesOnly(SphinxTransform):
+    """Leave the value of a constant out of the API where it is a whole table."""
+
+    default_priority = 200
+
+    def apply(self, **kwargs: Any) -> None:
+        for value in list(self.document.findall(addnodes.desc_annotation)):
+            if value.astext().startswith(" = ") and len(value.astext()) > LONGEST_VALUE:
+                value.parent.remove(value)
 
 
 def link_to_chapters(app: Sphinx, docname: str, source: list[str]) -> None:
@@ -113,6 +128,7 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     """Register role, transform and links with Sphinx."""
     app.add_role("verdict", VerdictRole())
     app.add_transform(UniqueProofIds)
+    app.add_transform(ShortValuesOnly)
     app.connect("source-read", link_to_chapters)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)

@@ -1,0 +1,212 @@
+"""Figures: the data of what is drawn, degrees, labels, and the same SVG on every run."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+from numpy.testing import assert_allclose, assert_array_equal
+from oracles import packaged_table, point_seen_from
+
+from qbound import figures, load_robot
+from qbound.paper_rule import vertices
+from qbound.traversal import traverse
+
+MINERVA = load_robot("minervabot-v2")
+SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
+
+
+@pytest.fixture
+def ax() -> Iterator[Axes]:
+    with mpl.rc_context(figures.STYLE):
+        yield Figure().subplots()
+
+
+def texts(artists) -> list[str]:
+    return [a.get_text() for a in artists if isinstance(a, Annotation) and a.get_text()]
+
+
+def test_joint_axes_are_in_degrees_at_one_scale(ax) -> None:
+    figures.joint_axes(ax, MINERVA, [[-np.pi, np.pi / 2], [-np.pi / 4, np.pi]])
+    assert_allclose([ax.get_xlim(), ax.get_ylim()], [[-180, 90], [-45, 180]])
+    assert ax.get_aspect() == 1
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$q_{1}$ / °", "$q_{2}$ / °")
+
+
+def test_plane_axes_name_the_unit_of_the_file(ax) -> None:
+    figures.plane_axes(ax, MINERVA, [[-10, 60], [0, 80]])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$ / cm", "$z$ / cm")
+    assert_allclose([ax.get_xlim(), ax.get_ylim()], [[-10, 60], [0, 80]])
+    assert ax.get_aspect() == 1
+
+
+def test_robot_is_drawn_where_it_stands(ax) -> None:
+    """Bodies, links, joints, tool and named points by 4 x 4 matrices, in the plane x, z."""
+    table, q = packaged_table(), [0.4, -1.2]
+    artists = figures.draw_robot(ax, MINERVA, q, points=("6", "7"))
+    bodies, (spine, joints, tool, *marks) = (
+        artists[:3],
+        [a for a in artists if hasattr(a, "get_xdata")],
+    )
+    for name, mark in zip(("6", "7"), marks, strict=True):
+        x, _, z = point_seen_from(table, name, "0", q)
+        assert_allclose(np.ravel(mark.get_data()), [x, z], atol=1e-12)
+    assert texts(artists) == ["6", "7"]
+    x, _, z = point_seen_from(table, "3", "0", q)
+    assert_allclose(spine.get_xydata()[-1], [x, z], atol=1e-12)
+    assert_allclose(tool.get_xydata(), [[x, z]], atol=1e-12)
+    assert_allclose(spine.get_xydata()[:2], [[0, 0], [0, 22.5]])
+    assert_array_equal(joints.get_xydata(), spine.get_xydata()[1:-1])
+    corner_9 = point_seen_from(table, "9", "0", q)
+    assert_allclose(bodies[1].get_xy()[0], corner_9[[0, 2]], atol=1e-12)
+
+
+def test_robot_may_be_drawn_without_bodies(ax) -> None:
+    assert not ax.patches
+    figures.draw_robot(ax, MINERVA, MINERVA.home, bodies=False)
+    assert not ax.patches
+    figures.draw_robot(ax, MINERVA, MINERVA.home)
+    assert len(ax.patches) == 3
+
+
+@pytest.mark.parametrize(
+    ("used", "colour", "dash"), [(True, figures.USED, "-"), (False, figures.UNUSED, "--")]
+)
+def test_bounds_are_told_apart_by_colour_and_by_dash(ax, used, colour, dash) -> None:
+    curve = np.array([[0.0, 1.0], [np.pi, -np.pi / 2], [np.nan, 2.0]])
+    (line,) = figures.draw_bound(ax, curve, used=used, label="$a$")
+    assert_allclose(line.get_xydata(), np.degrees(curve))
+    assert (line.get_color(), line.get_linestyle(), line.get_label()) == (colour, dash, "$a$")
+
+
+def test_style_given_by_the_caller_comes_first(ax) -> None:
+    (line,) = figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, color="black")
+    assert line.get_color() == "black"
+    (patch,) = figures.draw_region(ax, SIX, facecolor="black", alpha=1)
+    assert patch.get_facecolor() == (0, 0, 0, 1)
+
+
+def test_region_and_vertices_are_in_degrees(ax) -> None:
+    (patch,) = figures.draw_region(ax, SIX)
+    assert_allclose(patch.get_xy()[:-1], np.degrees(SIX))
+    points, *numbers = figures.draw_vertices(ax, SIX)
+    assert_allclose(points.get_xydata(), np.degrees(SIX))
+    assert texts(numbers) == ["1", "2", "3", "4", "5", "6"]
+    for number, place in zip(numbers, np.degrees(SIX), strict=True):
+        assert_allclose(number.xy, place)
+        away = place - np.degrees(SIX).mean(axis=0)
+        assert np.dot(number.xyann, away) == pytest.approx(12 * np.hypot(*away))
+
+
+def test_a_number_at_the_middle_itself_has_a_place(ax) -> None:
+    (number,) = figures.number_points(ax, [[3.0, 4.0]], [3.0, 4.0], first=7)
+    assert number.get_text() == "7"
+    assert np.isfinite(number.xyann).all()
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
+    path = traverse(MINERVA, SIX[:5], closed=closed)
+    tool = path.tool[:, [0, 2]]
+    line, *others = figures.draw_path(ax, tool, list(path.stops))
+    assert_allclose(line.get_xydata(), tool)
+    arrows = [a for a in others if isinstance(a, Annotation) and a.arrow_patch]
+    legs = list(zip(path.stops[:-1], path.stops[1:], strict=True))
+    assert len(arrows) == len(legs) == 5 if closed else 4
+    for arrow, (start, end) in zip(arrows, legs, strict=True):
+        middle = (start + end) // 2
+        assert_allclose(arrow.xy, tool[middle + 1])  # the head, further on than the tail
+        assert_allclose(arrow.xyann, tool[middle])
+    assert texts(others) == ["1", "2", "3", "4", "5"]  # a closed path's last stop is its first
+    marks = next(a for a in others if hasattr(a, "get_xydata"))
+    assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
+
+
+def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
+    places = np.arange(10.0).reshape(5, 2)
+    free = [True, False, True, True, False]
+    colliding, clear = figures.draw_sample(ax, places, free)
+    assert_array_equal(colliding.get_offsets(), places[[1, 4]])
+    assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
+    assert [a.get_label() for a in (colliding, clear)] == ["collision", "free"]
+    assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
+    assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
+    crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))
+    assert crosses != dots
+
+
+def test_arrow_goes_from_start_to_end(ax) -> None:
+    arrow, name = figures.draw_arrow(ax, [1, 2], [3, 5], "$r$")
+    assert (arrow.xy, arrow.xyann) == ((3, 5), (1, 2))
+    assert_allclose(name.xy, [2, 3.5])
+    assert len(figures.draw_arrow(ax, [0, 0], [1, 1])) == 1
+
+
+def test_legend_and_labels(ax) -> None:
+    figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, label=figures.bound_label("beta_{1,3,1}"))
+    legend = figures.legend_below(ax)
+    assert [t.get_text() for t in legend.get_texts()] == [r"$\beta_{1,3,1}$"]
+
+
+def test_drawing_computes_nothing_and_changes_nothing(ax) -> None:
+    before = SIX.copy()
+    figures.draw_region(ax, SIX)
+    figures.draw_vertices(ax, SIX)
+    assert_array_equal(SIX, before)
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance (WCAG 2)."""
+    rgb = np.array(mpl.colors.to_rgb(colour))
+    linear = np.where(rgb <= 0.03928, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.parametrize("colour", [figures.FEASIBLE, figures.COLLIDING, figures.USED, figures.INK])
+def test_colours_stand_out_on_white(colour) -> None:
+    """Three to one, as for graphics in WCAG 2."""
+    assert 1.05 / (luminance(colour) + 0.05) > 3
+
+
+DRAW = """
+import sys
+from matplotlib.figure import Figure
+import matplotlib as mpl
+from qbound import figures, load_robot
+from qbound.paper_rule import bound_curves, vertices
+robot = load_robot("minervabot-v2")
+with mpl.rc_context(figures.STYLE):
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    figures.joint_axes(left, robot)
+    for bound, curve in bound_curves(robot, [[-3.2, 3.2], [-3.2, 3.2]]):
+        figures.draw_bound(left, curve, used=True, label=figures.bound_label(bound.label))
+    figures.draw_vertices(left, [v.q for v in vertices(robot)])
+    figures.draw_sample(left, [[0, 0], [1, 1]], [True, False])
+    figures.draw_robot(right, robot, [0.3, -1], points=("6", "7"))
+    figures.plane_axes(right, robot)
+    figures.legend_below(left)
+    figure.savefig(sys.stdout.buffer, format="svg", metadata={"Date": None, "Creator": None})
+"""
+
+
+def test_svg_has_the_same_bytes_in_two_processes() -> None:
+    """Fixed salt, no date, whatever the hash seed."""
+    one, two = (
+        subprocess.run(
+            [sys.executable, "-c", DRAW],
+            capture_output=True,
+            check=True,
+            env={**os.environ, "PYTHONHASHSEED": seed, "MPLBACKEND": "agg"},
+        ).stdout
+        for seed in ("1", "2")
+    )
+    assert one == two
+    assert b"<svg" in one
+    assert b"<dc:date>" not in one

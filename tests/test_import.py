@@ -1,0 +1,65 @@
+"""Importing the package stays light: what only some calls need is loaded by those calls."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ["sympy", "matplotlib", "jsonschema", "scipy", "shapely", "IPython", "pandas"]
+SHOW = "import sys, json; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})))"
+
+
+def loaded_by(code: str) -> set[str]:
+    """Top-level modules of a fresh interpreter after some code."""
+    run = [sys.executable, "-c", f"{code}\n{SHOW}"]
+    return set(json.loads(subprocess.run(run, capture_output=True, check=True).stdout))
+
+
+def test_import_loads_no_heavy_module() -> None:
+    modules = loaded_by("import qbound")
+    assert {"qbound", "numpy"} <= modules
+    assert not modules & set(HEAVY)
+
+
+def test_every_module_of_the_package_imports_without_the_heavy_ones() -> None:
+    code = (
+        "import importlib, pkgutil, qbound\n"
+        "for m in pkgutil.iter_modules(qbound.__path__):\n"
+        "    importlib.import_module('qbound.' + m.name)"
+    )
+    assert not loaded_by(code) & set(HEAVY)
+
+
+def test_numbers_never_call_sympy() -> None:
+    """From the file to the vertices and a sample: the schema is checked, no symbol is made."""
+    modules = loaded_by(
+        "import qbound, numpy\n"
+        "from qbound import paper_rule, sampling, traversal\n"
+        "robot = qbound.load_robot('minervabot-v2')\n"
+        "q = [v.q for v in paper_rule.vertices(robot)]\n"
+        "traversal.traverse(robot, q)\n"
+        "sampling.sample(robot, 10, sampling.keeps_clear, seed=1)"
+    )
+    assert "jsonschema" in modules
+    assert not modules & {"sympy", "matplotlib"}
+
+
+@pytest.mark.parametrize(
+    "name", ["HarmonicForm", "Robot", "load_robot", "circle_roots", "clearance"]
+)
+def test_the_front_door_holds_what_a_reader_needs_first(name) -> None:
+    import qbound
+
+    assert name in qbound.__all__
+    assert all(hasattr(qbound, exported) for exported in qbound.__all__)
+
+
+def test_version_is_that_of_the_metadata() -> None:
+    import tomllib
+    from pathlib import Path
+
+    import qbound
+
+    project = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
+    assert qbound.__version__ == project["project"]["version"]

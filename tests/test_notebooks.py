@@ -1,0 +1,182 @@
+"""The chapters: pairs in step, numbers of the prose computed, results the same as committed."""
+
+from __future__ import annotations
+
+import ast
+import json
+import math
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import jupytext
+import pytest
+from jupytext.compare import compare_notebooks
+
+from qbound import paper
+
+ROOT = Path(__file__).resolve().parent.parent
+CHAPTERS = sorted((ROOT / "notebooks").glob("*.md"))
+RESULTS = sorted((ROOT / "results").glob("*.json"))
+
+chapters = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda path: path.stem)
+
+
+@cache
+def notebook(path: Path):
+    return jupytext.read(path)
+
+
+def cells(path: Path, kind: str) -> list:
+    return [cell for cell in notebook(path).cells if cell.cell_type == kind]
+
+
+# --- pairs ----------------------------------------------------------------------------------------
+
+
+def test_every_chapter_is_a_pair():
+    stems = {path.stem for path in (ROOT / "notebooks").iterdir() if path.suffix == ".ipynb"}
+    assert stems == {path.stem for path in CHAPTERS}
+    assert [stem[:2] for stem in sorted(stems)] == [f"{i:02}" for i in range(1, len(stems) + 1)]
+
+
+@chapters
+def test_a_pair_is_in_step(chapter):
+    compare_notebooks(notebook(chapter.with_suffix(".ipynb")), notebook(chapter), fmt="md:myst")
+
+
+@chapters
+def test_a_committed_notebook_holds_no_output(chapter):
+    for cell in cells(chapter.with_suffix(".ipynb"), "code"):
+        assert cell.outputs == []
+        assert cell.execution_count is None
+
+
+@chapters
+def test_a_chapter_opens_with_its_question_and_ends_with_its_answer(chapter):
+    text = chapter.read_text(encoding="utf-8")
+    assert ":::{admonition} Question" in text.split("```{code-cell}")[0]
+    assert re.findall(r"^## (.*)$", text, re.M)[-1] == "Answer"
+
+
+@chapters
+def test_a_chapter_defines_nothing_longer_than_three_lines(chapter):
+    for cell in cells(chapter, "code"):
+        for node in ast.walk(ast.parse(cell.source)):
+            if isinstance(node, ast.FunctionDef):
+                assert len(node.body) <= 3, f"{chapter.name}: {node.name} belongs to the library"
+
+
+# --- numbers in prose -----------------------------------------------------------------------------
+
+NOT_PROSE = [
+    r"(?s)```.*?```",  # code
+    r"(?s)\$\$.*?\$\$(?: *\(eq:[\w-]+\))?",  # displayed formulas: the paper's, or proved by a cell
+    r"(?m)^:::.*$|^:label:.*$|^\d\. ",  # directives, numbered items
+    r"`[^`]*`",  # code and the targets of roles
+    r"\]\([^)]*\)",  # targets of links
+    r"\bE-\d+\b|\bN\d\b|SO\(3\)|3-D",  # entries of the ledger, the book's own numbers
+]
+# What a number may name instead of count: Figure 4, eqs. (11), (12), points 6 and 8, point 1 to 2.
+NAMED = (
+    r"(?:Figures?|Tables?|Theorems?|Sections?|eqs?\.|[Pp]oints?|[Jj]oints?|[Ll]inks?|[Rr]ows?|[Rr]ules?|"
+    r"[Ss]teps?|functions?|[Ff]rom|CC BY)\s+"
+)
+NUMBERS = r"\(?\d+(?:\.\d+)?\)?(?:(?:,\s+|\s+(?:and|or|to|with)\s+|\s*-\s*)\(?\d+(?!\.\d|\d)\)?)*"
+REFERENCES = [NAMED + NUMBERS, r"\(\d+\)(?:-\(\d+\))?", r"\b\d(?:-\d){2,}\b"]
+NUMBER = r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?![\w.]*\d)"
+
+
+def prose_of(chapter: Path) -> str:
+    """Markdown cells and captions, without what is no prose."""
+    captions = []
+    for cell in cells(chapter, "code"):
+        block = cell.metadata.get("mystnb", {})
+        captions += [block.get("figure", {}).get("caption", ""), block.get("image", {}).get("alt", "")]
+    text = "\n\n".join([*(cell.source for cell in cells(chapter, "markdown")), *captions])
+    text = re.sub(r"(?s)```\{prf:\w+\}[^\n]*\n(.*?)\n```", r"\1", text)  # a theorem is prose
+    for pattern in NOT_PROSE:
+        text = re.sub(pattern, " ", text)
+    return text
+
+
+def numbers_in(prose: str) -> list[str]:
+    """Numbers that claim a value: all outside formulas, decimal ones inside."""
+    inside = re.findall(r"\$([^$]*)\$", prose)
+    outside = re.sub(r"\$[^$]*\$", " X ", prose)
+    for pattern in REFERENCES:
+        outside = re.sub(pattern, " ", outside)
+    decimals = [n for formula in inside for n in re.findall(NUMBER, formula) if "." in n]
+    return [n.replace("−", "-") for n in re.findall(NUMBER, outside)] + decimals
+
+
+def leaves(value) -> list[float]:
+    if isinstance(value, list):
+        return [leaf for item in value for leaf in leaves(item)]
+    return [] if isinstance(value, str) else [float(value)]
+
+
+def known_to(chapter: Path) -> list[float]:
+    """What the chapter computed, and the printed offsets."""
+    name = re.search(r'Results\("(\w+)"\)', chapter.read_text(encoding="utf-8"))[1]
+    entries = json.loads((ROOT / "results" / f"{name}.json").read_text(encoding="utf-8"))["results"]
+    return [x for entry in entries for x in leaves(entry["value"])] + [o.value for o in paper.OFFSETS]
+
+
+def is_rounding(text: str, value: float) -> bool:
+    """Tell whether a number of the text is a value rounded to the text's digits, sign aside."""
+    digits = len(text.partition(".")[2])
+    if digits == 0:
+        return math.isclose(abs(value), abs(float(text)))
+    return f"{abs(value):.{digits}f}" == text.lstrip("-")
+
+
+@chapters
+def test_every_number_of_the_prose_was_computed(chapter):
+    known = known_to(chapter)
+    missing = [n for n in numbers_in(prose_of(chapter)) if not any(is_rounding(n, x) for x in known)]
+    assert missing == []
+
+
+def test_the_search_for_numbers_finds_them():
+    prose = "At 76.25° (Figure 4, eqs. (11), (12)) points 6 and 8 are $q_2 = -1.5$ apart, 37 of $360$."
+    assert numbers_in(prose) == ["76.25", "37", "-1.5"]
+    assert is_rounding("0.96", 0.9640384)
+    assert not is_rounding("0.96", 0.9660384)
+    assert not is_rounding("37", 37.2)
+
+
+# --- results --------------------------------------------------------------------------------------
+
+
+def committed(path: Path) -> dict:
+    """Git's own copy: the run has rewritten the file."""
+    name = path.relative_to(ROOT).as_posix()
+    shown = subprocess.run(
+        ["git", "show", f"HEAD:{name}"], cwd=ROOT, capture_output=True, check=False
+    )
+    if shown.returncode:
+        pytest.skip(f"{name}: no committed copy to compare with (no git, or not committed yet)")
+    return json.loads(shown.stdout)
+
+
+def test_every_chapter_has_results():
+    names = {
+        re.search(r'Results\("(\w+)"\)', path.read_text(encoding="utf-8"))[1] for path in CHAPTERS
+    }
+    assert names == {path.stem for path in RESULTS}
+
+
+@pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
+def test_results_are_the_committed_ones(path):
+    now, then = json.loads(path.read_text(encoding="utf-8")), committed(path)
+    assert [entry["id"] for entry in now["results"]] == [entry["id"] for entry in then["results"]]
+    for new, old in zip(now["results"], then["results"], strict=True):
+        assert {k: v for k, v in new.items() if k != "value"} == {
+            k: v for k, v in old.items() if k != "value"
+        }
+        values = leaves(new["value"]), leaves(old["value"])
+        assert values[0] == pytest.approx(values[1], rel=1e-10, abs=1e-10), new["id"]
+        if isinstance(new["value"], str | list) and not values[0]:
+            assert new["value"] == old["value"]

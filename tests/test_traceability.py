@@ -1,0 +1,59 @@
+"""The page Traceability: every row names what exists, and no object of the paper is left out."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "book" / "traceability.md"
+ROWS = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| {")]
+LABEL = re.compile(r"`(?:eq|fig|tab|thm):\w+`")
+OBJECTS = (
+    [f"eq:{i}" for i in range(1, 40)]
+    + [f"tab:{i}" for i in range(1, 7)]
+    + [f"fig:{i}" for i in range(1, 12)]
+    + ["thm:1", "thm:2"]
+)
+BOOK = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "notebooks").glob("*.md"))
+
+rows = pytest.mark.parametrize("row", ROWS, ids=lambda row: LABEL.search(row)[0].strip("`"))
+
+
+def test_every_object_of_the_paper_has_one_row():
+    assert [LABEL.search(row)[0].strip("`") for row in ROWS] == OBJECTS
+
+
+@pytest.mark.parametrize("label", OBJECTS)
+def test_every_object_of_the_paper_stands_in_the_book_once(label):
+    forms = [f"({label})\n", f"name: {label}\n", f":label: {label}\n"]
+    assert sum(BOOK.count(form) for form in forms) == 1
+
+
+@rows
+def test_the_function_exists(row):
+    name = re.search(r"\{py:\w+\}`~?([\w.]+)`", row)[1]
+    module, *attributes = re.split(r"\.(?=[A-Z_a-z])", name.removeprefix("qbound."))
+    found = importlib.import_module(f"qbound.{module}")
+    for attribute in attributes:
+        found = getattr(found, attribute)
+    assert callable(found)
+
+
+@rows
+def test_the_test_exists(row):
+    file, test = re.search(r"`(test_\w+\.py)::(test_\w+)`", row).groups()
+    tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
+    assert test in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+
+
+@rows
+def test_the_chapter_exists_and_holds_the_object(row):
+    label = LABEL.search(row)[0].strip("`")
+    (chapter,) = re.findall(r"\(chapters/(\w+)\.ipynb\)", row)
+    text = (ROOT / "notebooks" / f"{chapter}.md").read_text(encoding="utf-8")
+    assert re.search(rf"(?:\(|name: |label: ){label}\)?$", text, re.M)
