@@ -52,12 +52,16 @@ def test_largest_safe_scale_in_closed_form(forms, scale, edges, form) -> None:
         assert forms[form](found.q) == pytest.approx(0, abs=1e-12)
 
 
-def test_an_edge_may_bind_between_its_vertices() -> None:
-    """A disc cut out beside the middle of an edge: no vertex touches it."""
-    found = largest_safe_scale(SQUARE, [0, 0], [lambda q: ((q - [1.3, 0.2]) ** 2).sum(-1) - 0.25])
+@pytest.mark.parametrize(
+    ("edge", "x", "y"), [(0, 0.2, -1.3), (1, 1.3, 0.2), (2, 0.2, 1.3), (3, -1.3, 0.2)]
+)
+def test_an_edge_may_bind_between_its_vertices(edge, x, y) -> None:
+    """A disc cut out beside the middle of any edge, the closing one too: no vertex touches it."""
+    found = largest_safe_scale(SQUARE, [0, 0], [lambda q: ((q - [x, y]) ** 2).sum(-1) - 0.25])
     assert found.scale == pytest.approx(0.8, abs=1e-12)
-    assert found.edge == 1
-    assert_allclose(found.q, [0.8, 0.2], atol=1e-6)  # a minimum is flat: half the digits
+    assert found.edge == edge
+    expected = np.where(np.abs([x, y]) > 1, 0.8 * np.sign([x, y]), 0.2)
+    assert_allclose(found.q, expected, atol=1e-6)  # a minimum is flat: half the digits
 
 
 @settings(max_examples=10)

@@ -204,8 +204,9 @@ def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
         (~free, COLLIDING, "x", 6, "collision"),
         (free, FEASIBLE, ".", 6, "free"),
     ):
-        style: dict[str, Any] = {"color": colour, "marker": marker, "label": label, "rasterized": True}
-        artists.append(ax.scatter(x[chosen], y[chosen], s=size, lw=0.6, **style))
+        places_of = x[chosen], y[chosen]
+        style: dict[str, Any] = {"color": colour, "marker": marker, "s": size, "lw": 0.6}
+        artists.append(ax.scatter(*places_of, label=label, rasterized=True, **style))
     return artists
 
 

@@ -58,7 +58,7 @@ TABLE_1: Final = (
     ("1", "2", "Offset x (joint 1 to joint 2)", "x_{1,2}"),
     ("2", "3", "Offset x (joint 2 to joint 3)", "x_{2,3}"),
 )
-"""Frames connected, parameter and label of Table 1: frames connected, parameter, label; the values are among `OFFSETS`."""
+"""Rows of Table 1 as printed; frames a and b, parameter, label. The values are in `OFFSETS`."""
 
 TABLE_2: Final = (
     ("0", "0", r"[0\ 0\ 0]^T", "I"),
@@ -68,7 +68,7 @@ TABLE_2: Final = (
     ("0", "2", r"\mathbf{r}_{0,1} + R_{0,1}\mathbf{r}_{1,2}", "R_{0,1}R_{1,2}"),
     ("0", "3", r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}", "R_{0,2}R_{2,3}"),
 )
-"""Rows of Table 2 as printed; frames a and b, position vector r_{a,b}, orientation R_{a,b} (LaTeX)."""
+"""Rows of Table 2 as printed; frames a and b, position r_{a,b}, orientation R_{a,b} (LaTeX)."""
 
 EQUATION_29: Final = {
     "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
