@@ -71,6 +71,7 @@ autosummary_generate = True
 autosummary.WELL_KNOWN_ABBREVIATIONS += ("eq.", "eqs.")  # no end of a docstring's first sentence
 napoleon_google_docstring = False
 napoleon_use_ivar = True
+napoleon_use_param = False  # types are words ("shape (...)"), not names to look up
 napoleon_use_rtype = False
 
 bibtex_bibfiles = ["references.bib"]

@@ -30,8 +30,10 @@ class CircleRoots:
         the angle of closest approach; `count` tells.
     slope : ndarray of int, shape (2, ...)
         Sign of the derivative of ``a cos q + b sin q`` at each root: +1, -1; 0 where double.
-    theta, alpha : ndarray, shape (...)
-        Direction of (a, b), in (-pi, pi], and the half-width arccos(c / d), in [0, pi].
+    theta : ndarray, shape (...)
+        Direction of (a, b), rad, in (-pi, pi].
+    alpha : ndarray, shape (...)
+        Half-width arccos(c / d), rad, in [0, pi].
     """
 
     count: Ints
@@ -42,7 +44,7 @@ class CircleRoots:
 
     @property
     def multiplicity(self) -> Ints:
-        """Multiplicity of each root: 1, 2 at a tangency, 0 where there is none or all are."""
+        """Multiplicity of each root, 2 at a tangency; 0 where there is none or all are."""
         return np.select([self.count == 2, self.count == 1], [1, 2], 0)
 
 

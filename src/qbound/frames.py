@@ -116,7 +116,7 @@ class Frames:
             If the two origins coincide: eq. (8) divides by their distance.
         """
         vector = self.position(a, b, observer)
-        squared = np.asarray((vector * vector).sum(axis=-1))
+        squared = np.asarray((vector * vector).sum(axis=-1), dtype=vector.dtype)
         if np.any(squared == 0):
             raise ValueError(f"the origins of {a!r} and {b!r} coincide: no direction (eq. 8)")
         length = np.asarray(squared ** _half(squared))

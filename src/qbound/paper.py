@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import sympy
 
 
+Reading = Literal["arctan", "atan2", "printed"]
+
+
 @dataclass(frozen=True)
 class Offset:
     """A length as printed: its label, value, unit and table."""
@@ -157,19 +160,23 @@ def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
     return {o.label: o.value * scale[o.unit] for o in OFFSETS}
 
 
-def expression(text: str, *, arctan: Literal["arctan", "atan2"] = "arctan") -> sympy.Expr:
+def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     """Turn a printed formula of this module into a SymPy expression.
 
     Parameters
     ----------
     text : str
         An entry of `EQUATION_29` or `TABLE_6`.
-    arctan : {"arctan", "atan2"}
-        How to read the printed tan^-1 of a quotient.
+    arctan : {"arctan", "atan2", "printed"}
+        How to read the printed tan^-1 of a quotient; "printed" leaves the sign, to be shown.
     """
     import sympy
 
-    readings = {"arctan": lambda n, d: sympy.atan(n / d), "atan2": sympy.atan2}
+    readings = {
+        "arctan": lambda n, d: sympy.atan(n / d),
+        "atan2": sympy.atan2,
+        "printed": lambda n, d: sympy.Function(r"\tan^{-1}")(n / d),
+    }
     names: dict[str, Any] = {
         name: sympy.Symbol(label(name), real=True)
         for name in re.findall(r"\b[xz]_\w+|\bq\d\b", text)
