@@ -8,10 +8,12 @@ import math
 import re
 import subprocess
 from functools import cache
+from importlib import resources
 from pathlib import Path
 
 import jupytext
 import pytest
+from jsonschema import Draft202012Validator, validate
 from jupytext.compare import compare_notebooks
 
 from qbound import paper
@@ -165,6 +167,16 @@ def committed(path: Path) -> dict:
     if shown.returncode:
         pytest.skip(f"{name}: no committed copy to compare with (no git, or not committed yet)")
     return json.loads(shown.stdout)
+
+
+@pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
+def test_results_keep_to_their_schema(path):
+    schema = resources.files("qbound") / "schemas" / "results.schema.json"
+    validate(
+        json.loads(path.read_text(encoding="utf-8")),
+        json.loads(schema.read_text(encoding="utf-8")),
+        Draft202012Validator,
+    )
 
 
 def test_every_chapter_has_results():

@@ -105,7 +105,9 @@ class Frames:
     def frame(self, a: str, b: str) -> Array:
         """Return o_{a,b} = [R_{a,b} r_{a,b}^{(a)}], shape (..., 3, 4) (eqs. 1, 2)."""
         rotation, origin = self.rotation(a, b), self.position(a, b, a)
-        return np.concatenate([rotation, origin[..., None]], axis=-1)
+        batch = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
+        columns = np.broadcast_to(rotation, (*batch, 3, 3)), np.broadcast_to(origin, (*batch, 3))
+        return np.concatenate([columns[0], columns[1][..., None]], axis=-1)
 
     def unit_vector(self, a: str, b: str, observer: str) -> Array:
         """Return u_{a,b}^{(c)}, shape (..., 3) (eq. 8).

@@ -20,7 +20,7 @@ from qbound.boundary import clearance, pair_vector
 from qbound.circle import CircleRoots, circle_roots
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import ON_BOUNDARY
+from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 
@@ -189,12 +189,14 @@ def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
     joints = vector.joints()
     if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
         raise ValueError(
-            f"{pair.name}: the paper's rule needs one joint, revolute, between its points; "
-            f"there are {len(joints)}"
+            f"{pair.name}: the paper's rule needs one joint between its points, and a revolute one"
         )
     (joint,) = joints
+    rounding = ZERO_AMPLITUDE * np.abs(vector.coefficients).max()
     for component in range(3):
         c0, a, b = vector[component].along(joint, robot.home)
+        if np.hypot(a, b) <= rounding:
+            continue
         roots = circle_roots(a, b, -c0)
         if roots.count > 0:
             upper = float(_turn_after(roots.q[1], robot.home[joint]))

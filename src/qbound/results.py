@@ -84,6 +84,8 @@ def _plain(value: Any) -> Any:
     """Turn arrays and NumPy scalars into lists and numbers that JSON knows."""
     if isinstance(value, np.ndarray):
         return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
     if isinstance(value, str | bool | int) or value is None:
         return value
     if isinstance(value, Sequence):

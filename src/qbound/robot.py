@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.frames import Frame, Frames, axis_rotation
+from qbound.tolerances import ZERO_AMPLITUDE
 
 if TYPE_CHECKING:
     import sympy
@@ -206,10 +207,12 @@ def _label_walls(
 
 
 def _integers(values: Array) -> Array:
-    """Exact copies of entries that are whole numbers, so that symbols meet no floats."""
+    """Exact copies of entries that are whole numbers but for rounding: symbols meet no floats."""
     import sympy
 
-    return np.asarray(np.vectorize(sympy.nsimplify, otypes=[object])(values))
+    whole = np.rint(values).astype(int)
+    exact = np.vectorize(sympy.Integer, otypes=[object])(whole)
+    return np.where(np.abs(values - whole) <= ZERO_AMPLITUDE, exact, values)
 
 
 def _subscripted(name: str) -> str:

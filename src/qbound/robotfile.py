@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 import tomllib
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
@@ -16,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from qbound.boundary import required_distance
 from qbound.frames import roll_pitch_yaw
 from qbound.robot import Body, HalfSpace, Joint, Pair, Point, Robot
 
@@ -63,7 +66,7 @@ def parse_robot(table: Table) -> Robot:
     angle = math.radians(1.0) if table["angle_unit"] == "deg" else 1.0
     joints = tuple(_joint(f"joint[{i}]", j, angle) for i, j in enumerate(table["joint"]))
     scales = [angle if joint.kind == "revolute" else 1.0 for joint in joints]
-    return Robot(
+    robot = Robot(
         name=table["name"],
         joints=joints,
         points=tuple(
@@ -81,6 +84,16 @@ def parse_robot(table: Table) -> Robot:
             Body(b["frame"], np.array(b["polygon"], dtype=float)) for b in _rows(table, "body")
         ),
     )
+    _warn_of_no_walls(robot)
+    return robot
+
+
+def _warn_of_no_walls(robot: Robot) -> None:
+    """Warn of pairs of bare points that may come as close as they like."""
+    for pair in robot.boundaries:
+        if isinstance(pair, Pair) and required_distance(robot, pair) == 0:
+            text = f"{pair.name}: no radius and no clearance; this pair is never a wall"
+            warnings.warn(text, stacklevel=3)
 
 
 def _text(source: str | Path) -> tuple[str, str]:
@@ -128,10 +141,11 @@ def _boundary(where: str, table: Table) -> Pair | HalfSpace:
 
 
 def _unit(where: str, vector: Sequence[float]) -> np.ndarray:
-    length = math.hypot(*vector)
-    if length == 0:
+    largest = max(map(abs, vector))
+    if largest == 0:
         raise RobotFileError(f"{where}: [0, 0, 0] has no direction")
-    return np.array(vector, dtype=float) / length
+    scaled = np.array(vector, dtype=float) / largest  # so that no square overflows
+    return np.asarray(scaled / np.linalg.norm(scaled))
 
 
 def _check_schema(table: Table) -> None:
@@ -146,7 +160,7 @@ def _check_schema(table: Table) -> None:
 
 def _check_finite(table: Table) -> None:
     for where, value in _leaves(table):
-        if isinstance(value, float) and not math.isfinite(value):
+        if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise RobotFileError(f"{where}: {value} is not a finite number")
 
 

@@ -82,9 +82,8 @@ def keeps_clear(robot: Robot, q: Floats) -> Bools:
 def misses_points(robot: Robot, q: Floats) -> Bools:
     """No pair of points coincides exactly: eq. (17) to the letter."""
     pairs = [b for b in robot.boundaries if isinstance(b, Pair) and b.used]
-    return np.asarray(
-        np.all([(components(robot, pair)(q) != 0).any(axis=-1) for pair in pairs], axis=0)
-    )
+    apart = [(components(robot, pair)(q) != 0).any(axis=-1) for pair in pairs]
+    return np.asarray(np.all([np.ones(len(q), dtype=bool), *apart], axis=0))
 
 
 def keeps_components_positive(robot: Robot, q: Floats) -> Bools:
@@ -101,4 +100,4 @@ def keeps_geometric(robot: Robot, q: Floats) -> Bools:
 def _respected(forms: Iterable[HarmonicForm], q: Floats) -> Bools:
     """No form of any stack is negative."""
     values = [form(q).reshape(len(q), -1) for form in forms]
-    return np.asarray((np.concatenate(values, axis=1) >= 0).all(axis=1))
+    return np.asarray((np.concatenate([np.zeros((len(q), 1)), *values], axis=1) >= 0).all(axis=1))

@@ -65,6 +65,8 @@ def largest_safe_scale(
     them is missed. The result is a computation, not a proof.
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
+    if not (np.isfinite(p).all() and np.isfinite(g).all()):
+        raise ValueError("vertices and centre must be finite numbers")
     if not all(form(g) > 0 for form in forms):
         raise ValueError("a boundary is violated at the centre already")
     best = SafeScale(highest, p[0], -1, -1)

@@ -61,7 +61,7 @@ def traverse(
         stops = np.concatenate([stops, stops[:1]])
     q, rows = _straight(stops, step)
     tool = position(robot, robot.tool)(q)
-    shoulder = robot.joints[0].origin
+    shoulder = robot.frames(q).position(robot.base, robot.joints[0].frame, robot.base)
     return Traversal(q, tool, rows, np.linalg.norm(tool - shoulder, axis=-1))
 
 
@@ -69,7 +69,8 @@ def self_crossings(path: ArrayLike) -> Floats:
     """Return the points at which a plane path crosses itself, shape (k, 2).
 
     Two pieces cross where each has its ends on different sides of the other. A path that only
-    touches itself, as a closed one does at its start, does not cross.
+    touches itself, as a closed one does at its start, does not cross; nor is a crossing counted
+    that passes exactly through a corner.
 
     Parameters
     ----------
