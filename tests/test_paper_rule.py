@@ -183,7 +183,7 @@ def test_six_vertices_use_six_curves_each_twice() -> None:
     assert {label: labels.count(label) for label in labels} == dict.fromkeys(NAMED, 2)
 
 
-def test_caption_of_figure_4_names_one_bound_wrongly() -> None:
+def test_caption_of_figure_4_names_one_bound_a_turn_away() -> None:
     """Departure from the print: beta_{3,3,2} is printed, beta_{3,3,1} bounds the region."""
     assert set(paper.FIGURE_4_BOUNDS) ^ NAMED == {"beta_{3,3,2}", "beta_{3,3,1}"}
     top = max(vertex.q[1] for vertex in vertices(MINERVA))

@@ -7,13 +7,14 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.robot import Robot
+from qbound.traversal import Traversal
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -159,37 +160,79 @@ def draw_vertices(
 
 
 def number_points(
-    ax: Axes, places: ArrayLike, middle: ArrayLike, distance: float = 12, first: int = 1
+    ax: Axes,
+    places: ArrayLike,
+    middle: ArrayLike,
+    distance: float = 12,
+    labels: Iterable[object] | None = None,
 ) -> list[Artist]:
-    """Write first, first + 1, ... beside places (in axis units), away from `middle`."""
+    """Write labels (default 1, 2, ...) beside places in axis units, away from `middle`."""
     artists: list[Artist] = []
-    for i, place in enumerate(np.asarray(places)):
+    for label, place in zip(labels or count(1), np.asarray(places), strict=False):
         away = place - np.asarray(middle)
         shift = distance * away / max(float(np.hypot(*away)), 1e-9)
         text = ax.annotate(
-            str(i + first), tuple(place), tuple(shift), textcoords="offset points",
-            ha="center", va="center", weight="bold", zorder=6,
-        )  # fmt: skip
+            str(label), tuple(place), tuple(shift), textcoords="offset points", weight="bold"
+        )
+        text.set(ha="center", va="center", zorder=6)
         artists.append(_halo(text))
     return artists
 
 
 def draw_path(
-    ax: Axes, path: ArrayLike, stops: Sequence[int], *, distance: float = 12, **style: Any
+    ax: Axes,
+    path: ArrayLike,
+    stops: Sequence[int] | NDArray[np.int64],
+    *,
+    labels: Iterable[object] | None = None,
+    distance: float = 12,
+    **style: Any,
 ) -> list[Artist]:
-    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and numbered stops."""
+    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and labelled stops."""
     p = np.asarray(path)
     look: dict[str, Any] = {"color": FEASIBLE, "lw": 1.8} | style
     artists: list[Artist] = list(ax.plot(*p.T, **look))
     arrow = {"arrowstyle": "-|>", "color": look["color"], "lw": 1.5, "mutation_scale": 14}
-    for start, end in pairwise(stops):
+    for start, end in pairwise(int(stop) for stop in stops):
         middle = (start + end) // 2
         ends = tuple(p[middle + 1]), tuple(p[middle])
         artists.append(ax.annotate("", *ends, arrowprops=arrow))
     closed = len(stops) > 2 and np.allclose(p[stops[0]], p[stops[-1]])
     marked = p[list(stops[: len(stops) - closed])]
     artists += ax.plot(*marked.T, "o", color=INK, ms=4.5, zorder=5)
-    return artists + number_points(ax, marked, p.mean(axis=0), distance)
+    return artists + number_points(ax, marked, p.mean(axis=0), distance, labels)
+
+
+def draw_traversal(
+    axes: Sequence[Axes],
+    robot: Robot,
+    region: ArrayLike,
+    walk: Traversal,
+    *,
+    ranges: ArrayLike,
+    window: ArrayLike,
+    labels: Iterable[object] | None = None,
+) -> list[Artist]:
+    """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
+
+    Parameters
+    ----------
+    axes : sequence of two Axes
+    region : array_like, shape (m, 2)
+        Polygon in joint space, rad.
+    ranges, window : array_like, shape (2, 2)
+        Limits of the joint plane, rad, and of the plane of motion.
+    labels : iterable, optional
+        Names of the stops, in the order of the visit.
+    """
+    joints, space = axes
+    joint_axes(joints, robot, ranges)
+    artists = draw_region(joints, region, lw=0)
+    artists += draw_path(joints, np.degrees(walk.q), walk.stops, labels=labels, distance=-13)
+    plane_axes(space, robot, window)
+    artists.append(space.axhline(0, color=INK, lw=1))
+    artists += draw_robot(space, robot, walk.final_pose, alpha=0.6)
+    return artists + draw_path(space, walk.tool[:, [0, 2]], walk.stops, labels=labels)
 
 
 def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:

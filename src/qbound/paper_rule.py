@@ -184,6 +184,51 @@ def vertices(robot: Robot) -> list[Vertex]:
     return corners
 
 
+def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
+    """Replace every edge that cuts across a half-space's curve (Section 4, the first remedy).
+
+    Parameters
+    ----------
+    n : int
+        Points of each curve, its two ends included; at least 2.
+    tangents : bool
+        Whether to put the corners of the tangents at these points in place of the edge, or
+        the points themselves, joined by chords.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        Joint values, rad, anticlockwise; errors as in `vertices`.
+    """
+    corners = vertices(robot)
+    result = []
+    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
+        result.append(one.q)
+        (bound,) = set(one.bounds) & set(other.bounds)
+        if isinstance(robot.boundary(bound.boundary), HalfSpace):
+            curve = _curve_between(robot, bound, one.q, other.q, n)
+            form = clearance(robot, robot.boundary(bound.boundary))
+            result += list(_tangent_corners(form, curve) if tangents else curve[1:-1])
+    return np.array(result)
+
+
+def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: int) -> Floats:
+    """Return `n` points of a half-space's bound, evenly spaced in the first joint."""
+    q1 = np.linspace(start[0], end[0], n)
+    lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
+    q2 = np.unwrap(upper if bound.k == UPPER else lower)
+    return np.stack([q1, q2 + start[1] - q2[0]], -1)
+
+
+def _tangent_corners(form: HarmonicForm, curve: Floats) -> Floats:
+    """Return the points where neighbouring tangents of a level curve meet."""
+    q1, q2 = curve.T
+    along_q1, along_q2 = form.gradient(curve).T
+    slope = -along_q1 / along_q2
+    meet = -np.diff(q2 - slope * q1) / np.diff(slope)
+    return np.stack([meet, q2[:-1] + slope[:-1] * (meet - q1[:-1])], -1)
+
+
 def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
     vector = pair_vector(robot, pair)
     joints = vector.joints()
