@@ -105,7 +105,7 @@ def test_region_and_vertices_are_in_degrees(ax) -> None:
 
 
 def test_a_number_at_the_middle_itself_has_a_place(ax) -> None:
-    (number,) = figures.number_points(ax, [[3.0, 4.0]], [3.0, 4.0], first=7)
+    (number,) = figures.number_points(ax, [[3.0, 4.0]], [3.0, 4.0], labels=[7])
     assert number.get_text() == "7"
     assert np.isfinite(number.xyann).all()
 

@@ -430,7 +430,11 @@ def test_three_joints_have_a_box_and_no_polygon() -> None:
 @pytest.mark.parametrize(
     ("change", "points", "says"),
     [
-        ({"type": "prismatic", "limits": [0, 1]}, ["6", "7"], "needs one joint between its points, and a revolute one"),
+        (
+            {"type": "prismatic", "limits": [0, 1]},
+            ["6", "7"],
+            "needs one joint between its points, and a revolute one",
+        ),
         ({}, ["6", "13"], "needs one joint"),
         ({}, ["7", "9"], "needs one joint"),
     ],

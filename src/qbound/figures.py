@@ -6,6 +6,7 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any, Final
@@ -277,13 +278,17 @@ def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
-    """Return a table for a notebook's output, written in Markdown; cells may hold formulas."""
+    """Return a table for a notebook's output, written in Markdown; cells may hold formulas.
+
+    A hyphen before the digits of a plain number becomes a minus sign.
+    """
     from IPython.display import Markdown
 
-    lines = [header, ["---"] * len(header), *rows]
-    return Markdown(  # type: ignore[no-untyped-call]
-        "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
-    )
+    minus = re.compile(r"^-(?=[\d.]+\D{0,3}$)")
+    cells = [[minus.sub("\N{MINUS SIGN}", str(x)) for x in row] for row in rows]
+    lines = [header, ["---"] * len(header), *cells]
+    text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    return Markdown(text)  # type: ignore[no-untyped-call]
 
 
 def bound_label(label: str) -> str:
