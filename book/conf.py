@@ -67,12 +67,14 @@ copybutton_selector = "div:not(.output) > div.highlight pre"
 # API: the docstrings state types, shapes and units; the signature stays short.
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True  # -np.pi, not its digits
 autosummary_generate = True
 autosummary.WELL_KNOWN_ABBREVIATIONS += ("eq.", "eqs.")  # no end of a docstring's first sentence
 napoleon_google_docstring = False
-napoleon_use_ivar = True
-napoleon_use_param = False  # types are words ("shape (...)"), not names to look up
+# Types are words ("ndarray, shape (..., 3)"), not names to look up: no section may make them links.
+napoleon_use_param = False
 napoleon_use_rtype = False
+napoleon_custom_sections = [("Attributes", "params_style")]
 
 bibtex_bibfiles = ["references.bib"]
 bibtex_default_style = "unsrt"
@@ -99,6 +101,7 @@ html_theme_options = {
     "navbar_persistent": [],  # the theme's default adds a second search box
     "show_toc_level": 2,
     "use_fullscreen_button": False,
+    "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
     "extra_footer": f"<p>{project} {version}. Every number and figure of this book was computed "
     "when it was built.</p>",

@@ -55,13 +55,61 @@ function isLost(element, pageWidth) {
   return right(element) > right(box) + 1;
 }
 
-const THAT_SCROLLS = "mjx-container, .pst-scrollable-table-container, .text_html, .highlight pre";
+const THAT_SCROLLS =
+  "mjx-container, .pst-scrollable-table-container, .text_html, .highlight pre, .wide-figure";
 
 function wideBoxesWithoutHint() {
   return [...document.querySelectorAll(THAT_SCROLLS)]
     .filter((box) => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1)
     .filter((box) => !box.matches(".wide.more-right") || box.tabIndex !== 0)
     .map(beginning);
+}
+
+// A stop that begins a line, or a bracket that ends one, beside a formula or a badge.
+function tornPunctuation() {
+  const held = [...document.querySelectorAll(".bd-article :is(span.math, .verdict)")];
+  return held.filter((e) => e.checkVisibility()).flatMap((element) => {
+    const boxes = [...element.getClientRects()];
+    const before = besides(element.previousSibling, /[([]$/);
+    const after = besides(element.nextSibling, /^[,.;:!?)\]°]/);
+    const torn = [];
+    if (before && before.bottom <= boxes.at(0).top + 2) torn.push(`before ${beginning(element)}`);
+    if (after && after.top >= boxes.at(-1).bottom - 2) torn.push(`after ${beginning(element)}`);
+    return torn;
+  });
+}
+
+// Where the mark stands with which a text ends, or begins, beside an element.
+function besides(text, pattern) {
+  const mark = text?.nodeType === Node.TEXT_NODE ? text.data.match(pattern) : null;
+  if (!mark) return null;
+  const range = document.createRange();
+  range.setStart(text, mark.index);
+  range.setEnd(text, mark.index + 1);
+  return range.getBoundingClientRect();
+}
+
+// Formulas in a line of text that scroll in their own box.
+function cutFormulas() {
+  return [...document.querySelectorAll("span.math mjx-container.wide")].map(beginning);
+}
+
+function brokenWords() {
+  return [...document.querySelectorAll(".prev-next-title")].flatMap((title) => {
+    const [text] = [...textsOf(title)];
+    return [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
+      const range = document.createRange();
+      range.setStart(text, word.index);
+      range.setEnd(text, word.index + word[0].length);
+      return range.getClientRects().length > 1 ? word[0] : "";
+    });
+  }).filter(Boolean);
+}
+
+function smallPanels() {
+  return [...document.querySelectorAll(".wide-figure > img")]
+    .filter((image) => image.getBoundingClientRect().width < 36 * 16)
+    .map((image) => image.alt.slice(0, 60));
 }
 
 function badImages() {

@@ -45,6 +45,10 @@ class Seen:
     images: list[str] = field(default_factory=list)
     lost: dict[str, list[str]] = field(default_factory=dict)
     unmarked: dict[str, list[str]] = field(default_factory=dict)
+    torn: dict[str, list[str]] = field(default_factory=dict)
+    cut: dict[str, list[str]] = field(default_factory=dict)
+    broken: dict[str, list[str]] = field(default_factory=dict)
+    small: dict[str, list[str]] = field(default_factory=dict)
     faint: dict[str, list[str]] = field(default_factory=dict)
 
 
@@ -108,6 +112,10 @@ def seen(browser: Any, request: pytest.FixtureRequest) -> Iterator[Seen]:
         settle(page)
         seen.lost[name] = page.evaluate("lostToTheRight()")
         seen.unmarked[name] = page.evaluate("wideBoxesWithoutHint()")
+        seen.torn[name] = page.evaluate("tornPunctuation()")
+        seen.cut[name] = page.evaluate("cutFormulas()")
+        seen.broken[name] = page.evaluate("brokenWords()")
+        seen.small[name] = page.evaluate("smallPanels()")
     seen.formulas = page.evaluate("unshownFormulas()")
     seen.images = page.evaluate("badImages()")
     for theme in THEMES:
@@ -142,6 +150,25 @@ def test_what_scrolls_shows_that_it_does_and_the_keyboard_reaches_it(seen, width
     assert seen.unmarked[width] == []
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_line_begins_with_no_stop_and_ends_with_no_open_bracket(seen, width):
+    assert seen.torn[width] == []
+
+
+def test_a_wide_screen_cuts_no_formula_of_a_line(seen):
+    assert seen.cut["wide screen"] == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_titles_of_the_neighbouring_pages_break_between_words(seen, width):
+    assert seen.broken[width] == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_panels_side_by_side_are_large_enough_to_read(seen, width):
+    assert seen.small[width] == []
+
+
 @pytest.mark.parametrize("theme", THEMES)
 def test_text_stands_out_from_its_ground(seen, theme):
     assert seen.faint[theme] == []
@@ -157,6 +184,14 @@ def page(browser: Any) -> Iterator[Any]:
 def test_a_reader_who_prefers_the_dark_gets_it(page):
     open_page(page, "index.html")
     assert page.evaluate("() => document.documentElement.dataset.theme") == "dark"
+
+
+def test_the_table_of_traces_fits_a_wide_screen(page):
+    page.set_viewport_size({"width": WIDTHS["wide screen"], "height": 900})
+    open_page(page, "traceability.html")
+    boxes = page.locator(".pst-scrollable-table-container")
+    assert boxes.count() == 4
+    assert boxes.evaluate_all("all => all.filter((b) => b.scrollWidth > b.clientWidth)") == []
 
 
 def test_a_search_from_any_page_finds_the_word(page):

@@ -183,9 +183,20 @@ def test_an_array_without_an_axis_a_joint_is_refused(shape) -> None:
         HarmonicForm(np.zeros(shape), ("revolute", "revolute"))
 
 
-@pytest.mark.parametrize("q", [[1.0], [1.0, 2.0, 3.0]])
-def test_a_wrong_number_of_joint_values_is_refused(q) -> None:
-    form = HarmonicForm(np.zeros((3, 3)), ("revolute", "revolute"))
+@pytest.mark.parametrize(
+    ("kinds", "q", "says"),
+    [
+        (2, [0.2], "expected 2 joint values on the last axis, found 1"),
+        (2, [1.0, 2.0, 3.0], "expected 2 joint values on the last axis, found 3"),
+        (2, np.zeros((2, 5)), "expected 2 joint values on the last axis, found 5"),
+        (2, [], "expected 2 joint values on the last axis, found 0"),
+        (2, 0.2, "expected 2 joint values on the last axis, found a bare number"),
+        (1, 0.2, "expected 1 joint value on the last axis, found a bare number"),
+        (1, [0.2, 0.3], "expected 1 joint value on the last axis, found 2"),
+    ],
+)
+def test_a_wrong_number_of_joint_values_is_refused(kinds, q, says) -> None:
+    form = HarmonicForm(np.zeros((3,) * kinds), ("revolute",) * kinds)
     for use in (form, form.gradient, lambda x: form.along(0, x)):
-        with pytest.raises(ValueError, match="zip"):
+        with pytest.raises(ValueError, match=f"^{says}$"):
             use(q)

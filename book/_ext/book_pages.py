@@ -1,4 +1,4 @@
-"""What the pages need beyond the theme: verdicts, links to notebooks, sound ids, a calm API."""
+"""What pages need beyond the theme: verdicts, notebooks, sound ids, wide figures, a calm API."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
+from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxRole
 from sphinx.util.typing import ExtensionMetadata
 
@@ -25,6 +26,10 @@ VERDICTS = (
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40
+
+# A picture wider than this has panels side by side, too small to read on a phone; in points.
+WIDEST_PANEL = 6.5 * 72
+SVG_WIDTH = re.compile(r'<svg\b[^>]*\swidth="([\d.]+)pt"')
 
 # Chapters are built from executed copies; readers run and edit the notebooks themselves.
 COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
@@ -70,6 +75,27 @@ class ShortValuesOnly(SphinxTransform):
         for value in list(self.document.findall(addnodes.desc_annotation)):
             if value.astext().startswith(" = ") and len(value.astext()) > LONGEST_VALUE:
                 value.parent.remove(value)
+
+
+class PanelsScroll(SphinxPostTransform):
+    """Put every wide picture into a box in which it can scroll: the style sheet does the rest."""
+
+    default_priority = 900
+
+    def run(self, **kwargs: Any) -> None:
+        for image in list(self.document.findall(nodes.image)):
+            if width_in_points(Path(self.app.srcdir, image["uri"])) > WIDEST_PANEL:
+                box = nodes.container(classes=["wide-figure"])
+                image.replace_self(box)
+                box += image
+
+
+def width_in_points(file: Path) -> float:
+    """Return the width that an SVG file states in points, else 0."""
+    if file.suffix != ".svg" or not file.is_file():
+        return 0.0
+    stated = SVG_WIDTH.search(file.read_text(encoding="utf-8"))
+    return float(stated[1]) if stated else 0.0
 
 
 def link_to_chapters(app: Sphinx, docname: str, source: list[str]) -> None:
@@ -125,10 +151,11 @@ def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register role, transform and links with Sphinx."""
+    """Register role, transforms and links with Sphinx."""
     app.add_role("verdict", VerdictRole())
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
+    app.add_post_transform(PanelsScroll)
     app.connect("source-read", link_to_chapters)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)

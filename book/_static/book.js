@@ -4,7 +4,8 @@ if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = f
 // Formulas, tables and output wider than the page scroll in their own box. Mark such a box and the
 // sides where more is to see, for the style sheet, and let the keyboard reach it.
 const BOXES =
-  "mjx-container, .pst-scrollable-table-container, .cell_output .text_html, .highlight pre";
+  "mjx-container, .pst-scrollable-table-container, .cell_output .text_html, .highlight pre, " +
+  ".wide-figure";
 
 function markWide(box) {
   const hidden = box.scrollWidth - box.clientWidth;
@@ -22,6 +23,25 @@ function watchBoxes() {
     box.addEventListener("scroll", () => markWide(box));
     sizes.observe(box);
   }
+}
+
+// A browser may break the line on either side of a formula: keep its brackets and stops beside it.
+function holdPunctuation() {
+  for (const formula of document.querySelectorAll("span.math")) {
+    const before = cutOff(formula.previousSibling, /[([“]+$/);
+    const after = cutOff(formula.nextSibling, /^[,.;:!?)\]”’°%]+/);
+    if (!before && !after) continue;
+    const line = document.createElement("span");
+    line.className = "unbroken";
+    formula.replaceWith(line);
+    line.append(before, formula, after);
+  }
+}
+
+function cutOff(text, pattern) {
+  const found = text?.nodeType === Node.TEXT_NODE ? (text.data.match(pattern)?.[0] ?? "") : "";
+  if (found) text.data = text.data.replace(pattern, "");
+  return found;
 }
 
 // The theme scrolls its list of chapters to the open one; where that is in sight, keep the top.
@@ -44,5 +64,5 @@ window.addEventListener("afterprint", () => (root.dataset.theme = themeOnScreen)
 window.addEventListener("load", () => {
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
-  formulasShown.then(watchBoxes);
+  formulasShown.then(holdPunctuation).then(watchBoxes);
 });

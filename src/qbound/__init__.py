@@ -9,8 +9,9 @@ from importlib.metadata import version
 from qbound.boundary import clearance, components, pair_vector
 from qbound.circle import circle_arc, circle_roots
 from qbound.harmonic import HarmonicForm
+from qbound.region import find_region
 from qbound.robot import Robot
-from qbound.robotfile import RobotFileError, load_robot, packaged_robots
+from qbound.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
 
 __all__ = [
     "HarmonicForm",
@@ -20,8 +21,10 @@ __all__ = [
     "circle_roots",
     "clearance",
     "components",
+    "find_region",
     "load_robot",
     "packaged_robots",
     "pair_vector",
+    "save_robot",
 ]
 __version__ = version("qbound")

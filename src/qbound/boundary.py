@@ -42,10 +42,10 @@ def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicF
 def squared_distance(
     robot: Robot, point: str, observer: str | None = None, centre: ArrayLike = (0, 0, 0)
 ) -> HarmonicForm:
-    """Return the squared distance of a point from a place `centre` fixed in the observer's frame.
+    r"""Return the squared distance of a point from a place `centre` fixed in the observer's frame.
 
-    It has no products such as cos^2: a rotation keeps lengths, so a joint only adds twice a dot
-    product. Arguments and errors as in `position`.
+    It has no products such as :math:`\cos^2 q`: a rotation keeps lengths, so a joint only adds
+    twice a dot product. Arguments and errors as in `position`.
     """
     coordinates, squared = _walk(robot, point, observer)
     centre = np.asarray(centre)
@@ -59,16 +59,17 @@ def observer(robot: Robot, pair: Pair) -> str:
 
 
 def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
-    """Return B(q) = r_{a,b} + R_{a,b} r_{b,b+m} - r_{a,a+n} (eq. 16), seen from frame a.
+    r"""Return :math:`B(q) = r_{a,b} + R_{a,b}\,r_{b,b+m} - r_{a,a+n}` (eq. 16), seen from frame a.
 
     Returns
     -------
     HarmonicForm, shape (3,)
-        beta_{i,1}, beta_{i,2}, beta_{i,3}: from the first point named to the second; length.
+        :math:`\beta_{i,1}, \beta_{i,2}, \beta_{i,3}`, from the first point named to the
+        second; length.
 
     Notes
     -----
-    Eq. (25) shows the same vector from the base, turned by R_{0,a} (E-15).
+    Eq. (25) shows the same vector from the base, turned by :math:`R_{0,a}` (E-15).
     """
     sign, near, far = _near_far(robot, pair)
     vector = position(robot, far.name, near.frame) - near.at
@@ -76,12 +77,13 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
 
 
 def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
-    """Return the form that is positive exactly where the boundary is respected (eqs. 9, 11, 12).
+    r"""Return the form that is positive exactly where the boundary is respected (eqs. 9, 11, 12).
 
     Returns
     -------
     HarmonicForm, shape ()
-        A pair: ``|B|^2 - d_min^2`` in length^2, with d_min the two radii plus the clearance.
+        A pair: :math:`|B|^2 - d_{\min}^2` in length squared, where :math:`d_{\min}` is the two
+        radii plus the clearance.
         A half-space: ``normal . r - offset - radius`` in length.
     """
     if isinstance(boundary, Pair):
@@ -93,7 +95,7 @@ def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
 
 
 def required_distance(robot: Robot, pair: Pair) -> float:
-    """Return d_min of eq. (11): both radii plus the clearance asked for; length."""
+    r"""Return :math:`d_{\min}` of eq. (11): both radii plus the clearance asked for; length."""
     return sum(robot.point(name).radius for name in pair.points) + pair.clearance
 
 
@@ -127,21 +129,23 @@ def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
 
 
 def geometric_vector(robot: Robot, boundary: HalfSpace) -> HarmonicForm:
-    """Return B(q) = S r_{0,point} - (S's wall) (Table 5): the selected component, zeros elsewhere.
+    r"""Return the vector of a half-space (Table 5): the selected component, zeros elsewhere.
 
-    The selection matrix is S = n n^T, which is the paper's S_x and S_z when n is an axis.
+    It is :math:`B(q) = S\,r_{0,i} - w\,n` with the point i, the wall's offset w and its normal n.
+    The selection matrix is :math:`S = n\,n^T`, the paper's :math:`S_x` or :math:`S_z` where n is an
+    axis.
 
     Returns
     -------
     HarmonicForm, shape (3,)
-        Components beta_{i,1}, beta_{i,2}, beta_{i,3}; length.
+        :math:`\beta_{i,1}, \beta_{i,2}, \beta_{i,3}`; length.
     """
     n = boundary.normal
     return position(robot, boundary.point).dot(np.outer(n, n)) - boundary.offset * n
 
 
 def components(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
-    """Return the vector B_i(q) of a boundary, point or geometric (eq. 29), shape (3,)."""
+    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,)."""
     if isinstance(boundary, Pair):
         return pair_vector(robot, boundary)
     return geometric_vector(robot, boundary)

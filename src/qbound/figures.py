@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from itertools import count, pairwise
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.region import Region
 from qbound.robot import Robot
 from qbound.traversal import Traversal
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
+FilePath = str | PathLike[str]
 
 FEASIBLE: Final = "#0072B2"
 COLLIDING: Final = "#D55E00"
@@ -292,7 +295,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
 
 
 def bound_label(label: str) -> str:
-    """Write a bound's label, such as beta_{1,3,1}, as mathtext."""
+    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext."""
     return f"$\\{label}$"
 
 
@@ -313,3 +316,57 @@ def _halo(text: Any) -> Any:
 
     text.set_path_effects([withStroke(linewidth=3, foreground="white")])
     return text
+
+
+def draw_components(ax: Axes, region: Region) -> list[Artist]:
+    """Fill every component, home's in blue, others in grey, with its copies a turn away.
+
+    A component that goes round a joint has no inside in the plane: its boundary alone is drawn.
+    """
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    artists: list[Artist] = []
+    scale = _scales(region)
+    turns = [
+        [0.0] if r is not None else [-2 * np.pi, 0.0, 2 * np.pi] for r in region.problem.ranges
+    ]
+    for component in region.components:
+        style: dict[str, Any] = {
+            "ec": FEASIBLE if component.contains_home else "#777777",
+            "lw": 1.5,
+        }
+        style |= {"fill": not any(component.wraps), "fc": style["ec"] + "40"}
+        rings = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
+        for shift in ((a, b) for a in turns[0] for b in turns[1] if rings):
+            paths = [Path((ring + shift) * scale) for ring in rings]
+            artists.append(ax.add_patch(PathPatch(Path.make_compound_path(*paths), **style)))
+    return artists
+
+
+def save_region(file: FilePath, region: Region, joints: Sequence[str], unit: str) -> None:
+    """Draw a region into an SVG file, the same bytes on every run; `unit` is that of lengths."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    scale, kinds = _scales(region), region.problem.forms.kinds
+    ends = [
+        np.array(r or (-np.pi, np.pi)) * s
+        for r, s in zip(region.problem.ranges, scale, strict=True)
+    ]
+    labels = [
+        f"${_tex(name)}$ / {'°' if kind == 'revolute' else unit}"
+        for name, kind in zip(joints, kinds, strict=True)
+    ]
+    with mpl.rc_context(STYLE):  # type: ignore[arg-type]
+        figure = Figure(figsize=(6, 6))
+        ax = figure.add_subplot()
+        draw_components(ax, region)
+        ax.set(xlim=ends[0], ylim=ends[1], xlabel=labels[0], ylabel=labels[1])
+        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+
+
+def _scales(region: Region) -> Floats:
+    """Degrees a radian for revolute joints, 1 for prismatic ones."""
+    kinds = region.problem.forms.kinds
+    return np.array([np.degrees(1.0) if kind == "revolute" else 1.0 for kind in kinds])

@@ -18,12 +18,12 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """The frame o_{parent,name} = [R r] (eq. 1): orientation and origin, seen from its parent.
+    r"""The frame :math:`o_{a,b} = [R\ r]` (eq. 1): orientation and origin of b, seen from a.
 
     Attributes
     ----------
     name, parent : str
-        Labels of any kind (rule 7 of Section 2); `parent` is a frame already known.
+        Labels b and a, of any kind (rule 7 of Section 2); `parent` is a frame already known.
     rotation : ndarray, shape (..., 3, 3)
         Its columns are the unit vectors i, j, k of the frame (eq. 7).
     origin : ndarray, shape (..., 3)
@@ -83,7 +83,7 @@ class Frames:
         return tuple(self._poses)
 
     def rotation(self, a: str, b: str) -> Array:
-        """Return R_{a,b}: it turns coordinates seen from b into coordinates seen from a (eq. 1).
+        """Return :math:`R_{a,b}`: it turns coordinates seen from b into those seen from a (eq. 1).
 
         Returns
         -------
@@ -92,7 +92,7 @@ class Frames:
         return transpose(self._pose(a)[0]) @ self._pose(b)[0]
 
     def position(self, a: str, b: str, observer: str) -> Array:
-        """Return r_{a,b}^{(c)}: from the origin of a to that of b, seen from c (eqs. 3, 4).
+        """Return :math:`r_{a,b}^{(c)}`: from the origin of a to that of b, seen from c (eqs. 3, 4).
 
         Returns
         -------
@@ -103,14 +103,14 @@ class Frames:
         return apply(transpose(self._pose(observer)[0]), seen_from_base)
 
     def frame(self, a: str, b: str) -> Array:
-        """Return o_{a,b} = [R_{a,b} r_{a,b}^{(a)}], shape (..., 3, 4) (eqs. 1, 2)."""
+        r"""Return :math:`o_{a,b} = [R_{a,b}\ r_{a,b}^{(a)}]`, shape (..., 3, 4) (eqs. 1, 2)."""
         rotation, origin = self.rotation(a, b), self.position(a, b, a)
         batch = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
         columns = np.broadcast_to(rotation, (*batch, 3, 3)), np.broadcast_to(origin, (*batch, 3))
         return np.concatenate([columns[0], columns[1][..., None]], axis=-1)
 
     def unit_vector(self, a: str, b: str, observer: str) -> Array:
-        """Return u_{a,b}^{(c)}, shape (..., 3) (eq. 8).
+        """Return :math:`u_{a,b}^{(c)}`, shape (..., 3) (eq. 8).
 
         Raises
         ------

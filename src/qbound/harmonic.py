@@ -1,4 +1,4 @@
-"""The one algebraic object: a sum over products of (1, cos q, sin q) or (1, q, q^2), one a joint.
+"""The one algebraic object: a sum over products of (1, cos q, sin q) or (1, q, q²), one a joint.
 
 Every coordinate of every point of a serial chain is such a sum, and so is the squared distance of
 two points (a rotation keeps lengths). Both columns of the paper's eq. (29) and the clearance
@@ -33,7 +33,7 @@ class HarmonicForm:
         The last ``len(kinds)`` axes belong to the joints, each of length 3; axes before them stack
         forms (the three components of a vector, say). Floats, or SymPy expressions (dtype object).
     kinds : tuple of {"revolute", "prismatic"}
-        The factor of each joint: ``(1, cos q, sin q)`` or ``(1, q, q^2)``.
+        The factor of each joint: (1, cos q, sin q) or (1, q, q²).
     """
 
     coefficients: Array
@@ -86,14 +86,14 @@ class HarmonicForm:
         -------
         ndarray, shape (...) + self.shape
         """
-        return self._combine(
-            [basis(kind, x) for kind, x in zip(self.kinds, _columns(q), strict=True)]
-        )
+        columns = self._columns(q)
+        return self._combine([basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)])
 
     def gradient(self, q: ArrayLike) -> Array:
         """Return the derivatives along each joint, shape (...) + self.shape + (n,)."""
-        factors = [basis(kind, x) for kind, x in zip(self.kinds, _columns(q), strict=True)]
-        slopes = [basis_slope(kind, x) for kind, x in zip(self.kinds, _columns(q), strict=True)]
+        columns = self._columns(q)
+        factors = [basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
+        slopes = [basis_slope(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
         return np.stack(
             [
                 self._combine([*factors[:j], slopes[j], *factors[j + 1 :]])
@@ -113,7 +113,7 @@ class HarmonicForm:
         ndarray, shape (...) + self.shape + (3,)
             Constant first. The entry of `q` for the joint itself is not read.
         """
-        columns = _columns(q)
+        columns = self._columns(q)
         factors = [basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
         unit = np.eye(3)
         picks = [np.broadcast_to(unit[i], (*np.shape(columns[0]), 3)) for i in range(3)]
@@ -162,6 +162,16 @@ class HarmonicForm:
             )
         )
 
+    def _columns(self, q: ArrayLike) -> list[Array]:
+        """Split (..., n) joint values into n float arrays of shape (...)."""
+        values, n = np.asarray(q, dtype=float), len(self.kinds)
+        if values.shape[-1:] != (n,):
+            found = values.shape[-1] if values.ndim else "a bare number"
+            raise ValueError(
+                f"expected {n} joint value{'s' * (n != 1)} on the last axis, found {found}"
+            )
+        return list(np.moveaxis(values, -1, 0))
+
     def _combine(self, factors: Sequence[Array]) -> Array:
         """Contract every joint axis with its factor of shape (..., 3)."""
         monomials = reduce(_outer, factors, np.ones(1))
@@ -185,7 +195,7 @@ def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
 
 
 def basis(kind: Kind, q: ArrayLike) -> Array:
-    """Return (1, cos q, sin q) or (1, q, q^2), shape (..., 3)."""
+    """Return (1, cos q, sin q) or (1, q, q²), shape (..., 3)."""
     q = np.asarray(q)
     if kind == "revolute":
         return np.stack([np.ones_like(q), np.cos(q), np.sin(q)], axis=-1)
@@ -198,8 +208,3 @@ def basis_slope(kind: Kind, q: ArrayLike) -> Array:
     if kind == "revolute":
         return np.stack([np.zeros_like(q), -np.sin(q), np.cos(q)], axis=-1)
     return np.stack([np.zeros_like(q), np.ones_like(q), 2 * q], axis=-1)
-
-
-def _columns(q: ArrayLike) -> list[Array]:
-    """Split (..., n) joint values into n float arrays of shape (...)."""
-    return list(np.moveaxis(np.asarray(q, dtype=float), -1, 0))

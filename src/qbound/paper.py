@@ -1,8 +1,9 @@
-"""The paper's printed data: tables and formulas as they stand in print. No mathematics reads this.
+r"""The paper's printed data: tables and formulas as they stand in print. No mathematics reads this.
 
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383, doi:10.3390/app15105383. Labels follow the paper:
-x_{a,b} is the x component of r_{a,b}. Formulas are written in plain text; ``arctan(n, d)`` stands
-for the printed tan^-1(n / d), so that both readings of it, arctan and atan2, can be computed.
+:math:`x_{a,b}` is the x component of :math:`r_{a,b}`. Formulas are written in plain text;
+``arctan(n, d)`` stands for the printed :math:`\tan^{-1}(n / d)`, so that both readings of it,
+arctan and atan2, can be computed.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ TABLE_2: Final = (
     ("0", "2", r"\mathbf{r}_{0,1} + R_{0,1}\mathbf{r}_{1,2}", "R_{0,1}R_{1,2}"),
     ("0", "3", r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}", "R_{0,2}R_{2,3}"),
 )
-"""Rows of Table 2 as printed; frames a and b, position r_{a,b}, orientation R_{a,b} (LaTeX)."""
+"""Rows of Table 2 as printed; frames a and b, position and orientation of b seen from a (LaTeX)."""
 
 EQUATION_29: Final = {
     "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
@@ -93,7 +94,7 @@ EQUATION_29: Final = {
         " + z_1_2*cos(q1) - x_1_2*sin(q1)"
     ),
 }
-"""Eq. (29): the eleven components."""
+"""The eleven components of eq. (29)."""
 
 TABLE_6: Final = {
     "beta_{1,1,1}": "arctan(z_1_7, x_1_7) + acos(x_0_6/sqrt(x_1_7**2 + z_1_7**2))",
@@ -161,14 +162,15 @@ def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
 
 
 def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
-    """Turn a printed formula of this module into a SymPy expression.
+    r"""Turn a printed formula of this module into a SymPy expression.
 
     Parameters
     ----------
     text : str
         An entry of `EQUATION_29` or `TABLE_6`.
     arctan : {"arctan", "atan2", "printed"}
-        How to read the printed tan^-1 of a quotient; "printed" leaves the sign, to be shown.
+        How to read the printed :math:`\tan^{-1}` of a quotient; "printed" leaves the sign, to be
+        shown.
     """
     import sympy
 
@@ -185,7 +187,7 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
 
 
 def label(name: str) -> str:
-    """Return the paper's label of a name in a formula: x_1_10 -> x_{1,10}, q1 -> q_1."""
+    """Return the paper's label of a name in a formula, such as ``x_{1,10}`` of ``x_1_10``."""
     if name.startswith("q"):
         return f"q_{name[1:]}"
     letter, a, b = name.split("_")

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary import clearance, pair_vector
 from qbound.circle import CircleRoots, circle_roots
 from qbound.harmonic import HarmonicForm
+from qbound.region import Problem, state
 from qbound.robot import HalfSpace, Pair, Robot
 from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
 
@@ -30,7 +31,10 @@ LOWER: Final = 2
 
 @dataclass(frozen=True)
 class Bound:
-    """The bound beta_{i,j,k}: boundary i, component j (1, 2, 3 = x, y, z), k (1 upper, 2 lower)."""
+    r"""The bound :math:`\beta_{i,j,k}` of boundary i.
+
+    Component j is 1, 2, 3 for x, y, z; k is 1 for the upper bound, 2 for the lower.
+    """
 
     boundary: str
     component: int
@@ -119,6 +123,14 @@ def feasible(robot: Robot, q: ArrayLike) -> NDArray[np.bool_]:
     for _, form in _cuts(robot):
         inside &= form(q) >= 0
     return np.asarray(inside)
+
+
+def problem(robot: Robot) -> Problem:
+    """State the paper's rule for the general engine: the box as limits, half-spaces as forms."""
+    region, cuts = box(robot), [wall for wall, _ in _cuts(robot)]
+    ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
+    sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
+    return state(robot, cuts, ranges, [(low.boundary, high.boundary) for low, high in sides])
 
 
 def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 DIGITS = 15
-"""Digits written: what a double holds, without its last, noisy one."""
+"""Digits that are written, as many as a double holds without its last, noisy one."""
 
 
 class Results:
@@ -38,7 +38,7 @@ class Results:
             The result's id: stable, unique within the chapter.
         value : float, int, str, or array_like
         unit : str
-            "deg", "cm", "cm^2", "deg^2", "rad^2"; "1" for a pure number or a name.
+            ``deg``, ``cm``, ``cm^2``, ``deg^2``, ``rad^2``; ``1`` for a pure number or a name.
         reference : str
             What it belongs to in the paper, such as "Figure 5" or "eq. 31".
         rule : {"paper", "clearance", "none"}

@@ -32,7 +32,7 @@ class Joint:
     parent, frame : str
         Labels of the frames before and after it.
     origin : ndarray, shape (3,)
-        r_{parent,frame} at joint value 0, seen from the parent; length.
+        From the parent to the frame at joint value 0, seen from the parent; length.
     mount : ndarray, shape (3, 3)
         Fixed rotation between the parent and the joint's own axes.
     axis : ndarray, shape (3,)
@@ -140,16 +140,17 @@ class Robot:
 
 
 def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:
-    """Return a real SymPy symbol for each joint: q_1, q_2, ..."""
+    r"""Return a real SymPy symbol for each joint: :math:`q_1, q_2, \ldots`."""
     import sympy
 
     return tuple(sympy.Symbol(_subscripted(joint.name), real=True) for joint in robot.joints)
 
 
 def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
-    """Replace every non-zero offset by its label x_{a,b}, y_{a,b} or z_{a,b} (rule 8 of Section 2).
+    r"""Replace every non-zero offset by its label, such as :math:`x_{a,b}` (rule 8 of Section 2).
 
-    The offset of a half-space along an axis becomes x_{min,1}, x_{min,2}, ... as in Table 5.
+    The offset of a half-space along an axis becomes :math:`x_{\min,1}, x_{\min,2}, \ldots` as in
+    Table 5.
 
     Returns
     -------

@@ -1,32 +1,34 @@
-"""Robot files: TOML in, a `Robot` out, or one clear error.
+"""Robot files: TOML in, a `Robot` out, or one clear error; and a `Robot` back into TOML.
 
-A file is data. Types and keys are checked by the JSON Schema that ships with the package, meaning
-(references, chain, finite numbers, units) here. Nothing in a file is evaluated.
+A file is data: it is checked by `robotcheck`, and nothing in it is evaluated.
 """
 
 from __future__ import annotations
 
 import json
 import math
-import sys
+import re
 import tomllib
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qbound.boundary import required_distance
 from qbound.frames import roll_pitch_yaw
 from qbound.robot import Body, HalfSpace, Joint, Pair, Point, Robot
+from qbound.robotcheck import RobotFileError, Table, check_table
+from qbound.schema import place
+from qbound.tolerances import TANGENT
 
-Table = Mapping[str, Any]
+__all__ = ["RobotFileError", "load_robot", "packaged_robots", "parse_robot", "save_robot"]
 
-
-class RobotFileError(ValueError):
-    """A robot file that is wrong: names the file, the key, what was found, what is allowed."""
+ROWS = ("joint", "point", "boundary", "body")
+"""The lists of a file, in the order in which they are written."""
 
 
 def load_robot(source: str | Path) -> Robot:
@@ -35,22 +37,51 @@ def load_robot(source: str | Path) -> Robot:
     Parameters
     ----------
     source : str or Path
-        A path, or a bare name among `packaged_robots()`.
+        A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
+        robot; a file that is called just so is reached by ``./name``.
 
     Raises
     ------
     RobotFileError
         If the file cannot be read or says something that is no robot.
+
+    Warns
+    -----
+    UserWarning
+        If a pair of points has no radius and no clearance: it never bounds anything.
     """
     text, label = _text(source)
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
         raise RobotFileError(f"{label}: not TOML: {error}") from None
+    return _robot(table, f"{label}: ")
+
+
+def save_robot(robot: Robot, path: str | Path) -> None:
+    """Write a robot file, complete or not at all.
+
+    Angles are written in the robot's angle unit. Read again, every number is the same to one unit
+    in its last place; the mount of a joint, written as roll, pitch and yaw, to a few.
+
+    Raises
+    ------
+    RobotFileError
+        If the robot is none that a file may hold (an infinite offset, say); nothing is written.
+    """
+    table = _table(robot)
     try:
-        return parse_robot(table)
+        check_table(table)
     except RobotFileError as error:
-        raise RobotFileError(f"{label}: {error}") from None
+        raise RobotFileError(f"{path}: not written: {error}") from None
+    text = _toml(table)
+    target = Path(path)
+    draft = target.with_name(f"{target.name}.part")
+    try:
+        draft.write_bytes(text.encode())
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 def packaged_robots() -> tuple[str, ...]:
@@ -61,39 +92,23 @@ def packaged_robots() -> tuple[str, ...]:
 
 def parse_robot(table: Table) -> Robot:
     """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit."""
-    for check in (_check_schema, _check_finite, _check_names, _check_chain, _check_references):
-        check(table)
-    angle = math.radians(1.0) if table["angle_unit"] == "deg" else 1.0
-    joints = tuple(_joint(f"joint[{i}]", j, angle) for i, j in enumerate(table["joint"]))
-    scales = [angle if joint.kind == "revolute" else 1.0 for joint in joints]
-    robot = Robot(
-        name=table["name"],
-        joints=joints,
-        points=tuple(
-            Point(p["name"], p["frame"], np.array(p["at"], dtype=float), float(p.get("radius", 0)))
-            for p in table["point"]
-        ),
-        boundaries=tuple(
-            _boundary(f"boundary[{i}]", b) for i, b in enumerate(_rows(table, "boundary"))
-        ),
-        home=np.array([table["home"][j.name] * s for j, s in zip(joints, scales, strict=True)]),
-        tool=table["tool"],
-        length_unit=table["length_unit"],
-        angle_unit=table["angle_unit"],
-        bodies=tuple(
-            Body(b["frame"], np.array(b["polygon"], dtype=float)) for b in _rows(table, "body")
-        ),
-    )
-    _warn_of_no_walls(robot)
-    return robot
+    return _robot(table, "")
 
 
-def _warn_of_no_walls(robot: Robot) -> None:
-    """Warn of pairs of bare points that may come as close as they like."""
-    for pair in robot.boundaries:
+def _robot(table: Table, label: str) -> Robot:
+    try:
+        check_table(table)
+    except RobotFileError as error:
+        raise RobotFileError(f"{label}{error}") from None
+    except RecursionError:
+        raise RobotFileError(f"{label}tables in tables without end") from None
+    robot = _built(table)
+    for i, pair in enumerate(robot.boundaries):
         if isinstance(pair, Pair) and required_distance(robot, pair) == 0:
-            text = f"{pair.name}: no radius and no clearance; this pair is never a wall"
-            warnings.warn(text, stacklevel=3)
+            where = place(table, ("boundary", i))
+            text = f"{label}{where}: no radius and no clearance; this pair is never a wall"
+            warnings.warn(text, stacklevel=3)  # at the caller of load_robot or parse_robot
+    return robot
 
 
 def _text(source: str | Path) -> tuple[str, str]:
@@ -102,141 +117,188 @@ def _text(source: str | Path) -> tuple[str, str]:
         name = f"{source}.toml"
         return (resources.files("qbound") / "robots" / name).read_text(encoding="utf-8"), name
     try:
-        return Path(source).read_text(encoding="utf-8"), str(source)
+        return Path(source).read_text(encoding="utf-8-sig"), str(source)
     except (OSError, UnicodeDecodeError) as error:
         known = ", ".join(packaged_robots())
         reason = getattr(error, "strerror", None) or "not UTF-8 text"
         raise RobotFileError(f"{source}: {reason}; packaged robots are {known}") from None
 
 
-def _joint(where: str, table: Table, angle: float) -> Joint:
-    revolute = table["type"] == "revolute"
-    scale = angle if revolute else 1.0
-    limits = table.get("limits")
-    if limits is None and not revolute:
-        raise RobotFileError(f"{where}.limits: missing; a prismatic joint needs limits")
-    if limits is not None and not limits[0] < limits[1]:
-        raise RobotFileError(f"{where}.limits: {limits} is not in rising order")
-    rpy = [x * angle for x in table.get("rpy", (0.0, 0.0, 0.0))]
-    return Joint(
+# --- from a table to a robot ---------------------------------------------------------------------
+
+
+def _built(table: Table) -> Robot:
+    angle = _angle(table["angle_unit"])
+    joints = tuple(_joint(row, angle) for row in table["joint"])
+    points = (
+        Point(p["name"], p["frame"], np.array(p["at"], dtype=float), float(p.get("radius", 0)))
+        for p in table["point"]
+    )
+    bodies = (Body(b["frame"], np.array(b["polygon"], dtype=float)) for b in table.get("body", ()))
+    return Robot(
         name=table["name"],
-        kind=table["type"],
-        parent=table["parent"],
-        frame=table["frame"],
-        origin=np.array(table["origin"], dtype=float),
-        mount=roll_pitch_yaw(*rpy),
-        axis=_unit(f"{where}.axis", table["axis"]),
-        limits=None if limits is None else (limits[0] * scale, limits[1] * scale),
-        velocity=table["velocity"] * scale if "velocity" in table else None,
+        joints=joints,
+        points=tuple(points),
+        boundaries=tuple(_boundary(row) for row in table.get("boundary", ())),
+        home=np.array([table["home"][j.name] * _scale(j.kind, angle) for j in joints]),
+        tool=table["tool"],
+        length_unit=table["length_unit"],
+        angle_unit=table["angle_unit"],
+        bodies=tuple(bodies),
     )
 
 
-def _boundary(where: str, table: Table) -> Pair | HalfSpace:
-    used = table.get("used", True)
-    if table["type"] == "pair":
-        first, second = table["points"]
-        return Pair(table["name"], (first, second), float(table.get("clearance", 0)), used)
-    normal = _unit(f"{where}.normal", table["normal"])
-    return HalfSpace(table["name"], table["point"], normal, float(table["offset"]), used)
+def _joint(row: Table, angle: float) -> Joint:
+    scale = _scale(row["type"], angle)
+    limits = row.get("limits")
+    return Joint(
+        name=row["name"],
+        kind=row["type"],
+        parent=row["parent"],
+        frame=row["frame"],
+        origin=np.array(row["origin"], dtype=float),
+        mount=roll_pitch_yaw(*(x * angle for x in row.get("rpy", (0.0, 0.0, 0.0)))),
+        axis=_unit(row["axis"]),
+        limits=None if limits is None else (limits[0] * scale, limits[1] * scale),
+        velocity=row["velocity"] * scale if "velocity" in row else None,
+    )
 
 
-def _unit(where: str, vector: Sequence[float]) -> np.ndarray:
+def _boundary(row: Table) -> Pair | HalfSpace:
+    used = row.get("used", True)
+    if row["type"] == "pair":
+        first, second = row["points"]
+        return Pair(row["name"], (first, second), float(row.get("clearance", 0)), used)
+    return HalfSpace(row["name"], row["point"], _unit(row["normal"]), float(row["offset"]), used)
+
+
+def _unit(vector: Sequence[float]) -> NDArray[np.float64]:
+    """Give a vector the length 1; one that has it but for rounding stays as it is written."""
+    if abs(math.hypot(*vector) - 1) <= TANGENT:
+        return np.array(vector, dtype=float)
     largest = max(map(abs, vector))
-    if largest == 0:
-        raise RobotFileError(f"{where}: [0, 0, 0] has no direction")
     scaled = np.array(vector, dtype=float) / largest  # so that no square overflows
-    return np.asarray(scaled / np.linalg.norm(scaled))
+    return np.asarray(scaled / math.hypot(*scaled))
 
 
-def _check_schema(table: Table) -> None:
-    from jsonschema import Draft202012Validator
-    from jsonschema.exceptions import best_match
-
-    text = (resources.files("qbound") / "schemas" / "robot.schema.json").read_text(encoding="utf-8")
-    error = best_match(Draft202012Validator(json.loads(text)).iter_errors(table))
-    if error is not None:
-        raise RobotFileError(f"{_dotted(error.absolute_path)}: {error.message}")
+def _angle(unit: str) -> float:
+    """Radians in one of the file's units of angle."""
+    return math.radians(1.0) if unit == "deg" else 1.0
 
 
-def _check_finite(table: Table) -> None:
-    for where, value in _leaves(table):
-        if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
-            raise RobotFileError(f"{where}: {value} is not a finite number")
+def _scale(kind: str, angle: float) -> float:
+    """Library units in one of the file's units of a joint's value."""
+    return angle if kind == "revolute" else 1.0
 
 
-def _check_names(table: Table) -> None:
-    for kind in ("joint", "point", "boundary"):
-        seen: set[str] = set()
-        for i, row in enumerate(_rows(table, kind)):
-            if row["name"] in seen:
-                raise RobotFileError(f"{kind}[{i}].name: {row['name']!r} is used twice")
-            seen.add(row["name"])
-    frames = _frames(table)
-    for i, point in enumerate(table["point"]):
-        if point["name"] in frames:
-            raise RobotFileError(f"point[{i}].name: {point['name']!r} is the name of a frame")
+# --- from a robot to a table, and to TOML --------------------------------------------------------
 
 
-def _check_chain(table: Table) -> None:
-    """Joints form one chain, given from the base outwards, each frame moved once."""
-    frame = table["joint"][0]["parent"]
-    seen = {frame}
-    for i, joint in enumerate(table["joint"]):
-        if joint["parent"] != frame:
-            raise RobotFileError(
-                f"joint[{i}].parent: {joint['parent']!r} found; the chain is at frame {frame!r}"
-            )
-        frame = joint["frame"]
-        if frame in seen:
-            raise RobotFileError(f"joint[{i}].frame: {frame!r} closes a cycle")
-        seen.add(frame)
+def _table(robot: Robot) -> Table:
+    """Undo `_built`; what a file may leave out is left out."""
+    angle = _angle(robot.angle_unit)
+    scales = [_scale(kind, angle) for kind in robot.kinds]
+    home = zip(robot.joints, robot.home, scales, strict=True)
+    return {
+        "schema": 1,
+        "name": robot.name,
+        "length_unit": robot.length_unit,
+        "angle_unit": robot.angle_unit,
+        "home": {joint.name: _quotient(value, scale) for joint, value, scale in home},
+        "tool": robot.tool,
+        "joint": [_joint_row(joint, angle) for joint in robot.joints],
+        "point": [_point_row(point) for point in robot.points],
+        "boundary": [_boundary_row(boundary) for boundary in robot.boundaries],
+        "body": [{"frame": b.frame, "polygon": _floats(b.polygon)} for b in robot.bodies],
+    }
 
 
-def _check_references(table: Table) -> None:
-    frames = _frames(table)
-    points = [p["name"] for p in table["point"]]
-    joints = [j["name"] for j in table["joint"]]
-    _known("tool", table["tool"], points, "point")
-    for kind in ("point", "body"):
-        for i, row in enumerate(_rows(table, kind)):
-            _known(f"{kind}[{i}].frame", row["frame"], frames, "frame")
-    for i, row in enumerate(_rows(table, "boundary")):
-        for name in row.get("points", [row.get("point")]):
-            _known(f"boundary[{i}].point{'s' * ('points' in row)}", name, points, "point")
-    for name in table["home"]:
-        _known("home", name, joints, "joint")
-    for name in joints:
-        if name not in table["home"]:
-            raise RobotFileError(f"home: joint {name!r} has no value")
+def _joint_row(joint: Joint, angle: float) -> Table:
+    scale = _scale(joint.kind, angle)
+    row: dict[str, Any] = {
+        "name": joint.name,
+        "type": joint.kind,
+        "parent": joint.parent,
+        "frame": joint.frame,
+        "origin": _floats(joint.origin),
+        "axis": _floats(joint.axis),
+    }
+    if not np.array_equal(joint.mount, np.eye(3)):
+        row["rpy"] = [_quotient(x, angle) for x in _rpy(joint.mount)]
+    if joint.limits is not None:
+        row["limits"] = [_quotient(x, scale) for x in joint.limits]
+    if joint.velocity is not None:
+        row["velocity"] = _quotient(joint.velocity, scale)
+    return row
 
 
-def _known(where: str, name: str, names: Sequence[str], what: str) -> None:
-    if name not in names:
-        raise RobotFileError(f"{where}: no {what} {name!r}; there are {', '.join(names)}")
+def _point_row(point: Point) -> Table:
+    radius = {"radius": float(point.radius)} if point.radius else {}
+    return {"name": point.name, "frame": point.frame, "at": _floats(point.at)} | radius
 
 
-def _frames(table: Table) -> list[str]:
-    return [table["joint"][0]["parent"], *(j["frame"] for j in table["joint"])]
-
-
-def _rows(table: Table, key: str) -> Sequence[Table]:
-    rows: Sequence[Table] = table.get(key, [])
-    return rows
-
-
-def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str, Any]]:
-    """Every number and text of a file, with its place."""
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            yield from _leaves(item, (*path, key))
-    elif isinstance(value, list):
-        for i, item in enumerate(value):
-            yield from _leaves(item, (*path, i))
+def _boundary_row(boundary: Pair | HalfSpace) -> Table:
+    row: dict[str, Any] = {"name": boundary.name}
+    if isinstance(boundary, Pair):
+        row |= {"type": "pair", "points": list(boundary.points)}
+        row |= {"clearance": float(boundary.clearance)} if boundary.clearance else {}
     else:
-        yield _dotted(path), value
+        row |= {"type": "half-space", "point": boundary.point}
+        row |= {"normal": _floats(boundary.normal), "offset": float(boundary.offset)}
+    return row | ({} if boundary.used else {"used": False})
 
 
-def _dotted(path: Any) -> str:
-    """Write a place as a reader would: joint[0].axis."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
-    return text.lstrip(".") or "file"
+def _rpy(mount: NDArray[Any]) -> tuple[float, float, float]:
+    """Find roll, pitch and yaw of a rotation.
+
+    Roll is read after yaw is undone, so that a pitch of a quarter turn needs no case of its own.
+    """
+    m = np.asarray(mount, dtype=float)
+    yaw = math.atan2(m[1, 0], m[0, 0])
+    c, s = math.cos(yaw), math.sin(yaw)
+    pitch = math.atan2(-m[2, 0], c * m[0, 0] + s * m[1, 0])
+    roll = math.atan2(s * m[0, 2] - c * m[1, 2], c * m[1, 1] - s * m[0, 1])
+    return roll, pitch, yaw
+
+
+def _quotient(value: float, scale: float) -> float:
+    """Find the number that the reader, multiplying, turns into `value`.
+
+    The short one if there is one (20 degrees stay 20), else one that is right to the last place.
+    """
+    quotient = float(value) / scale
+    short = (float(f"{quotient:.{digits}g}") for digits in (15, 16))
+    return next((x for x in short if x * scale == value), quotient)
+
+
+def _floats(values: NDArray[Any]) -> list[Any]:
+    floats: list[Any] = np.asarray(values, dtype=float).tolist()
+    return floats
+
+
+def _toml(table: Table) -> str:
+    """Write a table of values and of lists of tables as TOML."""
+    parts = [_lines({key: value for key, value in table.items() if key not in ROWS})]
+    parts += [f"[[{kind}]]\n{_lines(row)}" for kind in ROWS for row in table[kind]]
+    return "\n".join(parts)
+
+
+def _lines(table: Table) -> str:
+    return "".join(f"{key} = {_toml_value(value)}\n" for key, value in table.items())
+
+
+def _toml_value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):  # JSON's quotes and escapes are TOML's, but for DEL
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml_value, value))}]"
+    if isinstance(value, Mapping):
+        pairs = (f"{_toml_key(key)} = {_toml_value(item)}" for key, item in value.items())
+        return f"{{ {', '.join(pairs)} }}"
+    return repr(value)
+
+
+def _toml_key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml_value(key)

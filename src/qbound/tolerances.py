@@ -20,3 +20,29 @@ ON_BOUNDARY: Final = 1e-9
 A root of Theorem 2 put back into its form leaves 1e-16 of the coefficients where the root is simple
 and 1e-8 in the angle where it is double, that is 1e-16 in the value again; 1e-9 leaves room for
 the sums of many joints."""
+
+NEGLIGIBLE: Final = 1e-13
+"""A coefficient this small beside the largest is rounding of a cancelled one."""
+
+NEAR_CIRCLE: Final = 0.03
+"""Distance from the unit circle (or the real line) under which a computed root is kept.
+
+A double root leaves it by 1e-5 and a fourfold by 1e-2; one too many costs time, a missed one the
+answer."""
+
+SAME_CRITICAL: Final = 1e-10
+"""Critical base values closer than this are one."""
+
+TOUCH: Final = 1e-6
+"""Ends of cells on a critical line closer than this are one point.
+
+Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 here."""
+
+POSITIVE: Final = 1e-11
+"""Value (coefficients scaled to 1) above which a form is positive on a critical line."""
+
+QUADRATURE: Final = 1e-13
+"""Relative change of a quadrature at doubled nodes under which it has converged.
+
+Gauss-Legendre gains all its digits at once when the integrand is analytic, as it is between
+critical values; near-critical ones need more nodes, not another method."""

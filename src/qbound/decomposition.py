@@ -1,0 +1,350 @@
+"""Cells of two joints in which every form is positive: a cylindrical decomposition.
+
+For a fixed value of one joint, the base, each form is a one-joint form in the other, the lift, and
+Theorem 2 (or the quadratic formula) gives its roots. How these roots lie to each other changes only
+at critical base values, and each kind of these is a root of one univariate polynomial. Between two
+critical values the cells are read off at the midpoint. No grid, no sample, no starting guess.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.harmonic import HarmonicForm, Kind, basis
+from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE, SAME_CRITICAL, TANGENT
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Complexes = NDArray[np.complex128]
+Range = tuple[float, float] | None
+
+TURN = math.tau
+
+
+@dataclass(frozen=True)
+class Root:
+    """A root of one form along the lift, as a function of the base within a slab.
+
+    Attributes
+    ----------
+    form : int
+        Index of the form; -1 and -2 are the lower and the upper limit of the lift.
+    branch : int
+        -1 / +1: theta - / + arccos, or the lower / upper root of a quadratic; 0 for a limit.
+    turns : int
+        Full turns added.
+    """
+
+    form: int
+    branch: int
+    turns: int = 0
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A piece of the plane over one slab, between two roots, in which every form is positive."""
+
+    slab: int
+    lower: Root | None
+    upper: Root | None
+
+
+class Plane:
+    """Forms of two joints, scaled to largest coefficient 1, with one joint as base.
+
+    Parameters
+    ----------
+    forms : HarmonicForm, shape (m,)
+        Of two joints.
+    ranges : sequence of two (low, high) or None
+        None for a revolute joint that turns all the way round.
+    base : int
+        0 or 1.
+    """
+
+    def __init__(self, forms: HarmonicForm, ranges: Sequence[Range], base: int) -> None:
+        table = np.asarray(forms.coefficients, dtype=float)
+        table = table if base == 0 else np.swapaxes(table, 1, 2)
+        largest = np.abs(table).max(axis=(1, 2), keepdims=True)
+        table = table / np.where(largest > 0, largest, 1.0)
+        self.table: Floats = np.where(np.abs(table) > NEGLIGIBLE, table, 0.0)
+        self.base_kind: Kind = forms.kinds[base]
+        self.lift_kind: Kind = forms.kinds[1 - base]
+        self.base_range, self.lift_range = ranges[base], ranges[1 - base]
+        self.ends = self.base_range or (-math.pi, math.pi)
+        self.lift_ends = self.lift_range or (-math.pi, math.pi)
+
+    def along_lift(self, t: Floats) -> Floats:
+        """Return the coefficients of every form along the lift, shape (len(t), m, 3)."""
+        return np.asarray(np.einsum("ti,mij->tmj", basis(self.base_kind, t), self.table))
+
+    def values(self, t: Floats, v: Floats) -> Floats:
+        """Return every form at paired base and lift values, shape (len(t), m)."""
+        lifted = self.along_lift(t)
+        return np.asarray(np.einsum("tmj,tj->tm", lifted, basis(self.lift_kind, v)))
+
+    def roots(self, t: Floats) -> Floats:
+        """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
+
+        Revolute: theta - alpha and theta + alpha, theta in (-pi, pi]. Prismatic: the lower and the
+        upper root of a quadratic; the one root of an affine form comes twice.
+        """
+        c0, c1, c2 = np.moveaxis(self.along_lift(t), -1, 0)
+        if self.lift_kind == "revolute":
+            theta, alpha = circle_pair(c0, c1, c2)
+            return np.stack([theta - alpha, theta + alpha])
+        return _quadratic_roots(c0, c1, c2)
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """Slabs between critical base values, and the feasible cells over them.
+
+    Attributes
+    ----------
+    lines : ndarray, shape (s + 1,)
+        Critical base values, ascending; slab i lies between lines i and i + 1.
+    cells : list of Cell
+    """
+
+    plane: Plane
+    lines: Floats
+    cells: list[Cell]
+
+
+def decompose(plane: Plane) -> Decomposition:
+    """Find all critical base values and all feasible cells."""
+    lines = critical_values(plane)
+    middles = (lines[:-1] + lines[1:]) / 2
+    wide = np.diff(lines) > 0
+    cells = [
+        cell for slab, t in enumerate(middles) if wide[slab] for cell in _cells_over(plane, slab, t)
+    ]
+    return Decomposition(plane, lines, cells)
+
+
+# --- critical base values -------------------------------------------------------------------------
+
+
+def critical_values(plane: Plane) -> Floats:
+    """Return every base value at which the order of roots may change, with both ends of the range.
+
+    Some are spurious, which costs time; none is missing, which would cost the answer.
+    """
+    events = _events(plane)
+    found = _roots_in_range(events, plane)
+    low, high = plane.ends
+    inner = found[(found > low + SAME_CRITICAL) & (found < high - SAME_CRITICAL)]
+    lines = np.sort(np.concatenate([[low, high], inner]))
+    return np.asarray(lines[np.concatenate([[True], np.diff(lines) > SAME_CRITICAL])])
+
+
+def _events(plane: Plane) -> list[Complexes]:
+    """Return the univariate polynomials whose roots are critical, as stacks of equal length."""
+    c = _univariate(plane.table, plane.base_kind)  # (m, 3 lift coefficients, length)
+    lifts = plane.table[:, :, 1:].any(axis=(1, 2))
+    walls, c = c[~lifts, 0], c[lifts]  # a form without the lift is a wall across every fibre
+    c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
+    i, j = np.triu_indices(len(c), k=1)
+    if plane.lift_kind == "revolute":
+        events = [_times(c1, c1) + _times(c2, c2) - _times(c0, c0), c2, _circle_resultant(c, i, j)]
+    else:
+        events = [_times(c1, c1) - 4 * _times(c0, c2), c1, c2, *_line_resultants(c, i, j)]
+    if plane.lift_range is not None:
+        at = basis(plane.lift_kind, np.asarray(plane.lift_range))
+        events += [np.einsum("j,mjl->ml", factor, c) for factor in at]
+    return [walls, *events]
+
+
+def _circle_resultant(c: Complexes, i: Ints, j: Ints) -> Complexes:
+    """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule)."""
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(c[i], 1, 0), np.moveaxis(c[j], 1, 0)
+    determinant = _times(a1, b2) - _times(a2, b1)
+    cosine = _times(a2, b0) - _times(a0, b2)
+    sine = _times(a0, b1) - _times(a1, b0)
+    return _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
+
+
+def _line_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
+    """Resultants of polynomials of degree 2 or less at their actual degrees.
+
+    The formal resultant of two affine forms is identically zero, so each pair is taken at its own.
+    """
+    square = np.abs(c[:, 2]).max(axis=-1, initial=0.0) > 0
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(c[i], 1, 0), np.moveaxis(c[j], 1, 0)
+    p = _times(a1, b0) - _times(a0, b1)
+    q = _times(a2, b0) - _times(a0, b2)
+    both = _times(q, q) - _times(_times(a2, b1) - _times(a1, b2), p)
+    first = _times(_times(a2, b0), b0) - _times(_times(a1, b0), b1) + _times(_times(a0, b1), b1)
+    second = _times(_times(b2, a0), a0) - _times(_times(b1, a0), a1) + _times(_times(b0, a1), a1)
+    one, other = square[i], square[j]
+    return [p[~one & ~other], both[one & other], first[one & ~other], second[~one & other]]
+
+
+def _univariate(table: Floats, kind: Kind) -> Complexes:
+    """Turn (m, 3, 3) coefficients into polynomials of the base, (m, 3, 3), in ascending powers.
+
+    Revolute: of z = exp(i q), times z. Prismatic: of q itself.
+    """
+    c = np.moveaxis(table, 1, -1).astype(complex)
+    if kind == "prismatic":
+        return c
+    one, cosine, sine = np.moveaxis(c, -1, 0)
+    return np.stack([(cosine + 1j * sine) / 2, one, (cosine - 1j * sine) / 2], axis=-1)
+
+
+def _times(p: Complexes, q: Complexes) -> Complexes:
+    """Multiply stacked polynomials, coefficients on the last axis."""
+    product = np.zeros((*p.shape[:-1], p.shape[-1] + q.shape[-1] - 1), dtype=complex)
+    for k in range(p.shape[-1]):
+        product[..., k : k + q.shape[-1]] += p[..., k : k + 1] * q
+    return product
+
+
+def _roots_in_range(events: Sequence[Complexes], plane: Plane) -> Floats:
+    """Return the real base values at which any of the polynomials vanishes."""
+    found = [_base_values(stack, plane) for stack in events if len(stack)]
+    return np.concatenate([np.zeros(0), *found])
+
+
+def _base_values(stack: Complexes, plane: Plane) -> Floats:
+    circle = plane.base_kind == "revolute"
+    z = _polynomial_roots(stack)
+    if not circle:
+        z = np.append(z, 0)  # a root at zero is trimmed with its coefficient
+        near = np.abs(z.imag) <= NEAR_CIRCLE * (1 + np.abs(z.real))
+        return np.asarray(z.real[near])
+    t = np.angle(z[np.abs(np.abs(z) - 1) <= NEAR_CIRCLE])
+    low, high = plane.ends
+    turns = np.arange(math.floor((low - math.pi) / TURN), math.ceil((high + math.pi) / TURN) + 1)
+    return np.asarray((t[:, None] + TURN * turns).ravel())
+
+
+def _polynomial_roots(stack: Complexes) -> Complexes:
+    """Return all roots of stacked polynomials, equal degrees by one call of the eigenvalue solver.
+
+    Both ends are trimmed relative to the largest coefficient: a fixed degree would send roots to
+    zero or infinity and spoil the others.
+    """
+    size = np.abs(stack).max(axis=-1)
+    stack = stack[size > NEGLIGIBLE]
+    kept = np.abs(stack) > NEGLIGIBLE * np.abs(stack).max(axis=-1, keepdims=True)
+    first = kept.argmax(axis=-1)
+    last = stack.shape[-1] - 1 - kept[:, ::-1].argmax(axis=-1)
+    roots = [np.zeros(0, dtype=complex)]
+    for low, high in set(zip(first.tolist(), last.tolist(), strict=True)):
+        if high > low:
+            chosen = stack[(first == low) & (last == high), low : high + 1]
+            roots.append(_companion_roots(chosen))
+    return np.concatenate(roots)
+
+
+def _companion_roots(stack: Complexes) -> Complexes:
+    """Return all roots of polynomials with non-zero ends; the mean of close ones once more."""
+    degree = stack.shape[1] - 1
+    matrices = np.zeros((len(stack), degree, degree), dtype=complex)
+    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    matrices[:, :, -1] = -stack[:, :-1] / stack[:, -1:]
+    z = np.asarray(np.linalg.eigvals(matrices), dtype=complex)
+    close = np.abs(z[:, :, None] - z[:, None, :]) < 1e-6
+    count = close.sum(axis=-1)
+    # The errors of a double root's two halves cancel in their mean.
+    means = np.einsum("kij,kj->ki", close, z) / count
+    return np.concatenate([_polished(stack, z).ravel(), means[count > 1]])
+
+
+def _polished(stack: Complexes, z: Complexes) -> Complexes:
+    """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
+    powers = np.arange(stack.shape[1])
+    slopes = (stack * powers)[:, 1:]
+    for _ in range(2):
+        value, slope = _horner(stack, z), _horner(slopes, z)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = value / slope
+        z = np.where(np.abs(step) < 1e-6, z - step, z)
+    return z
+
+
+def _horner(stack: Complexes, z: Complexes) -> Complexes:
+    result = np.zeros_like(z)
+    for k in reversed(range(stack.shape[1])):
+        result = result * z + stack[:, k : k + 1]
+    return result
+
+
+# --- lifting --------------------------------------------------------------------------------------
+
+
+def _cells_over(plane: Plane, slab: int, t: float) -> list[Cell]:
+    """Return the feasible cells over a base value inside a slab."""
+    values, roots = _sorted_roots(plane, t)
+    low, high = plane.lift_ends
+    if plane.lift_range is not None:
+        ends: list[Root | None] = [Root(-1, 0), *roots, Root(-2, 0)]
+        walls = np.concatenate([[low], values, [high]])
+    elif roots:
+        ends = [*roots, Root(roots[0].form, roots[0].branch, roots[0].turns + 1)]
+        walls = np.append(values, values[0] + TURN)
+    else:
+        ends, walls = [None, None], np.array([low, high])
+    middles = (walls[:-1] + walls[1:]) / 2
+    there = plane.values(np.full(len(middles), t), middles)
+    free = (there > NEGLIGIBLE).all(axis=1) & (np.diff(walls) > 0)
+    return [Cell(slab, ends[k], ends[k + 1]) for k in np.flatnonzero(free)]
+
+
+def _sorted_roots(plane: Plane, t: float) -> tuple[Floats, list[Root]]:
+    """Return all roots over one base value that lie in the lift's range, ascending."""
+    found = plane.roots(np.array([t]))[:, 0]
+    branch, form = np.nonzero(np.isfinite(found))
+    values = found[branch, form]
+    low, high = plane.lift_ends
+    turns = np.zeros(len(values), dtype=int)
+    if plane.lift_kind == "revolute":
+        first = np.ceil((low - values) / TURN).astype(int)
+        count = np.maximum(np.ceil((high - values) / TURN).astype(int) - first, 0)
+        pick = np.repeat(np.arange(len(values)), count)
+        turns = np.concatenate([[], *(f + np.arange(n) for f, n in zip(first, count, strict=True))])
+        values, form, branch = values[pick] + TURN * turns, form[pick], branch[pick]
+    circle = plane.lift_range is None  # a circle has no ends: a root at its cut counts
+    inside = np.flatnonzero(circle | ((values > low) & (values < high)))
+    order = inside[np.argsort(values[inside], kind="stable")]
+    roots = [Root(int(form[k]), 2 * int(branch[k]) - 1, int(turns[k])) for k in order]
+    return values[order], roots
+
+
+def circle_pair(c0: Floats, c1: Floats, c2: Floats) -> tuple[Floats, Floats]:
+    """Return theta and alpha of Theorem 2: the roots are theta -+ alpha; alpha NaN where none.
+
+    A double root is a pair of equal roots (alpha = 0) or of roots a turn apart (alpha = pi), so
+    that the two ends of what lies between them keep their order.
+    """
+    d = np.hypot(c1, c2)
+    ratio = np.divide(-c0, d, out=np.full_like(d, np.nan), where=d > 0)
+    tangent = np.abs(np.abs(ratio) - 1) <= TANGENT
+    ratio = np.where(tangent, np.sign(ratio), ratio)
+    alpha = np.arccos(np.where(np.abs(ratio) <= 1, ratio, np.nan))
+    return np.arctan2(c2, c1), alpha
+
+
+def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats) -> Floats:
+    """Return the lower and the upper root of c0 + c1 v + c2 v^2; an affine root stands first."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(_discriminant(c0, c1, c2))
+        half = -(c1 + np.copysign(root, c1)) / 2
+        pair = np.sort(np.stack([half / c2, c0 / half]), axis=0)
+        single = np.stack([-c0 / c1, np.full_like(c0, np.nan)])
+    roots = np.where(c2 == 0, single, pair)
+    return np.where(np.isfinite(roots), roots, np.nan)
+
+
+def _discriminant(c0: Floats, c1: Floats, c2: Floats) -> Floats:
+    """Return c1^2 - 4 c0 c2, zero where it is rounding: a double root is a root."""
+    square, product = c1 * c1, 4 * c0 * c2
+    size = square + np.abs(product)
+    return np.where(np.abs(square - product) <= TANGENT * size, 0.0, square - product)

@@ -1,0 +1,105 @@
+"""The command: what is promised on standard output, in files and as exit status."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+
+import pytest
+from jsonschema import Draft202012Validator, validate
+from numpy.testing import assert_allclose
+
+from qbound import load_robot, packaged_robots, paper_rule
+from qbound.cli import main
+
+
+def run(capsys, *arguments: str) -> tuple[int, str, str]:
+    try:
+        status = main(arguments)
+    except SystemExit as stop:  # argparse
+        status = stop.code
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def test_region_writes_the_promised_json_and_nothing_else(capsys):
+    status, out, err = run(capsys, "region", "minervabot-v2", "--json", "-")
+    content = json.loads(out)
+    assert (status, err) == (0, "")
+    schema = resources.files("qbound") / "schemas" / "region.schema.json"
+    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    assert content["joints"] == ["q1", "q2"]
+    assert content["home"] == {"q": [0.0, 0.0], "feasible": True, "violated": []}
+    areas = [component["area"] for component in content["components"]]
+    assert content["components"][0]["contains_home"]
+    assert areas[1:] == sorted(areas[1:], reverse=True)
+    assert_allclose(sum(areas), content["feasible_area"])
+    for component in content["components"]:
+        for loop in component["loops"]:
+            arcs = loop["arcs"]
+            for before, arc in zip([arcs[-1], *arcs[:-1]], arcs, strict=True):
+                assert_allclose(before["to"], arc["from"], atol=1e-6)
+
+
+def test_the_papers_rule_gives_the_six_points(capsys):
+    status, out, _ = run(capsys, "region", "minervabot-v2", "--rule", "paper", "--json", "-")
+    (component,) = json.loads(out)["components"]
+    expected = sorted(v.q.tolist() for v in paper_rule.vertices(load_robot("minervabot-v2")))
+    assert status == 0
+    assert_allclose(sorted(v["q"] for v in component["vertices"]), expected, atol=1e-12)
+
+
+def test_files_are_written_whole(capsys, tmp_path):
+    files = tmp_path / "region.json", tmp_path / "region.svg"
+    status, _, _ = run(
+        capsys, "region", "minervabot-v2", "--json", str(files[0]), "--svg", str(files[1])
+    )
+    assert status == 0
+    assert sorted(tmp_path.iterdir()) == sorted(files)
+    assert json.loads(files[0].read_text())["robot"] == "MinervaBotV2"
+    assert files[1].read_text().startswith("<?xml")
+
+
+def test_contains_names_what_is_violated(capsys):
+    assert run(capsys, "contains", "minervabot-v2", "0", "0")[:2] == (0, "feasible\n")
+    status, out, _ = run(capsys, "contains", "minervabot-v2", "80deg", "0")
+    assert status == 1
+    assert out.startswith("violated: B7, margin -23.7")
+
+
+def test_robots_lists_and_shows(capsys):
+    assert run(capsys, "robots")[1].split() == list(packaged_robots())
+    assert 'name = "MinervaBotV2"' in run(capsys, "robots", "show", "minervabot-v2")[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("region", "no-such-robot"), "no-such-robot"),
+        (("region", "minervabot-v2", "--slice", "q9=1"), "no joint 'q9'"),
+        (("region", "minervabot-v2", "--slice", "q1=1deg"), "1 that are not held"),
+        (("contains", "minervabot-v2", "0"), "1 values for 2 joints"),
+        (("contains", "minervabot-v2", "nan", "0"), "'nan' is no value"),
+        (("robots", "show", "nobody"), "no robot 'nobody'"),
+        (("region", "minervabot-v2", "--json", "/no/such/folder/x"), "No such file"),
+        (("fly",), "invalid choice"),
+        ((), "required"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_status_2(capsys, arguments, words):
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+
+
+def test_an_unsafe_home_pose_is_an_answer(capsys, tmp_path):
+    packaged = resources.files("qbound") / "robots" / "minervabot-v2.toml"
+    text = packaged.read_text(encoding="utf-8").replace("q1 = 0.0", "q1 = 120.0")
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    status, out, _ = run(capsys, "region", str(file), "--json", "-")
+    content = json.loads(out)
+    assert status == 1
+    assert content["home_component"] is None
+    assert [v["boundary"] for v in content["home"]["violated"]] == ["B7"]
+    assert len(content["components"]) == 5
