@@ -502,6 +502,13 @@ def test_home_outside_belongs_to_no_component():
     assert len(region.components) == 1
 
 
+def test_home_at_a_touching_point_belongs_to_no_component():
+    saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
+    region = solve(saddle, (0, 0))
+    assert region.home is None
+    assert len(region.components) == 2
+
+
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])
 def test_home_on_a_critical_line_is_found(home):
     # The diamond's fibres open, close and are widest at these places.

@@ -239,6 +239,8 @@ class _Builder:
 
     def _home_sheet(self, sheets: dict[int, tuple[int, int]]) -> Floats | None:
         """Return the shift that brings this component around the home pose, if it holds it."""
+        if not (self.problem.forms(self.home) > 0).all():
+            return None  # on a boundary or beyond: in no component, however near
         home = self._ordered(self.home)
         circles = self._circles()
         low = self.cells.plane.ends[0]
