@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.decomposition import TURN, Cell, Decomposition, Plane, Root
+from qbound.harmonic import basis
 from qbound.tolerances import POSITIVE, TANGENT, TOUCH
 
 Floats = NDArray[np.float64]
@@ -291,13 +292,21 @@ class Complex:
 
 def _root_values(plane: Plane, root: Root, t: Floats, start: float, end: float) -> Floats:
     values = _raw_root(plane, root, t)
-    if plane.lift_kind == "prismatic":
-        return values
+    at_end = (t <= start) | (t >= end)
+    if plane.lift_kind == "revolute" and at_end.any():  # atan2 jumps at most there
+        values[at_end] = _end_values(plane, root, t[at_end], start, end, values[at_end])
+    return values
+
+
+def _end_values(
+    plane: Plane, root: Root, t: Floats, start: float, end: float, values: Floats
+) -> Floats:
+    """Bring values at the ends of a slab to the turn, and to the limit, seen from inside."""
     near, far = (
         _raw_root(plane, root, np.clip(t, start + inset, end - inset))
         for inset in (1e-4 * (end - start), 2e-4 * (end - start))
     )
-    values += TURN * np.round((near - values) / TURN)  # atan2 jumps at most at the ends of a slab
+    values = values + TURN * np.round((near - values) / TURN)
     # Where a form vanishes on a whole fibre its roots turn over: theirs is the limit from inside.
     turned = np.abs(values - near) > 1
     limit = near + np.where(np.abs(near - far) < 1, near - far, 0)
@@ -305,7 +314,7 @@ def _root_values(plane: Plane, root: Root, t: Floats, start: float, end: float) 
 
 
 def _raw_root(plane: Plane, root: Root, t: Floats) -> Floats:
-    c0, c1, c2 = plane.along_lift(t)[:, root.form].T
+    c0, c1, c2 = (basis(plane.base_kind, t) @ plane.table[root.form]).T
     if plane.lift_kind == "revolute":
         d = np.hypot(c1, c2)
         ratio = np.divide(-c0, d, out=np.zeros_like(d), where=d > 0)
