@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.circle import circle_roots
 from qbound.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE, SAME_CRITICAL, TANGENT
 
@@ -96,8 +97,10 @@ class Plane:
         """
         c0, c1, c2 = np.moveaxis(self.along_lift(t), -1, 0)
         if self.lift_kind == "revolute":
-            theta, alpha = circle_pair(c0, c1, c2)
-            return np.stack([theta - alpha, theta + alpha])
+            found = circle_roots(c1, c2, -c0)
+            # A double root is theta twice, or theta -+ pi: two ends that keep their order.
+            alpha = np.where(found.count > 0, found.alpha, np.nan)
+            return np.stack([found.theta - alpha, found.theta + alpha])
         return _quadratic_roots(c0, c1, c2)
 
 
@@ -316,20 +319,6 @@ def _sorted_roots(plane: Plane, t: float) -> tuple[Floats, list[Root]]:
     order = inside[np.argsort(values[inside], kind="stable")]
     roots = [Root(int(form[k]), 2 * int(branch[k]) - 1, int(turns[k])) for k in order]
     return values[order], roots
-
-
-def circle_pair(c0: Floats, c1: Floats, c2: Floats) -> tuple[Floats, Floats]:
-    """Return theta and alpha of Theorem 2: the roots are theta -+ alpha; alpha NaN where none.
-
-    A double root is a pair of equal roots (alpha = 0) or of roots a turn apart (alpha = pi), so
-    that the two ends of what lies between them keep their order.
-    """
-    d = np.hypot(c1, c2)
-    ratio = np.divide(-c0, d, out=np.full_like(d, np.nan), where=d > 0)
-    tangent = np.abs(np.abs(ratio) - 1) <= TANGENT
-    ratio = np.where(tangent, np.sign(ratio), ratio)
-    alpha = np.arccos(np.where(np.abs(ratio) <= 1, ratio, np.nan))
-    return np.arctan2(c2, c1), alpha
 
 
 def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats) -> Floats:

@@ -15,7 +15,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary import clearance
+from qbound.boundary import clearance, pair_vector, required_distance
 from qbound.cells import Complex, Step
 from qbound.decomposition import TURN, Plane, Range, decompose
 from qbound.harmonic import HarmonicForm
@@ -199,11 +199,10 @@ def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
 
 
 def _margin(robot: Robot, boundary: Pair | HalfSpace, q: Floats) -> float:
-    value = float(clearance(robot, boundary)(q))
     if isinstance(boundary, HalfSpace):
-        return value
-    d_min = boundary.clearance + sum(robot.point(name).radius for name in boundary.points)
-    return math.sqrt(max(value + d_min**2, 0.0)) - d_min
+        return float(clearance(robot, boundary)(q))
+    distance = np.linalg.norm(pair_vector(robot, boundary)(q))
+    return float(distance) - required_distance(robot, boundary)
 
 
 class _Builder:
