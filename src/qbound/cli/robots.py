@@ -1,0 +1,31 @@
+"""``qbound robots``: the packaged robots."""
+
+from __future__ import annotations
+
+import argparse
+from importlib import resources
+from typing import Any
+
+from qbound.robotfile import packaged_robots
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "robots", help="the packaged robots", epilog="example: qbound robots show minervabot-v2"
+    )
+    parser.add_argument("show", nargs="?", choices=("show",))
+    parser.add_argument("name", nargs="?")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """List the robots, or print the file of one."""
+    if options.show is None:
+        print("\n".join(packaged_robots()))
+        return 0
+    if options.name not in packaged_robots():
+        raise ValueError(f"no robot {options.name!r}; there are {', '.join(packaged_robots())}")
+    file = resources.files("qbound") / "robots" / f"{options.name}.toml"
+    print(file.read_text(encoding="utf-8"), end="")
+    return 0
