@@ -1,0 +1,1 @@
+"""Figures: see `qbound.claims.ledger` for what an entry is."""

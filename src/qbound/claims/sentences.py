@@ -1,0 +1,1 @@
+"""Sentences: see `qbound.claims.ledger` for what an entry is."""
