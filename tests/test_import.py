@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-HEAVY = ["sympy", "matplotlib", "jsonschema", "scipy", "shapely", "IPython", "pandas"]
+HEAVY = ["sympy", "matplotlib", "jsonschema", "scipy", "shapely", "IPython", "pandas", "flint"]
 SHOW = "import sys, json; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})))"
 
 
