@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.bodies import outline
 from qbound.region import Region
 from qbound.robot import Robot
 from qbound.traversal import Traversal
@@ -111,12 +112,8 @@ def draw_robot(
     artists: list[Artist] = []
     for body in robot.bodies if bodies else ():
         colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
-        local = np.insert(body.polygon, 1, 0.0, axis=1)
-        seen = local @ frames.rotation(robot.base, body.frame).T
-        seen += frames.position(robot.base, body.frame, robot.base)
-        artists += ax.fill(
-            *seen[:, [0, 2]].T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1
-        )
+        seen = outline(robot, body, q)
+        artists += ax.fill(*seen.T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1)
     names = [robot.base, *(joint.frame for joint in robot.joints), robot.tool]
     spine = np.array([frames.position(robot.base, name, robot.base) for name in names])
     artists += ax.plot(spine[:, 0], spine[:, 2], color=INK, lw=2, alpha=alpha, zorder=3)

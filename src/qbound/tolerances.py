@@ -46,3 +46,9 @@ QUADRATURE: Final = 1e-13
 
 Gauss-Legendre gains all its digits at once when the integrand is analytic, as it is between
 critical values; near-critical ones need more nodes, not another method."""
+
+CONTACT: Final = 1e-14
+"""Gap of two bodies, relative to the arm about their joint, under which they touch.
+
+Conservative advancement comes closer by a fixed factor each step and ends in the rounding of the
+corners' coordinates, a few 1e-16 of the arm."""

@@ -1,0 +1,204 @@
+"""Bodies against two libraries that know nothing of this one, and points against bodies."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+
+import fcl
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from oracles import PACKAGED, frame_matrix
+
+from qbound import bodies, clearance, load_robot, paper_rule
+from qbound.region import solve, state
+from qbound.robot import Body
+
+PRINTED, MENDED, SYMMETRIC = (
+    load_robot(f"minervabot-v2{name}") for name in ("", "-mended", "-symmetric")
+)
+SQUARE = np.random.default_rng(17).uniform(-np.pi, np.pi, (4000, 2))
+
+
+@st.composite
+def outlines(draw, spread: float = 3.0) -> np.ndarray:
+    """Corners of a random convex polygon, on an ellipse, anticlockwise or clockwise."""
+    shifts = draw(st.lists(st.floats(0, 0.8), min_size=3, max_size=7))
+    angles = 2 * np.pi * (np.arange(len(shifts)) + shifts) / len(shifts)
+    centre = [draw(st.floats(-spread, spread)), draw(st.floats(-spread, spread))]
+    ring = np.stack([2 * np.cos(angles), np.sin(angles)], -1) + centre
+    return ring if draw(st.booleans()) else ring[::-1]
+
+
+# --- the gap --------------------------------------------------------------------------------------
+
+
+@given(outlines(), outlines())
+def test_a_gap_is_negative_exactly_where_two_outlines_overlap(one, other) -> None:
+    found, a, b = bodies.gap(one, other), shapely.Polygon(one), shapely.Polygon(other)
+    assume(abs(found) > 1e-9)
+    assert (found < 0) == (a.intersection(b).area > 0)
+    assert found <= a.distance(b) + 1e-12
+
+
+@given(outlines(0.4), outlines(0.4))
+def test_an_overlap_is_as_deep_as_its_shortest_way_out(one, other) -> None:
+    depth = -bodies.gap(one, other)
+    assume(depth > 0.05)
+    ways = np.radians(np.arange(0, 360, 0.5))
+    for reach, apart in ((0.99 * depth, False), (1.01 * depth, True)):
+        steps = reach * np.stack([np.cos(ways), np.sin(ways)], -1)
+        moved = shapely.polygons(other + steps[:, None])
+        overlap = shapely.area(shapely.intersection(shapely.Polygon(one), moved))
+        assert (overlap == 0).any() == apart
+
+
+def test_a_gap_is_the_same_whichever_way_round_the_corners_go() -> None:
+    one, other = (body.polygon for body in PRINTED.bodies[:2])
+    assert bodies.gap(one, other) == pytest.approx(bodies.gap(one[::-1], other), abs=1e-12)
+    assert bodies.gap(one, other) == bodies.gap(other, one)
+
+
+def test_an_outline_that_is_not_convex_is_refused() -> None:
+    dart = np.array([(0, 0), (2, 0), (0.5, 0.5), (0, 2)])
+    with pytest.raises(ValueError, match="must be convex"):
+        bodies.gap(dart, dart)
+
+
+# --- outlines in place ----------------------------------------------------------------------------
+
+
+@given(st.floats(-4, 4), st.floats(-4, 4))
+def test_an_outline_is_where_its_points_are(q1, q2) -> None:
+    """Points 7, 9, 10 and 12 are corners of link 1; 11 and 13 of link 2."""
+    frames = PRINTED.frames([q1, q2])
+    for frame, names in ((1, ("9", "7", "10", "12")), (2, ("11", None, None, "13"))):
+        placed = bodies.outline(PRINTED, PRINTED.bodies[frame], [q1, q2])
+        for corner, name in zip(placed, names, strict=True):
+            if name is not None:
+                assert corner == pytest.approx(frames.position("0", name, "0")[[0, 2]])
+
+
+def convex(outline: np.ndarray) -> fcl.Convex:
+    """A prism 2 units thick over a quadrilateral of the plane of x and z."""
+    corners = np.concatenate([np.insert(outline, 1, y, axis=1) for y in (1.0, -1.0)])
+    sides = [(4, i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
+    faces = [(4, 3, 2, 1, 0), (4, 4, 5, 6, 7), *sides]
+    return fcl.Convex(corners, len(faces), np.concatenate(faces))
+
+
+@pytest.mark.parametrize("name", ["minervabot-v2", "minervabot-v2-symmetric"])
+def test_a_collision_library_finds_the_same_overlaps(name) -> None:
+    """python-fcl decides on prisms by its own algorithm, in frames from 4 x 4 matrices."""
+    table = tomllib.loads(PACKAGED.with_stem(name).read_text(encoding="utf-8"))
+    found = bodies.gaps(load_robot(name), SQUARE)
+    shapes = {body["frame"]: convex(np.array(body["polygon"])) for body in table["body"]}
+    disagree = 0
+    for i, q in enumerate(SQUARE):
+        moved = {}
+        for frame, shape in shapes.items():
+            pose = frame_matrix(table, frame, q)
+            moved[frame] = fcl.CollisionObject(shape, fcl.Transform(pose[:3, :3], pose[:3, 3]))
+        for (a, b), gap in found.items():
+            request, result = fcl.CollisionRequest(), fcl.CollisionResult()
+            hit = fcl.collide(moved[a], moved[b], request, result) > 0
+            disagree += abs(gap[i]) > 1e-6 and hit != (gap[i] < 0)
+    assert disagree == 0
+    assert all((gap < 0).any() and (gap > 0).any() for gap in found.values())
+
+
+# --- conservative advancement ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("joint", [0, 1])
+@pytest.mark.parametrize("robot", [PRINTED, MENDED, SYMMETRIC], ids=lambda robot: robot.name)
+def test_room_ends_where_two_bodies_touch_and_no_sooner(robot, joint) -> None:
+    low, high = bodies.room(robot, joint)
+    pair = (robot.joints[joint].parent, robot.joints[joint].frame)
+
+    def apart(values):
+        q = np.tile(robot.home, (len(values), 1))
+        q[:, joint] = values
+        return bodies.gaps(robot, q)[pair]
+
+    assert np.abs(apart(np.array([low, high]))).max() < 1e-11
+    assert (apart(np.linspace(low, high, 5001)[1:-1]) > 0).all()
+    assert (apart(np.array([low - 1e-6, high + 1e-6])) < 0).all()
+
+
+def test_room_of_a_slide_is_the_distance_between_the_bodies() -> None:
+    box = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    slide = replace(
+        PRINTED.joints[0], kind="prismatic", axis=np.array([1.0, 0, 0]), origin=np.zeros(3)
+    )
+    robot = replace(
+        PRINTED, joints=(replace(slide, limits=(-5.0, 5.0)),), home=np.zeros(1), points=(),
+        bodies=(Body("0", box), Body("1", box + np.array([2.0, 0.5]))),
+    )  # fmt: skip
+    assert bodies.room(robot, 0) == pytest.approx((-1.0, 5.0), abs=1e-12)
+
+
+def test_room_is_a_full_turn_to_either_side_where_nothing_is_in_the_way() -> None:
+    far = replace(PRINTED.bodies[0], polygon=PRINTED.bodies[0].polygon - [0, 500])
+    low, high = bodies.room(replace(PRINTED, bodies=(far, *PRINTED.bodies[1:])), 0)
+    assert (low, high) == pytest.approx((-2 * np.pi, 2 * np.pi))
+
+
+def test_room_needs_both_bodies() -> None:
+    with pytest.raises(ValueError, match="no body in frame '2'"):
+        bodies.room(replace(PRINTED, bodies=PRINTED.bodies[:2]), 1)
+
+
+# --- points against bodies ------------------------------------------------------------------------
+
+
+def region_of_bodies(robot):
+    """Joint values at which neighbouring bodies stay apart and the tool above its limit."""
+    rooms = [bodies.room(robot, joint) for joint in (0, 1)]
+    return solve(state(robot, [robot.boundary("B7")], rooms, [("-", "+")] * 2), robot.home)
+
+
+def test_on_the_symmetric_robot_points_and_bodies_leave_the_same_region() -> None:
+    """Departure: the paper never compares its points with bodies."""
+    box = paper_rule.box(SYMMETRIC)
+    rooms = np.array([bodies.room(SYMMETRIC, joint) for joint in (0, 1)])
+    assert rooms == pytest.approx(np.stack([box.lower, box.upper], -1), abs=1e-12)
+    points = solve(paper_rule.problem(SYMMETRIC), SYMMETRIC.home)
+    assert region_of_bodies(SYMMETRIC).area == pytest.approx(points.area, abs=1e-12)
+
+
+def test_with_the_printed_offsets_the_points_only_lose_a_strip() -> None:
+    box = paper_rule.box(PRINTED)
+    rooms = np.array([bodies.room(PRINTED, joint) for joint in (0, 1)])
+    assert (rooms[:, 0] <= box.lower + 1e-12).all()
+    assert (rooms[:, 1] >= box.upper).all()
+    lost = region_of_bodies(PRINTED).area - solve(paper_rule.problem(PRINTED), PRINTED.home).area
+    by_grid = SQUARE[free_bodies(PRINTED, SQUARE) & ~paper_rule.feasible(PRINTED, SQUARE)]
+    assert 0 < lost < 0.12
+    assert len(by_grid) / len(SQUARE) * (2 * np.pi) ** 2 == pytest.approx(lost, abs=0.08)
+
+
+def free_bodies(robot, q):
+    clear = np.all([gap > 0 for gap in bodies.gaps(robot, q).values()], axis=0)
+    return clear & (clearance(robot, robot.boundary("B7"))(q) >= 0)
+
+
+def test_no_pose_that_the_papers_rule_allows_makes_bodies_overlap() -> None:
+    q = SQUARE[paper_rule.feasible(PRINTED, SQUARE)]
+    assert min(gap.min() for gap in bodies.gaps(PRINTED, q).values()) > 0
+
+
+def test_the_base_and_link_2_stay_far_apart_in_the_whole_region() -> None:
+    """A grid, and a bound on how fast the gap changes between its points, cover the region."""
+    half = np.radians(0.5)
+    lattice = np.arange(-np.pi + half, np.pi, 2 * half)
+    q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1).reshape(-1, 2)
+    box, far = paper_rule.box(PRINTED), np.hypot(25, 5.25)
+    speeds = np.array([np.hypot(15, 25.98) + far, far])  # of link 2's corners, joint by joint
+    height = clearance(PRINTED, PRINTED.boundary("B7"))(q)
+    near = (q >= box.lower - half).all(-1) & (q <= box.upper + half).all(-1)
+    near &= height >= -speeds.sum() * half
+    assert bodies.gaps(PRINTED, q[near])[("0", "2")].min() - speeds.sum() * half > 10
