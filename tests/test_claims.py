@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from qbound import paper
 from qbound.claims import judge, undetermined
 from qbound.claims.ledger import KINDS, VERDICTS, claim, identifiers
 
@@ -66,6 +67,27 @@ def test_every_expected_entry_is_on_the_list_and_no_other() -> None:
     assert len(VERDICT) == sum(len(names) for names in EXPECTED.values())
     assert tuple(EXPECTED) == KINDS
     assert set(VERDICT.values()) <= set(VERDICTS)
+
+
+# --- what the paper has ---------------------------------------------------------------------------
+
+
+def test_every_equation_of_the_paper_has_an_entry() -> None:
+    assert [n for n in identifiers() if re.fullmatch(r"E-\d+", n)] == [
+        f"E-{number}" for number in range(1, 40)
+    ]
+
+
+def test_every_bound_of_table_6_has_an_entry() -> None:
+    labels = (re.sub(r"beta_\{(\d),(\d),(\d)\}", r"B-\1.\2.\3", b) for b in paper.TABLE_6)
+    assert [n for n in identifiers() if n.startswith("B-")] == list(labels)
+    assert len(paper.TABLE_6) == 22
+
+
+@pytest.mark.parametrize(("table", "rows"), [(1, 4), (2, 6), (3, 6), (4, 3), (5, 6), (6, 11)])
+def test_every_row_of_a_table_has_an_entry(table: int, rows: int) -> None:
+    names = [f"T-{table}", *(f"T-{table}.{row}" for row in range(1, rows + 1))]
+    assert [n for n in identifiers() if re.match(rf"T-{table}(\.|$)", n)] == names
 
 
 # --- from outcome to verdict ----------------------------------------------------------------------

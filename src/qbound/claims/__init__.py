@@ -1,5 +1,5 @@
 """The ledger: a verdict on every statement of the paper, derived from a computation."""
 
-from qbound.claims.ledger import Claim, Finding, claims, entry, judge, undetermined
+from qbound.claims.ledger import Claim, Finding, claims, entry, judge, require, undetermined
 
-__all__ = ["Claim", "Finding", "claims", "entry", "judge", "undetermined"]
+__all__ = ["Claim", "Finding", "claims", "entry", "judge", "require", "undetermined"]

@@ -24,9 +24,14 @@ def robot() -> Robot:
 
 
 @cache
-def pairs() -> tuple[Pair, ...]:
-    """Return the four point pairs, B1 to B4 (Tables 3 and 4)."""
-    return tuple(b for b in robot().boundaries if isinstance(b, Pair))
+def mended() -> Robot:
+    """Return the robot with the one digit mended: x_{2,13} = 9.09 cm."""
+    return load_robot("minervabot-v2-mended")
+
+
+def pairs(of: Robot | None = None) -> tuple[Pair, ...]:
+    """Return the point pairs, of the paper's robot B1 to B4 (Tables 3 and 4)."""
+    return tuple(b for b in (of or robot()).boundaries if isinstance(b, Pair))
 
 
 @cache

@@ -22,7 +22,15 @@ Verdict = Literal[
 
 KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
-MODULES: Final = ("equations", "bounds", "tables", "figures", "sentences")
+MODULES: Final = (
+    "labels",
+    "theorem_1",
+    "theorem_2",
+    "bounds",
+    "tables",
+    "figures",
+    "sentences",
+)
 """Modules of this package whose functions are the entries, in the order of the ledger."""
 
 
@@ -152,6 +160,18 @@ def undetermined(readings: Mapping[str, bool]) -> Verdict:
     if fitting > 1:
         return "not determined by the paper"
     return judge(holds=False, under=fitting == 1)
+
+
+def require(outcome: bool, statement: str) -> None:
+    """Stop where a mended statement is not proved: it may not stand in the ledger.
+
+    Raises
+    ------
+    ArithmeticError
+        If the outcome is false.
+    """
+    if not outcome:
+        raise ArithmeticError(f"not proved: {statement}")
 
 
 def identifiers() -> tuple[str, ...]:
