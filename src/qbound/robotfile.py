@@ -25,7 +25,14 @@ from qbound.robotcheck import RobotFileError, Table, check_table
 from qbound.schema import place
 from qbound.tolerances import TANGENT
 
-__all__ = ["RobotFileError", "load_robot", "packaged_robots", "parse_robot", "save_robot"]
+__all__ = [
+    "RobotFileError",
+    "load_robot",
+    "packaged_robots",
+    "parse_robot",
+    "robot_text",
+    "save_robot",
+]
 
 ROWS = ("joint", "point", "boundary", "body")
 """The lists of a file, in the order in which they are written."""
@@ -50,7 +57,7 @@ def load_robot(source: str | Path) -> Robot:
     UserWarning
         If a pair of points has no radius and no clearance: it never bounds anything.
     """
-    text, label = _text(source)
+    text, label = robot_text(source)
     try:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
@@ -111,8 +118,8 @@ def _robot(table: Table, label: str) -> Robot:
     return robot
 
 
-def _text(source: str | Path) -> tuple[str, str]:
-    """Return the text of a file and the name to call it by."""
+def robot_text(source: str | Path) -> tuple[str, str]:
+    """Return the text of a robot file, or of a packaged one, and the name to call it by."""
     if str(source) in packaged_robots():
         name = f"{source}.toml"
         return (resources.files("qbound") / "robots" / name).read_text(encoding="utf-8"), name

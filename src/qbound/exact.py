@@ -1,0 +1,257 @@
+"""The numbers of a robot as they are written, exact: the ground of every proof.
+
+A file's decimals become rationals and its degrees rationals times pi. What cannot be rational (an
+axis that is normalised, a mount that is no quarter turn) becomes a ball that holds the true value.
+The forms that `boundary` derives from such a robot are exact too: the derivation is the one that
+floats use.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.balls import ball, pi, precision
+from qbound.boundary import clearance
+from qbound.harmonic import HarmonicForm, Kind
+from qbound.robot import HalfSpace, Joint, Pair, Robot
+from qbound.robotfile import load_robot, robot_text
+
+if TYPE_CHECKING:
+    from flint import arb
+
+Array = NDArray[Any]
+Table = Mapping[str, Any]
+
+BITS = 512
+"""Precision of what is no rational: far above that of any proof, so that it never shows."""
+
+LARGEST_EXPONENT = 400
+"""Powers of ten beyond a double's range; a number with more would need astronomical fractions."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExactProblem:
+    """Forms with exact coefficients, and the ranges of their joints as balls.
+
+    Attributes
+    ----------
+    forms : HarmonicForm, shape (m,)
+        Coefficients (dtype object) are rationals or balls.
+    names : tuple of str
+        One a form.
+    ranges : tuple of (arb, arb) or None
+        One a joint; None where it turns all the way round.
+    limits : tuple of (str, str)
+        Names of the lower and the upper end of each range.
+    """
+
+    forms: HarmonicForm
+    names: tuple[str, ...]
+    ranges: tuple[tuple[arb, arb] | None, ...]
+    limits: tuple[tuple[str, str], ...]
+
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """Kind of each joint."""
+        return self.forms.kinds
+
+    @property
+    def ends(self) -> tuple[tuple[arb, arb], ...]:
+        """Ranges as pairs of balls; a full turn starts at -pi."""
+        return tuple((-pi(), pi()) if r is None else r for r in self.ranges)
+
+
+def exact_robot(source: str | Path | Robot) -> Robot:
+    """Return a robot whose numbers are exact (dtype object); not in the paper.
+
+    Parameters
+    ----------
+    source : str, Path or Robot
+        What `load_robot` takes: each decimal of the file counts as it is written. Or a robot: each
+        of its doubles counts as the binary fraction that it is.
+
+    Raises
+    ------
+    RobotFileError
+        As `load_robot`.
+    ValueError
+        If a number has an exponent that no double could hold.
+    """
+    with precision(BITS):
+        if isinstance(source, Robot):
+            return _from_doubles(source)
+        robot = load_robot(source)  # says what is wrong with the file, if anything
+        return _from_table(robot, tomllib.loads(robot_text(source)[0], parse_float=_decimal))
+
+
+def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactProblem:
+    """State the clearance rule of an exact robot: boundaries in use, and limits (eqs. 10-12).
+
+    Parameters
+    ----------
+    robot : Robot
+        From `exact_robot`.
+    held : mapping of int to number, optional
+        Values of joints that are held, rad or length: floats or balls.
+    """
+    held = {j: ball(value) for j, value in (held or {}).items()}
+    free = [joint for j, joint in enumerate(robot.joints) if j not in held]
+    used = [boundary for boundary in robot.boundaries if boundary.used]
+    limits = tuple((f"{joint.name}.lower", f"{joint.name}.upper") for joint in free)
+    return exact_state(robot, used, [joint.limits for joint in free], limits, held)
+
+
+def exact_state(
+    robot: Robot,
+    used: Sequence[Pair | HalfSpace],
+    ranges: Sequence[Any],
+    limits: Sequence[tuple[str, str]],
+    held: Mapping[int, arb] | None = None,
+) -> ExactProblem:
+    """Gather the exact clearance forms of some boundaries within given ranges."""
+    with precision(BITS):
+        stacked = np.zeros((len(used), *(3,) * len(robot.joints)), dtype=object)
+        for i, boundary in enumerate(used):
+            stacked[i] = clearance(robot, boundary).coefficients
+        forms = HarmonicForm(stacked, robot.kinds)
+        values: Any = held
+        forms = forms.restrict(values) if held else forms
+    balls = tuple(None if r is None else (ball(r[0]), ball(r[1])) for r in ranges)
+    return ExactProblem(forms, tuple(b.name for b in used), balls, tuple(limits))
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def _decimal(text: str) -> Any:
+    """Read a decimal as a rational."""
+    from flint import fmpq
+
+    number = Decimal(text)
+    if number and abs(number.adjusted()) > LARGEST_EXPONENT:
+        raise ValueError(f"{text}: an exponent this far from 0 cannot be used in a proof")
+    return fmpq(*number.as_integer_ratio())
+
+
+def _rational(value: Any) -> Any:
+    """Return an integer or a double as the rational that it is; a rational as it is."""
+    from flint import fmpq
+
+    return value if isinstance(value, fmpq) else fmpq(*value.as_integer_ratio())
+
+
+def _rationals(numbers: Any) -> Array:
+    """Return an object array of rationals."""
+    plain = np.asarray(numbers, dtype=object)
+    return np.asarray(np.vectorize(_rational, otypes=[object])(plain))
+
+
+def _angle(value: Any, degrees: bool) -> arb:
+    """Return an angle, or a length, as a ball."""
+    return ball(_rational(value)) * pi() / 180 if degrees else ball(_rational(value))
+
+
+# --- from a robot of doubles ----------------------------------------------------------------------
+
+
+def _from_doubles(robot: Robot) -> Robot:
+    joints = tuple(
+        replace(
+            joint,
+            origin=_rationals(joint.origin),
+            mount=_rationals(joint.mount),
+            axis=_rationals(joint.axis),
+        )
+        for joint in robot.joints
+    )
+    points = tuple(
+        replace(p, at=_rationals(p.at), radius=_rational(p.radius)) for p in robot.points
+    )
+    walls = tuple(_wall(b) for b in robot.boundaries)
+    return replace(robot, joints=joints, points=points, boundaries=walls)
+
+
+def _wall(boundary: Pair | HalfSpace) -> Pair | HalfSpace:
+    if isinstance(boundary, Pair):
+        return replace(boundary, clearance=_rational(boundary.clearance))
+    normal, offset = _rationals(boundary.normal), _rational(boundary.offset)
+    return replace(boundary, normal=normal, offset=offset)
+
+
+# --- from a file ----------------------------------------------------------------------------------
+
+
+def _from_table(robot: Robot, table: Table) -> Robot:
+    """Put the numbers of a table of exact decimals into the robot that was read from it."""
+    degrees = table["angle_unit"] == "deg"
+    joints = (_joint(*pair, degrees) for pair in zip(robot.joints, table["joint"], strict=True))
+    points = (
+        replace(p, at=_rationals(row["at"]), radius=_rational(row.get("radius", 0)))
+        for p, row in zip(robot.points, table["point"], strict=True)
+    )
+    walls = map(_boundary, robot.boundaries, table.get("boundary", ()))
+    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=tuple(walls))
+
+
+def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:
+    in_degrees = degrees and joint.kind == "revolute"
+    limits: Any = row.get("limits")
+    if limits is not None:
+        limits = tuple(_angle(x, in_degrees) for x in limits)
+    return replace(
+        joint,
+        origin=_rationals(row["origin"]),
+        mount=_mount(row.get("rpy", (0, 0, 0)), degrees),
+        axis=_unit(row["axis"]),
+        limits=limits,
+    )
+
+
+def _boundary(boundary: Pair | HalfSpace, row: Table) -> Pair | HalfSpace:
+    if isinstance(boundary, Pair):
+        return replace(boundary, clearance=_rational(row.get("clearance", 0)))
+    return replace(boundary, normal=_unit(row["normal"]), offset=_rational(row["offset"]))
+
+
+def _unit(vector: Sequence[Any]) -> Array:
+    """Give a vector the length 1: in rationals where its length is one, else in balls."""
+    v = _rationals(vector)
+    square: Any = v @ v
+    whole = [abs(n) == abs(n).isqrt() ** 2 for n in (square.p, square.q)]
+    if all(whole):
+        return np.asarray(v / type(square)(square.p.isqrt(), square.q.isqrt()))
+    return np.asarray(v / ball(square).sqrt())
+
+
+def _mount(rpy: Sequence[Any], degrees: bool) -> Array:
+    """Return Rz(yaw) Ry(pitch) Rx(roll), as in URDF."""
+    matrix = _rationals(np.eye(3, dtype=int).tolist())
+    for axis, angle in zip((0, 1, 2), rpy, strict=True):
+        matrix = _turn(axis, _rational(angle), degrees) @ matrix
+    return matrix
+
+
+def _turn(axis: int, angle: Any, degrees: bool) -> Array:
+    """Return the rotation about a coordinate axis; quarter turns come out in whole numbers."""
+    from flint import arb
+
+    half_turns = angle / 180
+    s, c = arb.sin_cos_pi_fmpq(half_turns) if degrees else ball(angle).sin_cos()
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = _rationals(np.eye(3, dtype=int).tolist())
+    matrix[i, i], matrix[i, j], matrix[j, i], matrix[j, j] = map(_whole, (c, -s, s, c))
+    return matrix
+
+
+def _whole(value: arb) -> Any:
+    """Return a ball that is exactly an integer as that integer."""
+    whole: Any = value.unique_fmpz() if value.is_integer() else None
+    return value if whole is None else _rational(int(whole))

@@ -1,0 +1,62 @@
+"""The paper's rule in exact numbers: the windows of Table 6 as balls, and what cuts them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from qbound import paper_rule
+from qbound.balls import along, ball, pi, precision, turns
+from qbound.boundary import pair_vector
+from qbound.exact import BITS, ExactProblem, exact_state
+from qbound.paper_rule import Window
+from qbound.robot import HalfSpace, Robot
+
+if TYPE_CHECKING:
+    from flint import arb
+
+
+def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
+    """State the paper's rule: the box of all windows, cut by the half-spaces in use (Table 6).
+
+    Parameters
+    ----------
+    robot : Robot
+        With floats: it tells which windows there are and which turn each takes.
+    exact : Robot
+        The same robot from `exact_robot`.
+
+    Raises
+    ------
+    ValueError
+        If the paper's rule says nothing about the robot, or it is not proved which window binds.
+    """
+    stated = paper_rule.problem(robot)
+    with precision(BITS):
+        sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]
+    cuts = [b for b in exact.boundaries if isinstance(b, HalfSpace) and b.used]
+    return exact_state(exact, cuts, sides, stated.limits)
+
+
+def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
+    """Return the highest lower end and the lowest upper end of a joint's windows."""
+    own = [window for window in paper_rule.windows(robot) if window.joint == joint]
+    upper = [_upper(exact, window) for window in own]
+    lower = [end - turns(1) for end in upper]
+    low = lower[max(range(len(own)), key=lambda k: own[k].lower)]
+    high = upper[min(range(len(own)), key=lambda k: own[k].upper)]
+    home = ball(exact.home[joint])
+    if any(x > low for x in lower) or any(x < high for x in upper) or not low < home < high:
+        raise ValueError(f"joint {joint + 1}: rounding hides which window binds, or on which turn")
+    return low, high
+
+
+def _upper(exact: Robot, window: Window) -> arb:
+    """Return the root theta + alpha of a window's component, on the window's turn (eq. 39)."""
+    pair: Any = exact.boundary(window.boundary)
+    vector = pair_vector(exact, pair)[window.component - 1]
+    c0, a, b = map(ball, along(vector, window.joint, [ball(0)] * len(exact.joints)))
+    square = a * a + b * b - c0 * c0
+    if not square > 0:
+        raise ValueError(f"{window.boundary}: it is not proved that this component reaches zero")
+    root = type(a).atan2(b, a) + type(a).atan2(square.sqrt(), -c0)
+    return root + turns(round((window.upper - float(root)) / float(2 * pi())))

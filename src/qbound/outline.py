@@ -1,0 +1,376 @@
+"""The proved outline of a region: no piece of its boundary is missing, and its area is a ball.
+
+The float engine proposes loops of arcs; nothing of it is believed. A loop is cut into runs, each
+the graph of one joint over the other along one form (Theorem 2). Proved of each run: the square
+root under the graph stays positive; all other forms are positive at one point of it; no proved
+crossing lies inside it; the region is on its left. Nothing else can be boundary: a piece of
+boundary holds a crossing, or a fold, or goes round a joint and so meets a line of one joint value;
+all of these are listed, proved complete, and found on the runs.
+
+The area of a loop is the integral of q1 dq2 along its runs, by Arb's rigorous integration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.balls import ball, precision, turns
+from qbound.crossings import (
+    Balls,
+    Crossing,
+    Crossings,
+    Side,
+    crossings,
+    folds,
+    judged,
+    side_roots,
+    sides,
+)
+from qbound.exact import ExactProblem
+from qbound.harmonic import HarmonicForm
+from qbound.region import Arc, Component, Region
+from qbound.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
+
+if TYPE_CHECKING:
+    from flint import arb
+
+Floats = NDArray[np.float64]
+Anchor = tuple[int | None, Balls]
+
+BITS = 128
+"""Precision of the area: 38 digits, of which more than 30 are left."""
+
+NEAR = 1e-6
+"""Distance (rad or length) within which a proposed vertex is looked for among the proved ones."""
+
+LONGEST = 2.5
+"""Reach of a run, rad, on a joint that turns round: a point lies on it on one turn alone."""
+
+LINE = 0.14159
+"""Value of a joint that turns round, at which what goes round it is looked for: any would do."""
+
+
+class Unproved(ValueError):
+    """Something about a region could not be proved; the message says what."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outlined:
+    """A component whose boundary is proved.
+
+    Attributes
+    ----------
+    area : arb or None
+        None where the component goes round both joints along a band.
+    vertices : tuple of Crossing
+        In the order of the loops.
+    contains_home : bool
+    """
+
+    area: arb | None
+    vertices: tuple[Crossing, ...]
+    contains_home: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """All components of a region, in the order in which they were proposed; not in the paper.
+
+    Attributes
+    ----------
+    components : tuple of Outlined
+    crossings : Crossings
+        All crossings in the closed region.
+    folds : Crossings
+        All places in the closed region where a curve turns back in the first joint.
+    """
+
+    components: tuple[Outlined, ...]
+    crossings: Crossings
+    folds: Crossings
+
+    @property
+    def area(self) -> arb:
+        """Area of the whole region.
+
+        Raises
+        ------
+        ValueError
+            If a component is a band that goes round both joints at once.
+        """
+        areas = [c.area for c in self.components if c.area is not None]
+        if len(areas) < len(self.components):
+            raise ValueError("a component is a band round both joints: its area is not proved")
+        with precision(BITS):
+            total: arb = sum(areas, start=ball(0))
+        return total
+
+
+def outline(problem: ExactProblem, region: Region) -> Outline:
+    """Prove the boundary of a region that the float engine proposes, and enclose its area.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+        Of two joints.
+    region : Region
+        What `solve` found for the same problem in floats.
+
+    Raises
+    ------
+    Unproved
+        With the first thing that is not proved: curves that touch or coincide, a vertex that is
+        none, a piece of boundary that was not proposed. The region may still be right.
+    """
+    prover = _Prover(problem)
+    with precision(BITS):
+        found = [prover.component(component) for component in region.components]
+        prover.complete(len(found))
+    return Outline(tuple(found), prover.points, prover.folds)
+
+
+class _Prover:
+    """Proves loops of one problem, and keeps what the question of completeness needs."""
+
+    def __init__(self, problem: ExactProblem) -> None:
+        self.problem = problem
+        self.floats = HarmonicForm(problem.forms.coefficients.astype(float), problem.kinds)
+        self.points = crossings(problem, within=True)
+        self.folds = folds(problem, within=True)
+        self.sides = sides(problem)
+        self.runs: list[Run] = []
+        self.used: list[int] = []
+        for ends, kind in zip(problem.ranges, problem.kinds, strict=True):
+            if ends is not None and kind == "revolute" and not ends[1] - ends[0] < turns(1):
+                raise Unproved("limits as wide as a turn: a place has two names")
+
+    # --- one component --------------------------------------------------------------------------
+
+    def component(self, component: Component) -> Outlined:
+        """Prove the loops of a component."""
+        loops = [list(self._loop(loop)) for loop in component.loops]
+        for run in (run for runs in loops for run in runs):
+            self._prove(run)
+            self.runs.append(run)
+        corners = [run.ends[0] for runs in loops for run in runs if run.ends[0] is not None]
+        self.used += corners
+        area = self._area(loops, component.wraps)
+        if area is not None and not area > 0:
+            raise Unproved("the area of a component is not proved to be positive")
+        vertices = tuple(self.points.found[k] for k in corners)
+        return Outlined(area, vertices, component.contains_home)
+
+    def _area(self, loops: Sequence[Sequence[Run]], wraps: tuple[bool, bool]) -> arb | None:
+        """Return the area that loops enclose (Green).
+
+        Round the first joint it is the integral of -q2 dq1, of which q1 q2 is the difference; round
+        both it is the whole torus less the holes.
+        """
+        total = turns(1) ** 2 if all(wraps) else ball(0)
+        for runs in loops:
+            (p1, p2), (q1, q2) = runs[0].start, runs[-1].end
+            closed = (q1 - p1).contains(0) and (q2 - p2).contains(0)
+            if all(wraps) and not closed:
+                return None
+            total += sum((area_under(self.problem, run) for run in runs), start=ball(0))
+            if wraps == (True, False):
+                total -= q1 * q2 - p1 * p2
+        return total
+
+    def _loop(self, loop: Sequence[Arc]) -> Iterator[Run]:
+        """Cut a proposed loop into runs that share their ends."""
+        curves = self._curves(loop)
+        corners = [
+            self._corner(before, curve, points[0])
+            for (before, _), (curve, points) in zip([curves[-1], *curves[:-1]], curves, strict=True)
+        ]
+        last = self._turned(corners[0], curves[-1][1][-1])
+        for (curve, points), start, end in zip(curves, corners, [*corners[1:], last], strict=True):
+            yield from self._cut(curve, points, start, end)
+
+    def _curves(self, loop: Sequence[Arc]) -> list[tuple[int, Floats]]:
+        """Merge neighbouring arcs of one curve; unroll what the walk around a joint has shifted."""
+        named = [(self._number(arc), arc.points) for arc in loop]
+        first = next((i for i in range(len(named)) if named[i][0] != named[i - 1][0]), 0)
+        unrolled: list[tuple[int, Floats]] = []
+        for curve, points in named[first:] + named[:first]:
+            shift = self._shift(unrolled[-1][1][-1] - points[0]) if unrolled else 0
+            unrolled.append((curve, _dense(points) + shift))
+        return [
+            (curve, np.concatenate([points for _, points in group]))
+            for curve, group in groupby(unrolled, key=lambda item: item[0])
+        ]
+
+    def _number(self, arc: Arc) -> int:
+        """Return the number of an arc's curve: an end of a range, or a form."""
+        for k, side in enumerate(self.sides, start=len(self.problem.names)):
+            on = np.abs(arc.points[:, side.joint] - float(side.value)).max() < NEAR
+            if side.name == arc.boundary and on:
+                return k
+        return self.problem.names.index(arc.boundary)
+
+    def _shift(self, gap: Floats) -> Floats:
+        """Return the full turns next to a gap, on joints that turn all the way round."""
+        circles = np.array([r is None for r in self.problem.ranges])
+        return np.where(circles, 2 * np.pi * np.round(gap / (2 * np.pi)), 0.0)
+
+    def _corner(self, before: int, after: int, place: Floats) -> Anchor:
+        """Return the proved crossing at a proposed vertex, or any point of a loop without one."""
+        if before == after:
+            q = self._point(after, self._flat(after, place), None, place)
+            return None, q
+        for k, crossing in enumerate(self.points.found):
+            if set(crossing.curves) == {before, after}:
+                index, q = self._turned((k, crossing.q), place)
+                if max(abs(float(x) - y) for x, y in zip(q, place, strict=True)) < NEAR:
+                    return index, q
+        names = " and ".join(self._name(curve) for curve in (before, after))
+        raise Unproved(f"no crossing of {names} is proved near ({place[0]:.6g}, {place[1]:.6g})")
+
+    def _turned(self, anchor: Anchor, place: Floats) -> Anchor:
+        """Shift a point by full turns next to a place."""
+        index, q = anchor
+        shift = self._shift(place - np.array([float(x) for x in q])) / (2 * np.pi)
+        return index, (q[0] + turns(round(shift[0])), q[1] + turns(round(shift[1])))
+
+    def _name(self, curve: int) -> str:
+        m = len(self.problem.names)
+        return self.problem.names[curve] if curve < m else self.sides[curve - m].name
+
+    # --- runs -----------------------------------------------------------------------------------
+
+    def _flat(self, curve: int, place: Floats) -> int:
+        """Return the joint over which a curve is the flatter graph at a place."""
+        if curve >= len(self.problem.names):
+            return 1 - self.sides[curve - len(self.problem.names)].joint
+        g = np.abs(self.floats[curve].gradient(place))
+        return 0 if g[1] >= g[0] else 1
+
+    def _cut(self, curve: int, points: Floats, start: Anchor, end: Anchor) -> Iterator[Run]:
+        """Cut a curve where the joint over which it is a graph has to change."""
+        joint, first = self._flat(curve, points[0]), 0
+        for k in range(1, len(points) - 1):
+            steep = self._steep(curve, joint, points[k])
+            far = abs(points[k, joint] - points[first, joint]) > LONGEST
+            if steep or (far and self.problem.ranges[joint] is None):
+                q = self._point(curve, joint, start[1], points[k])
+                yield self._run(curve, joint, start, (None, q), points[first:k])
+                joint, start, first = 1 - joint if steep else joint, (None, q), k
+        yield self._run(curve, joint, start, end, points[first:])
+
+    def _steep(self, curve: int, joint: int, place: Floats) -> bool:
+        """Tell whether a curve is clearly steeper than a diagonal over a joint."""
+        if curve >= len(self.problem.names):
+            return False
+        g = np.abs(self.floats[curve].gradient(place))
+        return bool(g[1 - joint] < 0.6 * g[joint])
+
+    def _point(self, curve: int, joint: int, start: Balls | None, place: Floats) -> Balls:
+        """Return the point of a curve at a place's value of one joint, on the root of `start`."""
+        sign = 0
+        if curve < len(self.problem.names):
+            near = start or (ball(place[0]), ball(place[1]))
+            sign = sign_along(self.problem, curve, 1 - joint, near)
+        q = root_near(self.problem, curve, joint, sign, place.tolist())
+        if q is None:
+            raise Unproved(f"no point of {self._name(curve)} near ({place[0]:.6g}, {place[1]:.6g})")
+        return q
+
+    def _run(self, curve: int, joint: int, start: Anchor, end: Anchor, points: Floats) -> Run:
+        ends, sign = (start[1], end[1]), 0
+        if curve < len(self.problem.names):
+            one, other = (sign_along(self.problem, curve, 1 - joint, q) for q in ends)
+            sign = one if one == other else 0
+            if not sign:
+                raise Unproved(f"{self._name(curve)}: the two ends of a run are on no one graph")
+        t = sum(float(q[joint]) for q in ends) / 2
+        middle = points[np.abs(points[:, joint] - t).argmin()].copy()
+        middle[joint] = t
+        point = self._point(curve, joint, start[1], middle)
+        run = Run(curve, joint, *ends, (start[0], end[0]), sign, point)
+        a, b, c = (q[joint] for q in (ends[0], point, ends[1]))
+        if not (a < b < c or a > b > c):
+            raise Unproved(f"{self._name(curve)}: a run is too short to tell its direction")
+        return run
+
+    def _prove(self, run: Run) -> None:
+        """Prove that a run is boundary from end to end, the region on its left."""
+        name, problem = self._name(run.curve), self.problem
+        if run.sign and not Curve(problem, run).is_graph():
+            raise Unproved(f"{name}: a run is not proved to be a graph")
+        if judged(problem, run.middle, (name, name), (run.curve,)).others != "positive":
+            raise Unproved(f"{name}: a run is not proved to be feasible")
+        if not on_the_left(problem, run):
+            raise Unproved(f"{name}: the region is not on the left of a run")
+        for k, crossing in enumerate(self.points.found):
+            apart = k in run.ends or run.curve not in crossing.curves
+            if not apart and lies_on(problem, run, crossing.q) is not False:
+                raise Unproved(f"{' and '.join(crossing.names)} may cross inside a run")
+
+    # --- nothing else -----------------------------------------------------------------------------
+
+    def complete(self, count: int) -> None:
+        """Prove that every piece of boundary lies on the runs.
+
+        Where there is none at all, one point decides for all.
+        """
+        if not self.runs:
+            middle = [sum(ends, start=ball(0)) / 2 + ball(LINE) for ends in self.problem.ends]
+            word = judged(self.problem, (middle[0], middle[1]), ("", ""), ()).others
+            if word != ("positive" if count else "negative"):
+                raise Unproved(f"{count} components without a boundary are proposed")
+        for points in (self.points, self.folds):
+            hidden = [" and ".join(c.names) for c in points.found if c.others == "undecided"]
+            if points.undecided or hidden:
+                raise Unproved(f"not proved complete: {', '.join([*points.undecided, *hidden])}")
+        feasible = [k for k, c in enumerate(self.points.found) if c.others == "positive"]
+        if sorted(self.used) != feasible:
+            raise Unproved(f"{len(self.used)} vertices are proposed, {len(feasible)} are proved")
+        for fold in self.folds.feasible:
+            self._known(fold.curves[0], fold.q)
+        for joint, ends in enumerate(self.problem.ranges):
+            if ends is None:
+                self._line(Side(joint, ball(LINE), f"q{joint + 1} = {LINE}"))
+
+    def _line(self, side: Side) -> None:
+        """Prove that every feasible zero on a line of one joint value lies on a run."""
+        m = len(self.problem.names)
+        for i, name in enumerate(self.problem.names):
+            roots = side_roots(self.problem, i, side)
+            if roots is None:
+                raise Unproved(f"{name}: its zeros on the line {side.name} are not proved simple")
+            for q in roots:
+                self._known_if_feasible(i, q)
+        for k, other in enumerate(self.sides, start=m):
+            if other.joint != side.joint:
+                q = (side.value, other.value) if side.joint == 0 else (other.value, side.value)
+                self._known_if_feasible(k, q)
+
+    def _known_if_feasible(self, curve: int, q: Balls) -> None:
+        word = judged(self.problem, q, ("", ""), (curve,)).others
+        if word == "undecided":
+            raise Unproved(f"{self._name(curve)}: a point on a line is on two boundaries")
+        if word == "positive":
+            self._known(curve, q)
+
+    def _known(self, curve: int, q: Balls) -> None:
+        """Prove that a point of the boundary lies on a run."""
+        if not any(r.curve == curve and lies_on(self.problem, r, q) for r in self.runs):
+            place = ", ".join(f"{float(x):.6g}" for x in q)
+            raise Unproved(f"{self._name(curve)}: a piece of boundary at ({place}) is not proposed")
+
+
+def _dense(points: Floats) -> Floats:
+    """Put places into the long legs of a polyline: they guide the search for points of a curve."""
+    legs = np.ceil(np.abs(np.diff(points, axis=0)).max(axis=1)).clip(1, 16).astype(int)
+    pieces = [
+        a + (b - a) * np.arange(n)[:, None] / n
+        for a, b, n in zip(points[:-1], points[1:], legs, strict=True)
+    ]
+    return np.concatenate([*pieces, points[-1:]])

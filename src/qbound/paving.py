@@ -1,0 +1,198 @@
+"""Certified pavings: cells proved feasible, cells proved infeasible, and what is undecided.
+
+A cell is feasible where every form is positive all over it, infeasible where one form is negative
+all over it. The region lies between the inner paving (feasible cells) and the outer one (feasible
+and undecided cells); the undecided volume is a number, not a hope. Any number of joints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.balls import below, precision
+from qbound.dyadic import BITS, DEEPEST, Cells, Room
+from qbound.exact import ExactProblem
+
+if TYPE_CHECKING:
+    from flint import arb
+
+MOST_CELLS = 2_000_000
+"""Undecided cells at which a paving stops on its own: about a gigabyte of bounds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paving:
+    """Cells that fill the whole range of every joint without overlap; not in the paper.
+
+    Attributes
+    ----------
+    problem : ExactProblem
+    room : Room
+    feasible, infeasible : tuple of Cells
+        One entry a size. Every form is positive on every closed feasible cell; on every closed
+        infeasible cell some form is negative throughout.
+    undecided : Cells
+        The cells about which nothing is claimed.
+    """
+
+    problem: ExactProblem
+    room: Room
+    feasible: tuple[Cells, ...]
+    infeasible: tuple[Cells, ...]
+    undecided: Cells
+
+    @property
+    def level(self) -> int:
+        """How often the undecided cells have been halved."""
+        return self.undecided.level
+
+    @property
+    def cells(self) -> int:
+        """Count of all cells."""
+        return sum(map(len, (*self.feasible, *self.infeasible, self.undecided)))
+
+    @property
+    def inner_fraction(self) -> Fraction:
+        """Part of the range that is proved feasible: exact."""
+        return sum(map(_fraction, self.feasible), Fraction(0))
+
+    @property
+    def undecided_fraction(self) -> Fraction:
+        """Part of the range that is undecided: exact."""
+        return _fraction(self.undecided)
+
+    @property
+    def bracket(self) -> tuple[arb, arb]:
+        """Inner and outer volume as balls: the region's volume lies between them."""
+        inner, undecided = self.inner_fraction, self.undecided_fraction
+        return self.volume(inner), self.volume(inner + undecided)
+
+    def volume(self, part: Fraction) -> arb:
+        """Return a part of the range in the product of the joints' units, as a ball."""
+        from flint import fmpq
+
+        with precision(BITS):
+            whole = prod((high - low for low, high in self.room.ends), start=_one())
+            return whole * fmpq(part.numerator, part.denominator)
+
+    def refined(self) -> Paving:
+        """Halve every undecided cell and sort the halves.
+
+        Raises
+        ------
+        ValueError
+            If the cells are too small to be told apart in a 64-bit index.
+        """
+        if self.level >= DEEPEST:
+            raise ValueError(f"cells have been halved {DEEPEST} times: no smaller ones")
+        return _sorted(self, self.undecided.halves())
+
+    def cells_of(self, q: ArrayLike) -> list[tuple[str, Cells]]:
+        """Return what the paving says of a configuration: "feasible", "infeasible" or "undecided".
+
+        A configuration on the border of cells lies in several: each is returned, with its cells.
+
+        Parameters
+        ----------
+        q : array_like, shape (n,)
+            rad or length; each double counts as it is. A joint that turns all the way round takes
+            any turn.
+        """
+        groups = [("feasible", c) for c in self.feasible]
+        groups += [("infeasible", c) for c in self.infeasible]
+        groups += [("undecided", self.undecided)]
+        found = [(word, cells[self.holding(cells, q)]) for word, cells in groups]
+        return [(word, cells) for word, cells in found if len(cells)]
+
+    def holding(self, cells: Cells, q: ArrayLike) -> NDArray[np.bool_]:
+        """Tell which closed cells may hold a configuration; all that do are among them."""
+        inside = np.ones(len(cells), dtype=bool)
+        for j, value in enumerate(np.asarray(q, dtype=float).tolist()):
+            low, high = self._places(j, value, int(cells.bits[j]))
+            index, size = cells.index[:, j], 2 ** int(cells.bits[j])
+            if self.problem.ranges[j] is None:
+                inside &= np.isin(index, np.arange(low, high + 1) % size)
+            else:
+                inside &= (index >= low) & (index <= high)
+        return inside
+
+    def _places(self, joint: int, value: float, bits: int) -> tuple[int, int]:
+        """Return the first and the last index of cells that may hold a joint value."""
+        from flint import arb
+
+        with precision(BITS):
+            low, high = self.room.ends[joint]
+            place = (arb(value) - low) / (high - low) * 2**bits
+            first, last = place.lower().ceil() - 1, place.upper().floor()
+            return int(first.unique_fmpz()), int(last.unique_fmpz())
+
+
+def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Paving:
+    """Halve undecided cells until they fill no more than a part of the range.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+        Of any number of joints.
+    tolerance : float
+        Largest undecided part of the range.
+    most : int
+        Undecided cells at which to stop early; `Paving.undecided_fraction` tells.
+
+    Raises
+    ------
+    ValueError
+        If the tolerance is not positive.
+    """
+    if not tolerance > 0:
+        raise ValueError(f"a tolerance of {tolerance} cannot be met; it has to be positive")
+    paving = start(problem)
+    while paving.undecided_fraction > tolerance and 2 * len(paving.undecided) <= most:
+        if paving.level >= DEEPEST:
+            break
+        paving = paving.refined()
+    return paving
+
+
+def start(problem: ExactProblem) -> Paving:
+    """Return the paving of one cell: the whole range."""
+    with precision(BITS):
+        room = Room(problem.forms, problem.ends)
+        for (low, high), names in zip(room.ends, problem.limits, strict=True):
+            if not below(high - low) > 0:
+                raise ValueError(f"{names[0]} and {names[1]}: the range is empty")
+    empty = Paving(problem, room, (), (), room.whole())
+    return _sorted(empty, room.whole())
+
+
+def _sorted(paving: Paving, cells: Cells) -> Paving:
+    """Sort new cells into a paving; they replace its undecided ones."""
+    low, high = paving.room.bounds(cells)
+    feasible, infeasible = (low > 0).all(axis=1), (high < 0).any(axis=1)
+    return Paving(
+        paving.problem,
+        paving.room,
+        (*paving.feasible, *_some(cells[feasible])),
+        (*paving.infeasible, *_some(cells[infeasible])),
+        cells[~feasible & ~infeasible],
+    )
+
+
+def _some(cells: Cells) -> tuple[Cells, ...]:
+    return (cells,) if len(cells) else ()
+
+
+def _fraction(cells: Cells) -> Fraction:
+    return Fraction(len(cells), 2**cells.level)
+
+
+def _one() -> arb:
+    from flint import arb
+
+    return arb(1)

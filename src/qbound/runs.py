@@ -1,0 +1,222 @@
+"""A run: a piece of a curve of two joints that is a graph of one joint over the other, in balls.
+
+With joint j held at t a form is c0 + c1 cos v + c2 sin v (or c0 + c1 v + c2 v^2) in the other
+joint. Its derivative along v at a root is w = +- sqrt(P), with P = c1^2 + c2^2 - c0^2 (or c1^2 - 4
+c0 c2), and (cos v, sin v), or v, follows from w without an inverse function. So the graph, its
+slope and its integral are analytic as long as P is positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qbound.balls import along, ball, derivative, factor, interval, turns, values
+from qbound.crossings import Balls, line_roots, sides
+from qbound.exact import ExactProblem
+
+if TYPE_CHECKING:
+    from flint import arb
+
+NARROWEST = 40
+"""Halvings of a run after which it is not proved that its curve goes on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A piece of boundary that is a graph over one joint; not in the paper.
+
+    Attributes
+    ----------
+    curve : int
+        Number of the form; forms first, then the ends of ranges.
+    joint : int
+        The joint over which it is a graph.
+    start, end : (arb, arb)
+        Its ends, unrolled.
+    ends : tuple of (int or None)
+        Index of the crossing at each end; None where the curve merely changes its joint.
+    sign : int
+        Sign of the form's derivative along the other joint: it picks the root. 0 for an end of a
+        range.
+    middle : (arb, arb)
+        A point between the ends.
+    """
+
+    curve: int
+    joint: int
+    start: Balls
+    end: Balls
+    ends: tuple[int | None, int | None]
+    sign: int
+    middle: Balls
+
+    @property
+    def forwards(self) -> bool:
+        """Whether the joint grows along the run."""
+        return bool(self.end[self.joint] > self.start[self.joint])
+
+    @property
+    def reach(self) -> tuple[arb, arb]:
+        """Lower and upper value of the joint."""
+        ends = self.start[self.joint], self.end[self.joint]
+        return ends if self.forwards else ends[::-1]
+
+
+class Curve:
+    """The form of a run along its other joint, in plain lists: an integral asks for it often."""
+
+    def __init__(self, problem: ExactProblem, run: Run) -> None:
+        table = problem.forms.coefficients[run.curve]
+        table = table if run.joint == 0 else table.T
+        self.table = [[ball(c) for c in row] for row in table]
+        self.base, self.lift = problem.kinds[run.joint], problem.kinds[1 - run.joint]
+        self.run = run
+        low, high = run.reach
+        c1 = self.along((low + high) / 2)[1]
+        # The stable one of two formulas for a root: where c1 and w add up rather than cancel.
+        self.adds_up = self.lift == "prismatic" and c1.mid() * run.sign > 0
+
+    def along(self, t: Any) -> list[Any]:
+        """Return (c0, c1, c2) along the other joint at t, a real or a complex ball."""
+        one, two = factor(self.base, t)[1:]
+        return [a + b * one + c * two for a, b, c in zip(*self.table, strict=True)]
+
+    def slopes(self, t: Any) -> list[Any]:
+        """Return the derivatives of (c0, c1, c2) by t."""
+        _, one, two = factor(self.base, t)
+        if self.base == "revolute":
+            return [c * one - b * two for _, b, c in zip(*self.table, strict=True)]
+        return [b + 2 * c * one for _, b, c in zip(*self.table, strict=True)]
+
+    def square(self, c: Sequence[Any]) -> Any:
+        """Return P: the squared derivative of the form along the other joint at its roots."""
+        c0, c1, c2 = c
+        return c1 * c1 + (c2 * c2 - c0 * c0 if self.lift == "revolute" else -4 * c0 * c2)
+
+    def is_graph(self) -> bool:
+        """Prove that P is positive all along the run, by halving it."""
+        pieces = [(*self.run.reach, 0)]
+        while pieces:
+            low, high, depth = pieces.pop()
+            if not self.square(self.along(interval(low, high))) > 0:
+                if depth == NARROWEST:
+                    return False
+                middle = ball(((low + high) / 2).mid())
+                pieces += [(low, middle, depth + 1), (middle, high, depth + 1)]
+        return True
+
+    def factors(self, c: Sequence[Any], w: Any) -> list[Any]:
+        """Return (1, cos v, sin v), or (1, v, v^2), of the root whose derivative is w."""
+        c0, c1, c2 = c
+        if self.lift == "revolute":
+            d2 = c1 * c1 + c2 * c2
+            return [1, (w * c2 - c0 * c1) / d2, -(c0 * c2 + w * c1) / d2]
+        v = -2 * c0 / (c1 + w) if self.adds_up else (w - c1) / (2 * c2)
+        return [1, v, v * v]
+
+    def slope_at(self, t: Any, analytic: bool) -> Any:
+        """Return the derivative of the graph at a complex ball; not finite where not analytic."""
+        c = self.along(t)
+        w = self.run.sign * self.square(c).sqrt(analytic=analytic)
+        pairs = zip(self.slopes(t), self.factors(c, w), strict=True)
+        return -sum(x * y for x, y in pairs) / w
+
+
+def area_under(problem: ExactProblem, run: Run) -> arb:
+    """Return the integral of q1 dq2 along a run (Green), as a ball."""
+    from flint import acb
+
+    (p1, p2), (q1, q2) = run.start, run.end
+    if run.curve >= len(problem.names):  # an end of a range: one joint stands still
+        return p1 * (q2 - p2) if run.joint == 1 else ball(0)
+    curve = Curve(problem, run)
+
+    def integrand(t: Any, analytic: bool) -> Any:
+        return t * curve.slope_at(t, analytic)
+
+    total: arb = acb.integral(integrand, run.start[run.joint], run.end[run.joint]).real
+    return total if run.joint == 0 else q1 * q2 - p1 * p2 - total
+
+
+def on_the_left(problem: ExactProblem, run: Run) -> bool:
+    """Tell whether the form is positive, or the range's inside lies, on the left of the run."""
+    sign = run.sign if run.curve < len(problem.names) else _inward(problem, run)
+    return (sign > 0) == (run.forwards == (run.joint == 0))
+
+
+def _inward(problem: ExactProblem, run: Run) -> int:
+    """Return +1 at the lower end of a range, -1 at the upper."""
+    side = sides(problem)[run.curve - len(problem.names)]
+    ends = problem.ranges[side.joint]
+    return 1 if ends is not None and side.value is ends[0] else -1
+
+
+def root_near(
+    problem: ExactProblem, curve: int, joint: int, sign: int, place: Sequence[float]
+) -> Balls | None:
+    """Return the point of a curve with the place's value of one joint, on the root of that sign."""
+    t, other = ball(place[joint]), 1 - joint
+    if curve >= len(problem.names):
+        v: arb | None = sides(problem)[curve - len(problem.names)].value
+    else:
+        form = problem.forms[[curve]]
+        c = [ball(x) for x in along(form, other, [t, t])[0]]
+        roots = line_roots(problem.kinds[other], c) or []
+        v = next(
+            (r for r in roots if _sign(problem, curve, other, _pair(joint, t, r)) == sign), None
+        )
+        if v is not None and problem.kinds[other] == "revolute":
+            v = v + turns(round((place[other] - float(v)) / (2 * np.pi)))
+    return None if v is None else _pair(joint, t, v)
+
+
+def sign_along(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
+    """Return the sign of a form's derivative along a joint; 0 if it is not proved."""
+    return _sign(problem, curve, joint, q)
+
+
+def lies_on(problem: ExactProblem, run: Run, q: Balls) -> bool | None:
+    """Tell whether a zero of the run's form lies strictly within the run; None: not proved.
+
+    Parameters
+    ----------
+    q : (arb, arb)
+        A point at which the form vanishes, on any turn of the joints that turn all the way round.
+    """
+    low, high = run.reach
+    other = 1 - run.joint
+    found: bool | None = False
+    for k in _turns_to(problem, run, q):
+        t = q[run.joint] + turns(k)
+        if t < low or t > high:
+            continue
+        if run.curve >= len(problem.names):
+            sign = 1
+        else:
+            sign = run.sign * _sign(problem, run.curve, other, q)
+        if sign > 0 and t > low and t < high:
+            return True
+        if sign >= 0:
+            found = None
+    return found
+
+
+def _turns_to(problem: ExactProblem, run: Run, q: Balls) -> range:
+    """Return all counts of full turns that may bring a point into the reach of a run."""
+    if problem.ranges[run.joint] is not None:
+        return range(1)
+    low, high = (float((end - q[run.joint]) / turns(1)) for end in run.reach)
+    return range(int(np.floor(low)), int(np.ceil(high)) + 1)
+
+
+def _pair(joint: int, t: arb, v: arb) -> Balls:
+    return (t, v) if joint == 0 else (v, t)
+
+
+def _sign(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
+    slope = ball(values(derivative(problem.forms[[curve]], joint), q)[0])
+    return int(slope > 0) - int(slope < 0)
