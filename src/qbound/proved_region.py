@@ -1,4 +1,4 @@
-"""The proved outline of a region: no piece of its boundary is missing, and its area is a ball.
+"""A region of two joints, proved: no piece of its boundary is missing, and its area is a ball.
 
 The float engine proposes loops of arcs; nothing of it is believed. A loop is cut into runs, each
 the graph of one joint over the other along one form (Theorem 2). Proved of each run: the square
@@ -61,7 +61,7 @@ class Unproved(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Outlined:
+class ProvedComponent:
     """A component whose boundary is proved.
 
     Attributes
@@ -79,19 +79,19 @@ class Outlined:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class ProvedRegion:
     """All components of a region, in the order in which they were proposed; not in the paper.
 
     Attributes
     ----------
-    components : tuple of Outlined
+    components : tuple of ProvedComponent
     crossings : Crossings
         All crossings in the closed region.
     folds : Crossings
         All places in the closed region where a curve turns back in the first joint.
     """
 
-    components: tuple[Outlined, ...]
+    components: tuple[ProvedComponent, ...]
     crossings: Crossings
     folds: Crossings
 
@@ -112,7 +112,7 @@ class Outline:
         return total
 
 
-def outline(problem: ExactProblem, region: Region) -> Outline:
+def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
     """Prove the boundary of a region that the float engine proposes, and enclose its area.
 
     Parameters
@@ -132,7 +132,7 @@ def outline(problem: ExactProblem, region: Region) -> Outline:
     with precision(BITS):
         found = [prover.component(component) for component in region.components]
         prover.complete(len(found))
-    return Outline(tuple(found), prover.points, prover.folds)
+    return ProvedRegion(tuple(found), prover.points, prover.folds)
 
 
 class _Prover:
@@ -152,7 +152,7 @@ class _Prover:
 
     # --- one component --------------------------------------------------------------------------
 
-    def component(self, component: Component) -> Outlined:
+    def component(self, component: Component) -> ProvedComponent:
         """Prove the loops of a component."""
         loops = [list(self._loop(loop)) for loop in component.loops]
         for run in (run for runs in loops for run in runs):
@@ -164,7 +164,7 @@ class _Prover:
         if area is not None and not area > 0:
             raise Unproved("the area of a component is not proved to be positive")
         vertices = tuple(self.points.found[k] for k in corners)
-        return Outlined(area, vertices, component.contains_home)
+        return ProvedComponent(area, vertices, component.contains_home)
 
     def _area(self, loops: Sequence[Sequence[Run]], wraps: tuple[bool, bool]) -> arb | None:
         """Return the area that loops enclose (Green).
