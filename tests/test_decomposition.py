@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from qbound.cells import Complex
 from qbound.decomposition import Plane, critical_values, decompose
-from qbound.harmonic import HarmonicForm, Kind
+from qbound.harmonic import HarmonicForm, Kind, basis
 
 RR: tuple[Kind, Kind] = ("revolute", "revolute")
 RP: tuple[Kind, Kind] = ("revolute", "prismatic")
@@ -46,14 +46,18 @@ def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     return sorted(found, reverse=True)
 
 
+def values_at(plane: Plane, t, v) -> np.ndarray:
+    """Every form at paired base and lift values, shape (len(t), m)."""
+    base, lift = basis(plane.base_kind, t), basis(plane.lift_kind, v)
+    return np.einsum("ti,mij,tj->tm", base, plane.table, lift)
+
+
 def area_of(cells: Complex, k: int, n: int = 200) -> float:
     """Gauss-Legendre in the angle of t = middle + half sin(angle), which a fold cannot spoil."""
     nodes, weights = np.polynomial.legendre.leggauss(n)
-    cell = cells.cells[k]
-    start, end = cells.abscissae[cell.slab : cell.slab + 2]
+    start, end = cells.spans([k])[0]
     t = (start + end) / 2 + (end - start) / 2 * np.sin(nodes * pi / 2)
-    lower = cells.root_values(cell.lower, cell.slab, t)
-    upper = lower + TURN if cell.upper is None else cells.root_values(cell.upper, cell.slab, t)
+    lower, upper = cells.interval([k], t[None])[:, 0]
     return ((upper - lower) * np.cos(nodes * pi / 2) * weights).sum() * (end - start) * pi / 4
 
 
@@ -246,7 +250,7 @@ def order_of_roots(plane: Plane, t: float) -> list[tuple[int, int]]:
     """Form and branch of every root within the range, ascending, by sampling alone."""
     low, high = plane.lift_ends
     v = np.linspace(low, high, 6001)
-    values = plane.values(np.full(len(v), t), v)
+    values = values_at(plane, np.full(len(v), t), v)
     change = np.diff(np.sign(values), axis=0)
     where, form = np.nonzero(change)
     return [(int(m), int(np.sign(change[k, m]))) for k, m in zip(where, form, strict=True)]
@@ -300,5 +304,5 @@ def test_roots_are_zeros_of_their_forms(seed, base, kinds):
     for branch, m in product((0, 1), range(len(plane.table))):
         v = roots[branch, :, m]
         held = np.isfinite(v) & (np.abs(v) < 100)
-        values = plane.values(t[held], v[held])[:, m]
+        values = values_at(plane, t[held], v[held])[:, m]
         assert_allclose(values / (1 + v[held] ** 2), 0, atol=1e-11)

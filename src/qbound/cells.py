@@ -9,21 +9,24 @@ upper root.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.decomposition import TURN, Cell, Decomposition, Plane, Root
-from qbound.harmonic import basis
-from qbound.tolerances import POSITIVE, TANGENT, TOUCH
+from qbound.decomposition import TURN, Cell, Decomposition, Plane
+from qbound.tolerances import POSITIVE, TOUCH
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Step:
+SIDES: Final = ("lower", "upper")
+
+
+class Step(NamedTuple):
     """One piece of a boundary: along a root of a cell, or along an element of a critical line.
 
     Attributes
@@ -35,7 +38,7 @@ class Step:
         Of a vertical piece; -1 otherwise.
     """
 
-    kind: str
+    kind: Literal["lower", "upper", "up", "down"]
     cell: int
     line: int = -1
     element: int = -1
@@ -71,8 +74,9 @@ class Complex:
         self.wrapped = self.plane.base_range is None
         self.circle = self.plane.lift_range is None
         self.n_lines = len(self.abscissae) - (1 if self.wrapped else 0)
-        self.ends = [self._ends(cell) for cell in self.cells]
-        self.lines = [self._line(i) for i in range(self.n_lines)]
+        self.whole = [self.circle and cell.lower.form < 0 for cell in self.cells]
+        self.ends: list[list[list[float]]] = self._ends().tolist()
+        self.lines = self._lines()
 
     # --- places ---------------------------------------------------------------------------------
 
@@ -82,43 +86,79 @@ class Complex:
 
     def right_line(self, cell: int) -> int:
         """Return the critical line at which a cell ends; a base that turns round closes."""
-        return (
-            (self.cells[cell].slab + 1) % self.n_lines
-            if self.wrapped
-            else self.cells[cell].slab + 1
-        )
+        after = self.cells[cell].slab + 1
+        return after % self.n_lines if self.wrapped else after
 
-    def root_values(self, root: Root | None, slab: int, t: Floats) -> Floats:
-        """Evaluate a root anywhere in its closed slab, continuous up to both ends."""
-        if root is None:
-            return np.full_like(t, -math.pi)
-        if root.form < 0:
-            return np.full_like(t, self.plane.lift_ends[-1 - root.form])
-        return _root_values(self.plane, root, t, *self.abscissae[slab : slab + 2])
+    def interval(self, chosen: Sequence[int], t: Floats) -> Floats:
+        """Return lower and upper root of chosen cells, each over its own row of t; (2, k, n)."""
+        lower, upper = self._roots(chosen, t)
+        return np.stack([lower, np.maximum(lower, upper)])
 
-    def _ends(self, cell: Cell) -> Floats:
-        """Lower and upper root of a cell at its left and its right line, shape (2, 2)."""
-        t = self.abscissae[cell.slab : cell.slab + 2]
-        lower = self.root_values(cell.lower, cell.slab, t)
-        upper = lower + TURN if cell.upper is None else self.root_values(cell.upper, cell.slab, t)
+    def _roots(self, chosen: Sequence[int], t: Floats) -> Floats:
+        roots = [self.cells[k].lower for k in chosen] + [self.cells[k].upper for k in chosen]
+        return self.plane.follow(roots, np.concatenate([t, t])).reshape(2, *t.shape)
+
+    def spans(self, chosen: Sequence[int]) -> Floats:
+        """Return the base values between which chosen cells lie, shape (k, 2)."""
+        slabs = np.array([self.cells[k].slab for k in chosen], dtype=np.int64)
+        return np.stack([self.abscissae[slabs], self.abscissae[slabs + 1]], axis=-1)
+
+    def _ends(self) -> Floats:
+        """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).
+
+        There an angle may jump by a turn, and where a form vanishes on a whole fibre its roots turn
+        over: the limit from inside the slab is meant.
+        """
+        chosen = range(len(self.cells))
+        start, width = self.spans(chosen)[:, 0], np.diff(self.spans(chosen)).ravel()
+        inset = np.array([0.0, 1e-4, 2e-4, 1 - 2e-4, 1 - 1e-4])
+        t = np.column_stack([start[:, None] + width[:, None] * inset, start + width])
+        values = self._roots(chosen, t)  # (2, k, 6)
+        at, near, far = values[:, :, [0, 5]], values[:, :, [1, 4]], values[:, :, [2, 3]]
+        if self.plane.lift_kind == "revolute":
+            at = at + TURN * np.round((near - at) / TURN)
+            limit = near + np.where(np.abs(near - far) < 1, near - far, 0)
+            at = np.where(np.abs(at - near) > 1, limit, at)
+        lower, upper = at
         return np.stack([lower, np.maximum(lower, upper)], axis=-1)
 
     # --- lines ----------------------------------------------------------------------------------
 
-    def _line(self, i: int) -> Line:
-        left = [k for k in range(len(self.cells)) if self.right_line(k) == i]
-        right = [k for k in range(len(self.cells)) if self.left_line(k) == i]
-        places = [self.ends[k][1] for k in left if self.cells[k].lower or not self.circle]
-        places += [self.ends[k][0] for k in right if self.cells[k].lower or not self.circle]
-        points = _clustered(np.concatenate([np.zeros(0), *places]), self.circle)
-        line = Line(points)
+    def _lines(self) -> list[Line]:
+        left: list[list[int]] = [[] for _ in range(self.n_lines)]
+        right: list[list[int]] = [[] for _ in range(self.n_lines)]
+        for k in range(len(self.cells)):
+            left[self.right_line(k)].append(k)
+            right[self.left_line(k)].append(k)
+        lines = [self._line(*sides) for sides in zip(left, right, strict=True)]
+        self._join(lines)
+        return lines
+
+    def _line(self, left: list[int], right: list[int]) -> Line:
+        places = [self.ends[k][1] for k in left if not self.whole[k]]
+        places += [self.ends[k][0] for k in right if not self.whole[k]]
+        line = Line(_clustered(chain.from_iterable(places), self.circle))
         for e in range(self.n_elements(line)):
             middle = self._middle(line, e)
-            one, other = self._owner(left, 1, middle), self._owner(right, 0, middle)
-            line.left.append(one)
-            line.right.append(other)
-            line.joined.append(one is not None and other is not None and self._open(i, line, e))
+            line.left.append(self._owner(left, 1, middle))
+            line.right.append(self._owner(right, 0, middle))
+            line.joined.append(False)
         return line
+
+    def _join(self, lines: list[Line]) -> None:
+        """Join owners over elements on an open part of which every form is positive."""
+        shared = [
+            (i, e, *self.bounds(line, e))
+            for i, line in enumerate(lines)
+            for e in range(len(line.joined))
+            if line.left[e] is not None and line.right[e] is not None
+        ]
+        where, low, high = np.array([(i, a, b) for i, _, a, b in shared]).reshape(-1, 3).T
+        probes = low[:, None] + (high - low)[:, None] * np.array([0.29, 0.5, 0.77])
+        t = np.repeat(self.abscissae[where.astype(np.int64)], 3)
+        free = self.plane.positive(t, probes.ravel(), POSITIVE).reshape(-1, 3)
+        for (i, e, *_), joined in zip(shared, free, strict=True):
+            lines[i].joined[e] = bool(joined.any())
 
     def n_elements(self, line: Line) -> int:
         """Elements between points; a circle closes, and without points is one element."""
@@ -141,16 +181,9 @@ class Complex:
         """Full turns that bring v into a cell's interval at its left (0) or right (1) line."""
         low, high = self.ends[cell][side]
         turns = math.ceil((low - v) / TURN) if self.circle else 0
-        if self.cells[cell].upper is None:  # a full circle holds every v
+        if self.whole[cell]:  # a full circle holds every v
             return turns
         return turns if low < v + TURN * turns < high else None
-
-    def _open(self, i: int, line: Line, e: int) -> bool:
-        """Tell whether every form is positive on an open part of the element."""
-        low, high = self.bounds(line, e)
-        v = low + (high - low) * np.array([0.29, 0.5, 0.77])
-        values = self.plane.values(np.full(3, self.abscissae[i]), v)
-        return bool((values > POSITIVE).all(axis=1).any())
 
     # --- components -----------------------------------------------------------------------------
 
@@ -184,21 +217,21 @@ class Complex:
         queue = [start]
         while queue:
             a = queue.pop()
-            lift_goes_round |= self.cells[a].upper is None
+            lift_goes_round |= self.whole[a]
             for b, base, lift in neighbours[a]:
                 sheet = sheets[a][0] + base, sheets[a][1] + lift
                 if b not in sheets:
                     sheets[b] = sheet
                     queue.append(b)
                 base_goes_round |= sheets[b][0] != sheet[0]
-                lift_goes_round |= sheets[b][1] != sheet[1] and self.cells[b].upper is not None
+                lift_goes_round |= sheets[b][1] != sheet[1] and not self.whole[b]
         return sheets, (base_goes_round, lift_goes_round)
 
     # --- boundaries -----------------------------------------------------------------------------
 
-    def loops(self, cells: set[int]) -> list[list[Step]]:
+    def loops(self, cells: Collection[int]) -> list[list[Step]]:
         """Return the closed walks that bound a component, the component on the left."""
-        steps = [Step(kind, k) for k in cells for kind in ("lower", "upper") if self.cells[k].lower]
+        steps = [Step(kind, k) for k in cells for kind in SIDES if not self.whole[k]]
         for i, line in enumerate(self.lines):
             for e, joined in enumerate(line.joined):
                 if not joined and line.left[e] in cells:
@@ -232,13 +265,13 @@ class Complex:
         if step.kind == "up":
             top = (step.element + 1) % n
             if (
-                self.cells[step.cell].lower
+                not self.whole[step.cell]
                 and self._point(step.line, self.ends[step.cell][1][1]) == top
             ):
                 return Step("upper", step.cell)
             return self._turn_right_side(step.line, top)
         if (
-            self.cells[step.cell].lower
+            not self.whole[step.cell]
             and self._point(step.line, self.ends[step.cell][0][0]) == step.element
         ):
             return Step("lower", step.cell)
@@ -264,7 +297,7 @@ class Complex:
         b = line.right[p]
         if not line.joined[p] or b is None:
             return Step("up", line.left[p] or 0, i, p)
-        if self.cells[b].lower and self._point(i, self.ends[b][0][0]) == p:
+        if not self.whole[b] and self._point(i, self.ends[b][0][0]) == p:
             return Step("lower", b)
         if not line.joined[below]:
             return Step("down", b, i, below)
@@ -276,7 +309,7 @@ class Complex:
         a = line.left[below]
         if not line.joined[below] or a is None:
             return Step("down", line.right[below] or 0, i, below)
-        if self.cells[a].lower and self._point(i, self.ends[a][1][1]) == p:
+        if not self.whole[a] and self._point(i, self.ends[a][1][1]) == p:
             return Step("upper", a)
         if not line.joined[p]:
             return Step("up", a, i, p)
@@ -284,63 +317,20 @@ class Complex:
 
     def _point(self, i: int, v: float) -> int:
         """Index of the point of a line nearest to v, on the circle where the lift is one."""
-        gaps = np.asarray(self.lines[i].points) - v
-        if self.circle:
-            gaps = (gaps + math.pi) % TURN - math.pi
-        return int(np.abs(gaps).argmin())
+        points = self.lines[i].points
+        if not self.circle:
+            return min(range(len(points)), key=lambda p: abs(points[p] - v))
+        return min(range(len(points)), key=lambda p: abs(math.remainder(points[p] - v, TURN)))
 
 
-def _root_values(plane: Plane, root: Root, t: Floats, start: float, end: float) -> Floats:
-    values = _raw_root(plane, root, t)
-    at_end = (t <= start) | (t >= end)
-    if plane.lift_kind == "revolute" and at_end.any():  # atan2 jumps at most there
-        values[at_end] = _end_values(plane, root, t[at_end], start, end, values[at_end])
-    return values
-
-
-def _end_values(
-    plane: Plane, root: Root, t: Floats, start: float, end: float, values: Floats
-) -> Floats:
-    """Bring values at the ends of a slab to the turn, and to the limit, seen from inside."""
-    near, far = (
-        _raw_root(plane, root, np.clip(t, start + inset, end - inset))
-        for inset in (1e-4 * (end - start), 2e-4 * (end - start))
-    )
-    values = values + TURN * np.round((near - values) / TURN)
-    # Where a form vanishes on a whole fibre its roots turn over: theirs is the limit from inside.
-    turned = np.abs(values - near) > 1
-    limit = near + np.where(np.abs(near - far) < 1, near - far, 0)
-    return np.where(turned, limit, values)
-
-
-def _raw_root(plane: Plane, root: Root, t: Floats) -> Floats:
-    c0, c1, c2 = (basis(plane.base_kind, t) @ plane.table[root.form]).T
-    if plane.lift_kind == "revolute":
-        d = np.hypot(c1, c2)
-        ratio = np.divide(-c0, d, out=np.zeros_like(d), where=d > 0)
-        ratio = np.where(np.abs(np.abs(ratio) - 1) <= TANGENT, np.sign(ratio), ratio)
-        alpha = np.arccos(np.clip(ratio, -1, 1))
-        return np.asarray(np.arctan2(c2, c1) + root.branch * alpha + TURN * root.turns)
-    low, high = plane.lift_ends
-    with np.errstate(divide="ignore", invalid="ignore"):
-        spread = np.sqrt(np.maximum(c1 * c1 - 4 * c0 * c2, 0))
-        half = -(c1 + np.copysign(spread, c1)) / 2
-        pair = np.sort(np.stack([half / c2, c0 / half]), axis=0)[(root.branch + 1) // 2]
-        single = -c0 / c1
-    affine = not plane.table[root.form, :, 2].any()
-    return np.asarray(np.clip(np.nan_to_num(single if affine else pair), low, high))
-
-
-def _clustered(values: Floats, circle: bool) -> list[float]:
+def _clustered(values: Iterable[float], circle: bool) -> list[float]:
     """Sort values and keep one of each group closer than TOUCH; on a circle within (-pi, pi]."""
-    if circle:
-        values = math.pi - (math.pi - values) % TURN
-    values = np.sort(values)
-    kept = [
-        float(v)
-        for v, gap in zip(values, np.diff(values, prepend=-np.inf), strict=True)
-        if gap > TOUCH
-    ]
+    kept: list[float] = []
+    before = -math.inf
+    for v in sorted(math.pi - (math.pi - v) % TURN for v in values) if circle else sorted(values):
+        if v - before > TOUCH:
+            kept.append(v)
+        before = v
     if circle and len(kept) > 1 and kept[0] + TURN - kept[-1] <= TOUCH:
         kept.pop()
     return kept

@@ -70,19 +70,26 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
     a, b, c = (np.asarray(x, dtype=float) for x in np.broadcast_arrays(a, b, c))
     if not (np.isfinite(a).all() and np.isfinite(b).all() and np.isfinite(c).all()):
         raise ValueError("a, b and c must be finite numbers")
-    d = np.hypot(a, b)
-    theta = np.arctan2(b, a)
-    constant = d <= ZERO_AMPLITUDE * np.abs(c)
-    ratio = np.divide(c, d, out=np.array(np.sign(c)), where=~constant)
-    alpha = np.arccos(np.clip(ratio, -1.0, 1.0))
-    tangent = ~constant & (np.abs(np.abs(ratio) - 1.0) <= TANGENT)
-    alpha = np.where(tangent, np.where(ratio > 0, 0.0, np.pi), alpha)
-    crossing = ~constant & ~tangent & (np.abs(ratio) < 1.0)
-    count = np.select([constant & (c == 0), tangent, crossing], [ALL, 1, 2], 0)
+    theta, alpha, ratio = polar(a, b, c)
+    everywhere = (a == 0) & (b == 0) & (c == 0)
+    crossing = ~everywhere & (np.abs(ratio) < 1)
+    count = np.select([everywhere, np.abs(ratio) == 1, crossing], [ALL, 1, 2], 0)
     # Equal to theta +- pi where double below: one angle modulo a full turn, so both keep +pi.
     q = np.stack([np.where(crossing, theta - alpha, theta + alpha), theta + alpha])
     slope = np.stack([np.where(crossing, 1, 0), np.where(crossing, -1, 0)])
     return CircleRoots(count.astype(np.int64), q, slope, theta, alpha)
+
+
+def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36), as they come: nothing is checked.
+
+    c / d is exactly 1 or -1 at a tangency, and as good as infinite where there is no amplitude.
+    """
+    d = np.hypot(a, b)
+    moves = d > ZERO_AMPLITUDE * np.abs(c)
+    ratio = np.divide(c, d, out=np.array(np.sign(c) / ZERO_AMPLITUDE), where=moves)
+    ratio = np.where(np.abs(np.abs(ratio) - 1) <= TANGENT, np.sign(ratio), ratio)
+    return np.arctan2(b, a), np.arccos(np.clip(ratio, -1.0, 1.0)), ratio
 
 
 @dataclass(frozen=True)

@@ -11,32 +11,33 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.circle import circle_roots
+from qbound.circle import polar
 from qbound.harmonic import HarmonicForm, Kind, basis
-from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE, SAME_CRITICAL, TANGENT
+from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE, POSITIVE, SAME_CRITICAL, TANGENT, UNCHANGED
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 Range = tuple[float, float] | None
 
 TURN = math.tau
 
 
-@dataclass(frozen=True)
-class Root:
+class Root(NamedTuple):
     """A root of one form along the lift, as a function of the base within a slab.
 
     Attributes
     ----------
     form : int
-        Index of the form; -1 and -2 are the lower and the upper limit of the lift.
+        Index of the form; -1 and -2 are the lower and the upper end of the lift's range.
     branch : int
-        -1 / +1: theta - / + arccos, or the lower / upper root of a quadratic; 0 for a limit.
+        -1 / +1: theta - / + arccos, or the lower / upper root of a quadratic; 0 for an end.
     turns : int
         Full turns added.
     """
@@ -46,13 +47,18 @@ class Root:
     turns: int = 0
 
 
-@dataclass(frozen=True)
-class Cell:
-    """A piece of the plane over one slab, between two roots, in which every form is positive."""
+LOWEST, HIGHEST = Root(-1, 0), Root(-2, 0)
+
+
+class Cell(NamedTuple):
+    """A piece of the plane over one slab, between two roots, in which every form is positive.
+
+    On a lift that turns round, a cell from end to end is the whole fibre and has no boundary.
+    """
 
     slab: int
-    lower: Root | None
-    upper: Root | None
+    lower: Root
+    upper: Root
 
 
 class Plane:
@@ -82,26 +88,50 @@ class Plane:
 
     def along_lift(self, t: Floats) -> Floats:
         """Return the coefficients of every form along the lift, shape (len(t), m, 3)."""
-        return np.asarray(np.einsum("ti,mij->tmj", basis(self.base_kind, t), self.table))
+        m = len(self.table)
+        rows = basis(self.base_kind, t) @ np.moveaxis(self.table, 1, 0).reshape(3, 3 * m)
+        return np.asarray(rows.reshape(len(t), m, 3))
 
-    def values(self, t: Floats, v: Floats) -> Floats:
-        """Return every form at paired base and lift values, shape (len(t), m)."""
-        lifted = self.along_lift(t)
-        return np.asarray(np.einsum("tmj,tj->tm", lifted, basis(self.lift_kind, v)))
+    def positive(self, t: Floats, v: Floats, least: float) -> Bools:
+        """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
+        products = basis(self.base_kind, t)[:, :, None] * basis(self.lift_kind, v)[:, None, :]
+        products, left = products.reshape(-1, 9), np.arange(len(t))
+        for forms in np.split(self.table.reshape(-1, 9), range(16, len(self.table), 16)):
+            left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
+        return np.isin(np.arange(len(t)), left)
 
     def roots(self, t: Floats) -> Floats:
         """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
 
-        Revolute: theta - alpha and theta + alpha, theta in (-pi, pi]. Prismatic: the lower and the
-        upper root of a quadratic; the one root of an affine form comes twice.
+        Revolute: theta - alpha and theta + alpha, theta in (-pi, pi]; a double root is theta twice
+        or theta -+ pi, two ends that keep their order. Prismatic: the lower and the upper root of
+        a quadratic; the one root of an affine form stands first.
         """
         c0, c1, c2 = np.moveaxis(self.along_lift(t), -1, 0)
+        if self.lift_kind == "prismatic":
+            return _quadratic_roots(c0, c1, c2)
+        theta, alpha, ratio = polar(c1, c2, -c0)
+        found = (np.abs(ratio) <= 1) & ((c1 != 0) | (c2 != 0))
+        return np.where(found, np.stack([theta - alpha, theta + alpha]), np.nan)
+
+    def follow(self, roots: Sequence[Root], t: Floats) -> Floats:
+        """Evaluate roots, each over its own row of base values inside its slab, shape as t (k, n).
+
+        A root that leaves its form just there (at a fold, but for rounding) stays at the fold.
+        """
+        form, branch, turns = np.array(roots, dtype=np.int64).reshape(-1, 3).T[:, :, None]
+        table = np.concatenate([self.table, np.zeros((2, 3, 3))])  # ends, -1 and -2, have no form
+        c = basis(self.base_kind, t) @ table[form[:, 0]]
+        c0, c1, c2 = np.moveaxis(c, -1, 0)
         if self.lift_kind == "revolute":
-            found = circle_roots(c1, c2, -c0)
-            # A double root is theta twice, or theta -+ pi: two ends that keep their order.
-            alpha = np.where(found.count > 0, found.alpha, np.nan)
-            return np.stack([found.theta - alpha, found.theta + alpha])
-        return _quadratic_roots(c0, c1, c2)
+            theta, alpha, _ = polar(c1, c2, -c0)
+            values = theta + branch * alpha + TURN * turns
+        else:
+            affine = ~table[form, :, 2].any(axis=-1)
+            lower, upper = _quadratic_roots(c0, c1, np.where(affine, 0.0, c2), folds=True)
+            values = np.clip(np.where(branch < 0, lower, upper), *self.lift_ends)
+        ends = np.array(self.lift_ends)[(form == HIGHEST.form).astype(int)]
+        return np.asarray(np.where(form < 0, ends, values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,12 +153,8 @@ class Decomposition:
 def decompose(plane: Plane) -> Decomposition:
     """Find all critical base values and all feasible cells."""
     lines = critical_values(plane)
-    middles = (lines[:-1] + lines[1:]) / 2
-    wide = np.diff(lines) > 0
-    cells = [
-        cell for slab, t in enumerate(middles) if wide[slab] for cell in _cells_over(plane, slab, t)
-    ]
-    return Decomposition(plane, lines, cells)
+    cells = _cells(plane, (lines[:-1] + lines[1:]) / 2)
+    return _without_idle_lines(Decomposition(plane, lines, cells))
 
 
 # --- critical base values -------------------------------------------------------------------------
@@ -283,53 +309,106 @@ def _horner(stack: Complexes, z: Complexes) -> Complexes:
 # --- lifting --------------------------------------------------------------------------------------
 
 
-def _cells_over(plane: Plane, slab: int, t: float) -> list[Cell]:
-    """Return the feasible cells over a base value inside a slab."""
-    values, roots = _sorted_roots(plane, t)
-    low, high = plane.lift_ends
-    if plane.lift_range is not None:
-        ends: list[Root | None] = [Root(-1, 0), *roots, Root(-2, 0)]
-        walls = np.concatenate([[low], values, [high]])
-    elif roots:
-        ends = [*roots, Root(roots[0].form, roots[0].branch, roots[0].turns + 1)]
-        walls = np.append(values, values[0] + TURN)
-    else:
-        ends, walls = [None, None], np.array([low, high])
-    middles = (walls[:-1] + walls[1:]) / 2
-    there = plane.values(np.full(len(middles), t), middles)
-    free = (there > NEGLIGIBLE).all(axis=1) & (np.diff(walls) > 0)
-    return [Cell(slab, ends[k], ends[k + 1]) for k in np.flatnonzero(free)]
+def _cells(plane: Plane, middles: Floats) -> list[Cell]:
+    """Return the feasible cells over one base value inside each slab."""
+    slab, values, roots = _walls(plane, middles)
+    after, tops = np.arange(1, len(slab) + 1), np.append(values[1:], np.nan)
+    if plane.lift_range is None:  # a circle closes: after its last root comes the first, a turn on
+        edges = np.flatnonzero(np.diff(slab, prepend=-1, append=len(middles)))
+        first, last = edges[:-1], edges[1:] - 1
+        after[last], tops[last] = first, values[first] + TURN
+    wide = np.flatnonzero(tops > values)
+    free = wide[plane.positive(middles[slab[wide]], (values + tops)[wide] / 2, NEGLIGIBLE)]
+    cells = []
+    for k in free.tolist():
+        lower, upper = (Root(*map(int, roots[i])) for i in (k, after[k]))
+        upper = upper if after[k] > k else upper._replace(turns=upper.turns + 1)
+        cells.append(Cell(int(slab[k]), lower, upper if upper.form >= 0 else HIGHEST))
+    return cells
 
 
-def _sorted_roots(plane: Plane, t: float) -> tuple[Floats, list[Root]]:
-    """Return all roots over one base value that lie in the lift's range, ascending."""
-    found = plane.roots(np.array([t]))[:, 0]
-    branch, form = np.nonzero(np.isfinite(found))
-    values = found[branch, form]
-    low, high = plane.lift_ends
-    turns = np.zeros(len(values), dtype=int)
+def _walls(plane: Plane, t: Floats) -> tuple[Ints, Floats, Ints]:
+    """Return what bounds cells over each base value, ascending: slab, value and root, (k, 3).
+
+    They are the roots in the lift's range and its ends; on a circle without roots, its cut.
+    """
+    found = plane.roots(t)
+    branch, slab, form = np.nonzero(np.isfinite(found))
+    values, (low, high) = found[branch, slab, form], plane.lift_ends
+    turns = np.zeros(len(values), dtype=np.int64)
     if plane.lift_kind == "revolute":
-        first = np.ceil((low - values) / TURN).astype(int)
-        count = np.maximum(np.ceil((high - values) / TURN).astype(int) - first, 0)
-        pick = np.repeat(np.arange(len(values)), count)
-        turns = np.concatenate([[], *(f + np.arange(n) for f, n in zip(first, count, strict=True))])
-        values, form, branch = values[pick] + TURN * turns, form[pick], branch[pick]
-    circle = plane.lift_range is None  # a circle has no ends: a root at its cut counts
-    inside = np.flatnonzero(circle | ((values > low) & (values < high)))
-    order = inside[np.argsort(values[inside], kind="stable")]
-    roots = [Root(int(form[k]), 2 * int(branch[k]) - 1, int(turns[k])) for k in order]
-    return values[order], roots
+        first, end = (np.ceil((x - values) / TURN).astype(np.int64) for x in (low, high))
+        pick, turns = _ranges(first, end)
+        values, slab, form, branch = (
+            values[pick] + TURN * turns,
+            slab[pick],
+            form[pick],
+            branch[pick],
+        )
+    roots = np.stack([form, 2 * branch - 1, turns], axis=-1)
+    every = np.arange(len(t))
+    if plane.lift_range is None:
+        cut = np.setdiff1d(every, slab)
+        ends = [(cut, low, LOWEST)]
+    else:
+        inside = (values > low) & (values < high)
+        slab, values, roots = slab[inside], values[inside], roots[inside]
+        ends = [(every, low, LOWEST), (every, high, HIGHEST)]
+    slab = np.concatenate([slab, *(where for where, _, _ in ends)])
+    values = np.concatenate([values, *(np.full(len(where), v) for where, v, _ in ends)])
+    roots = np.concatenate([roots, *(np.tile(root, (len(where), 1)) for where, _, root in ends)])
+    order = np.lexsort([values, slab])
+    return slab[order], values[order], roots[order]
 
 
-def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats) -> Floats:
-    """Return the lower and the upper root of c0 + c1 v + c2 v^2; an affine root stands first."""
+def _ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
+    """Return index and value of every integer in range(start, end), for each entry in turn."""
+    count = np.maximum(end - start, 0)
+    pick = np.repeat(np.arange(len(count)), count)
+    return pick, start[pick] + np.arange(len(pick)) - (np.cumsum(count) - count)[pick]
+
+
+def _without_idle_lines(found: Decomposition) -> Decomposition:
+    """Drop the critical lines at which no feasible cell changes, and join the cells across."""
+    plane, lines = found.plane, found.lines
+    over: list[list[tuple[Root, Root]]] = [[] for _ in lines[1:]]
+    for slab, lower, upper in found.cells:
+        over[slab].append((lower, upper))
+    same = [i for i in range(1, len(over)) if over[i - 1] == over[i]]
+    at = np.repeat(same, [len(over[i]) for i in same]).astype(np.int64)
+    changed = at[~_goes_on(plane, lines, at, [pair for i in same for pair in over[i]])]
+    idle = np.setdiff1d(same, changed).astype(np.int64)
+    kept = np.setdiff1d(np.arange(len(lines)), idle)
+    cells = [Cell(i, *pair) for i, slab in enumerate(kept[:-1]) for pair in over[slab]]
+    return Decomposition(plane, lines[kept], cells)
+
+
+def _goes_on(plane: Plane, lines: Floats, at: Ints, pairs: Sequence[tuple[Root, Root]]) -> Bools:
+    """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
+    step = UNCHANGED * np.minimum(lines[at] - lines[at - 1], lines[at + 1] - lines[at])
+    t = lines[at][:, None] + step[:, None] * np.array([-1, 0, 1])
+    lower = plane.follow([pair[0] for pair in pairs], t)
+    upper = plane.follow([pair[1] for pair in pairs], t)
+    smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * (upper - lower).min(axis=1)
+    wide = (upper - lower).min(axis=1) > UNCHANGED
+    middle = (lower + upper)[:, 1] / 2
+    return np.asarray(smooth & wide & plane.positive(lines[at], middle, POSITIVE))
+
+
+def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False) -> Floats:
+    """Return the lower and the upper root of c0 + c1 v + c2 v^2; an affine root stands first.
+
+    With `folds` the vertex stands for roots that are not real, and the affine root stands twice.
+    """
+    discriminant = _discriminant(c0, c1, c2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(_discriminant(c0, c1, c2))
+        root = np.sqrt(np.maximum(discriminant, 0) if folds else discriminant)
         half = -(c1 + np.copysign(root, c1)) / 2
         pair = np.sort(np.stack([half / c2, c0 / half]), axis=0)
-        single = np.stack([-c0 / c1, np.full_like(c0, np.nan)])
-    roots = np.where(c2 == 0, single, pair)
-    return np.where(np.isfinite(roots), roots, np.nan)
+        single = -c0 / c1
+    singles = np.stack([single, single if folds else np.full_like(single, np.nan)])
+    roots = np.where(c2 == 0, singles, pair)
+    return np.nan_to_num(roots) if folds else np.where(np.isfinite(roots), roots, np.nan)
 
 
 def _discriminant(c0: Floats, c1: Floats, c2: Floats) -> Floats:

@@ -9,20 +9,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import groupby
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arcs import NODES, Arc, Pieces, legendre
 from qbound.boundary import clearance, pair_vector, required_distance
 from qbound.cells import Complex, Step
-from qbound.decomposition import TURN, Plane, Range, decompose
-from qbound.harmonic import HarmonicForm
+from qbound.decomposition import TURN, Plane, Range, Root, decompose
+from qbound.harmonic import HarmonicForm, basis, basis_slope
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import QUADRATURE
+from qbound.tolerances import QUADRATURE, TRANSVERSAL
 
 Floats = NDArray[np.float64]
+Sheets = dict[int, tuple[int, int]]
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,24 +47,6 @@ class Problem:
     names: tuple[str, ...]
     ranges: tuple[Range, Range]
     limits: tuple[tuple[str, str], tuple[str, str]]
-
-
-@dataclass(frozen=True, eq=False)
-class Arc:
-    """A piece of boundary on which one form vanishes, or one joint is at its limit.
-
-    Attributes
-    ----------
-    boundary : str
-    branch : int or None
-        -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
-    points : ndarray, shape (k, 2)
-        Joint values along the arc, its two ends first and last, the region on the left.
-    """
-
-    boundary: str
-    branch: int | None
-    points: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,12 +153,9 @@ def solve(problem: Problem, home: ArrayLike) -> Region:
     """
     base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     plane = Plane(problem.forms, problem.ranges, base)
-    cells = Complex(decompose(plane))
-    target = np.asarray(home, dtype=float)
-    builder = _Builder(problem, cells, base, target)
-    found = [builder.component(sheets, wraps) for sheets, wraps in cells.components()]
-    found.sort(key=lambda c: (not c.contains_home, -c.area))
-    return Region(tuple(found), problem)
+    builder = _Builder(problem, Complex(decompose(plane)), base, np.asarray(home, dtype=float))
+    components = builder.components()
+    return Region(tuple(sorted(components, key=lambda c: (not c.contains_home, -c.area))), problem)
 
 
 def find_region(robot: Robot, held: Mapping[int, float] | None = None) -> Region:
@@ -206,195 +188,223 @@ def _margin(robot: Robot, boundary: Pair | HalfSpace, q: Floats) -> float:
 
 
 class _Builder:
-    """Turns a component's cells into arcs, vertices and measures, in the order of the joints."""
+    """Turns components' cells into arcs, vertices and measures, in the order of the joints."""
 
     def __init__(self, problem: Problem, cells: Complex, base: int, home: Floats) -> None:
-        self.problem, self.cells, self.base, self.home = problem, cells, base, home
+        self.problem, self.cells, self.base = problem, cells, base
+        self.plane = cells.plane
+        self.circles = np.array([r is None for r in (self.plane.base_range, self.plane.lift_range)])
+        self.home = self._ordered(home)
+        self.at_home = self._cell_of_home() if (problem.forms(home) > 0).all() else None
+        self.moments = _cell_moments(cells)
 
-    def component(self, sheets: dict[int, tuple[int, int]], wraps: tuple[bool, bool]) -> Component:
-        area, first, second = _moments(self.cells, sheets)
-        at_home = self._home_sheet(sheets)
-        middle = np.array([first, second]) / area
+    def components(self) -> list[Component]:
+        return [self._component(*found) for found in self.cells.components()]
+
+    def _component(self, sheets: Sheets, wraps: tuple[bool, bool]) -> Component:
+        chosen, turns = list(sheets), TURN * np.array(list(sheets.values()), dtype=float)
+        areas, firsts = self.moments[chosen, 0], self.moments[chosen, 1:]
+        area = float(areas.sum())
+        middle = (firsts + areas[:, None] * turns).sum(axis=0) / area
         shift = np.zeros(2)
-        if at_home is not None:
-            shift = at_home
+        if self.at_home is not None and self.at_home[0] in sheets:
+            shift = self.home - self.at_home[1] - TURN * np.array(sheets[self.at_home[0]])
         elif not any(wraps):
-            shift = -TURN * np.ceil((middle - math.pi) / TURN) * self._circles()
-        walks = [self._arcs(walk, sheets, shift) for walk in self.cells.loops(set(sheets))]
-        loops = tuple(tuple(arcs) for arcs in walks)
-        centroid = None if any(wraps) else self._ordered(middle + shift)
-        one, other = wraps if self.base == 0 else wraps[::-1]
+            shift = -TURN * np.ceil((middle - math.pi) / TURN) * self.circles
+        loops = self._loops(sheets, shift)
         return Component(
-            area, centroid, (one, other), loops, tuple(self._vertices(loops)), at_home is not None
+            area,
+            None if any(wraps) else self._ordered(middle + shift),
+            (wraps[self.base], wraps[1 - self.base]),
+            loops,
+            tuple(_vertices(loops)),
+            self.at_home is not None and self.at_home[0] in sheets,
         )
 
-    def _circles(self) -> Floats:
-        plane = self.cells.plane
-        return np.array([plane.base_range is None, plane.lift_range is None], dtype=float)
-
     def _ordered(self, place: Floats) -> Floats:
-        """From (base, lift) to the order of the joints."""
+        """From (base, lift) to the order of the joints, and back."""
         return place if self.base == 0 else place[..., ::-1]
 
-    def _home_sheet(self, sheets: dict[int, tuple[int, int]]) -> Floats | None:
-        """Return the shift that brings this component around the home pose, if it holds it."""
-        if not (self.problem.forms(self.home) > 0).all():
-            return None  # on a boundary or beyond: in no component, however near
-        home = self._ordered(self.home)
-        circles = self._circles()
-        low = self.cells.plane.ends[0]
-        t = home[0] - TURN * math.floor((home[0] - low) / TURN) if circles[0] else home[0]
-        for k, sheet in sheets.items():
-            start, end = self.cells.abscissae[self.cells.cells[k].slab :][:2]
-            if start <= t <= end and (turns := self._lift_turns(k, t, home[1])) is not None:
-                # in the cell's own coordinates home is (t, home[1] + TURN * turns)
-                own = np.array([t, home[1] + TURN * turns]) + TURN * np.array(sheet)
-                return home - own
+    def _cell_of_home(self) -> tuple[int, Floats] | None:
+        """Return the cell with the home pose and where home is in the cell's own coordinates."""
+        t, v = self.home
+        low = self.plane.ends[0]
+        t = t - TURN * math.floor((t - low) / TURN) if self.circles[0] else t
+        start, end = self.cells.spans(range(len(self.cells.cells))).T
+        chosen = np.flatnonzero((start <= t) & (t <= end))
+        inset = 1e-12 * (end - start)[chosen]  # on a line an angle may jump by a turn
+        inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
+        lower, upper = self.cells.interval(chosen.tolist(), inside[:, None])[..., 0]
+        turns = TURN * np.ceil((lower - v) / TURN) * self.circles[1]
+        for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
+            return int(chosen[k]), np.array([t, v + turns[k]])
         return None
-
-    def _lift_turns(self, k: int, t: float, v: float) -> int | None:
-        lower, upper = self.interval(k, np.array([t]))[:, 0]
-        turns = math.ceil((lower - v) / TURN) if self._circles()[1] else 0
-        return turns if lower <= v + TURN * turns <= upper else None
-
-    def interval(self, k: int, t: Floats) -> Floats:
-        return _interval(self.cells, k, t)
 
     # --- arcs -----------------------------------------------------------------------------------
 
-    def _arcs(
-        self, walk: list[Step], sheets: dict[int, tuple[int, int]], shift: Floats
-    ) -> list[Arc]:
-        """Merge the steps of a walk that stay on one branch of one boundary."""
-        named = [(self._label(step), self._points(step, sheets, shift)) for step in walk]
-        start = next((i for i in range(len(named)) if named[i][0] != named[i - 1][0]), 0)
-        named = self._unrolled(named[start:] + named[:start])
-        arcs = []
-        for (name, branch), group in groupby(named, key=lambda item: item[0]):
-            points = np.concatenate([points for _, points in group])
-            keep = np.concatenate([[True], np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-12])
-            points = self._ordered(points[keep] if keep.sum() > 1 else points[[0, -1]])
-            arcs.append(Arc(name, branch, points if self.base == 0 else points[::-1]))
-        return arcs if self.base == 0 else arcs[::-1]
+    def _loops(self, sheets: Sheets, shift: Floats) -> tuple[tuple[Arc, ...], ...]:
+        return tuple(tuple(self._arcs(walk, sheets, shift)) for walk in self.cells.loops(sheets))
 
-    def _unrolled(
-        self, named: list[tuple[tuple[str, int | None], Floats]]
-    ) -> list[tuple[tuple[str, int | None], Floats]]:
-        """Let each piece start where the one before ends: a walk round a joint changes sheets."""
-        result = named[:1]
-        for label, points in named[1:]:
-            turns = np.round((result[-1][1][-1] - points[0]) / TURN) * self._circles()
-            result.append((label, points + TURN * turns))
-        return result
+    def _arcs(self, walk: list[Step], sheets: Sheets, shift: Floats) -> list[Arc]:
+        """Merge the steps of a walk that stay on one branch of one boundary."""
+        labels = [self._label(step) for step in walk]
+        first = next((i for i in range(len(walk)) if labels[i] != labels[i - 1]), 0)
+        walk, labels = walk[first:] + walk[:first], labels[first:] + labels[:first]
+        if self.base == 1:  # seen with the joints in their order, the walk runs backwards
+            walk, labels = walk[::-1], labels[::-1]
+        pieces = self._pieces(walk, sheets, shift)
+        groups = [list(g) for _, g in groupby(range(len(walk)), key=labels.__getitem__)]
+        spans = [slice(group[0], group[-1] + 1) for group in groups]
+        self._polish(pieces, [labels[span.start][0] for span in spans], spans)
+        points = pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 33))
+        few = np.array(pieces.straight())
+        return [
+            Arc(*labels[span.start], _polyline(points[span], few[span]), pieces[span])
+            for span in spans
+        ]
 
     def _label(self, step: Step) -> tuple[str, int | None]:
-        plane, cell = self.cells.plane, self.cells.cells[step.cell]
         if step.kind in ("up", "down"):
             return self._wall_label(step)
+        cell = self.cells.cells[step.cell]
         root = cell.lower if step.kind == "lower" else cell.upper
-        assert root is not None
         if root.form < 0:
             return self.problem.limits[1 - self.base][-1 - root.form], None
-        branch = root.branch if plane.lift_kind == "revolute" else None
+        branch = root.branch if self.plane.lift_kind == "revolute" else None
         return self.problem.names[root.form], branch
 
     def _wall_label(self, step: Step) -> tuple[str, int | None]:
         """Name a piece of a critical line: a limit of the base, or a form without the lift."""
-        plane = self.cells.plane
+        plane, t = self.plane, self.cells.abscissae[step.line]
         side = 0 if step.kind == "down" else 1
-        at_end = self.cells.abscissae[step.line] == plane.ends[side]
-        if plane.base_range is not None and at_end:
+        if plane.base_range is not None and t == plane.ends[side]:
             return self.problem.limits[self.base][side], None
         low, high = self.cells.bounds(self.cells.lines[step.line], step.element)
-        t = self.cells.abscissae[step.line]
-        values = plane.values(np.array([t]), np.array([(low + high) / 2]))[0]
-        form = int(np.abs(values).argmin())
+        rows = plane.along_lift(np.array([t]))[0]
+        form = int(np.abs(rows @ basis(plane.lift_kind, (low + high) / 2)).argmin())
         # A form falls along the base at theta + arccos; there the component lies before it.
         branch = (1 if step.kind == "up" else -1) if plane.base_kind == "revolute" else None
         return self.problem.names[form], branch
 
-    def _points(
-        self, step: Step, sheets: dict[int, tuple[int, int]], shift: Floats, n: int = 33
-    ) -> Floats:
-        """Joint values along a step, shape (n, 2), in (base, lift)."""
-        cell, offset = self.cells.cells[step.cell], TURN * np.array(sheets[step.cell]) + shift
-        start, end = self.cells.abscissae[cell.slab : cell.slab + 2]
-        if step.kind in ("lower", "upper"):
-            angle = np.linspace(-math.pi / 2, math.pi / 2, n)  # close where a fold may be
-            t = (start + end) / 2 + (end - start) / 2 * np.sin(angle)
-            t[0], t[-1] = start, end
-            v = self.interval(step.cell, t)[0 if step.kind == "lower" else 1]
-            points = np.stack([t, v], axis=-1) + offset
-            return points if step.kind == "lower" else points[::-1]
+    def _pieces(self, walk: list[Step], sheets: Sheets, shift: Floats) -> Pieces:
+        """Lay the steps one behind the other; a walk round a joint changes sheets."""
+        roots: list[Root | None] = []
+        starts: list[Floats] = []
+        ends: list[Floats] = []
+        turns: list[Floats] = []
+        for step in walk:
+            root, start, end = self._step(step)
+            start, end = (start, end) if self.base == 0 else (end, start)
+            offset = TURN * np.array(sheets[step.cell]) + shift
+            if ends:
+                offset += TURN * np.round((ends[-1] - start - offset) / TURN) * self.circles
+            roots.append(root)
+            starts.append(start + offset)
+            ends.append(end + offset)
+            turns.append(offset)
+        pieces = Pieces(self.plane, self.base, roots, *map(np.array, (starts, ends, turns)))
+        # At a fold both sides stop a rounding's square root short of each other.
+        gaps = np.roll(pieces.end, 1, axis=0) - pieces.start
+        gaps -= TURN * np.round(gaps / TURN) * self.circles
+        pieces.start[:] += gaps / 2
+        pieces.end[:] -= np.roll(gaps, -1, axis=0) / 2
+        return pieces
+
+    def _step(self, step: Step) -> tuple[Root | None, Floats, Floats]:
+        """Return what a step follows and where it starts and ends, in the cell's coordinates."""
+        cell, ends = self.cells.cells[step.cell], self.cells.ends[step.cell]
+        left, right = self.cells.abscissae[cell.slab : cell.slab + 2]
+        if step.kind == "lower":
+            return cell.lower, np.array([left, ends[0][0]]), np.array([right, ends[1][0]])
+        if step.kind == "upper":
+            return cell.upper, np.array([right, ends[1][1]]), np.array([left, ends[0][1]])
         side = 1 if step.kind == "up" else 0
         low, high = self.cells.bounds(self.cells.lines[step.line], step.element)
-        turns = self.cells.turns_into(step.cell, side, (low + high) / 2) or 0
-        v = np.array([low, high]) + TURN * turns
-        points = np.stack([np.full(2, end if side else start), v], axis=-1) + offset
-        return points if step.kind == "up" else points[::-1]
+        turns = TURN * (self.cells.turns_into(step.cell, side, (low + high) / 2) or 0)
+        t, bottom, top = right if side else left, low + turns, high + turns
+        start, end = (bottom, top) if side else (top, bottom)
+        return None, np.array([t, start]), np.array([t, end])
 
-    def _vertices(self, loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
-        for arcs in loops:
-            for before, arc in zip([arcs[-1], *arcs[:-1]], arcs, strict=True):
-                if before.boundary != arc.boundary:
-                    names = before.boundary, arc.boundary
-                    yield Vertex(self._polished(arc.points[0], names), names)
-
-    def _polished(self, q: Floats, names: tuple[str, str]) -> Floats:
-        """Two steps of Newton on the two forms; a limit holds its joint."""
-        rows = [self.problem.names.index(n) for n in names if n in self.problem.names]
-        if len(rows) < 2:
-            return q
-        pair = self.problem.forms[rows]
-        for _ in range(2):
-            gradient = pair.gradient(q)
-            if abs(np.linalg.det(gradient)) < 1e-6 * np.abs(gradient).max() ** 2:
-                return q  # tangent: Newton has nothing to hold on to
-            q = q - np.linalg.solve(gradient, pair(q))
-        return np.asarray(q)
+    def _polish(self, pieces: Pieces, names: list[str], spans: list[slice]) -> None:
+        """Bring the corners where two forms meet onto both."""
+        known = {name: row for row, name in enumerate(self.problem.names)}
+        corners = [
+            (known[a], known[b], before.stop - 1, span.start)
+            for a, b, before, span in zip(_behind(names), names, _behind(spans), spans, strict=True)
+            if a != b and a in known and b in known
+        ]
+        if corners:
+            one, other, ends, starts = np.array(corners).T
+            moved = _newton(self.plane, np.stack([one, other], axis=-1), pieces.start[starts])
+            pieces.end[ends] += moved - pieces.start[starts]
+            pieces.start[starts] = moved
 
 
-def _interval(cells: Complex, k: int, t: Floats) -> Floats:
-    """Lower and upper root of a cell over base values of its slab, shape (2, len(t))."""
-    cell = cells.cells[k]
-    lower = cells.root_values(cell.lower, cell.slab, t)
-    upper = lower + TURN if cell.upper is None else cells.root_values(cell.upper, cell.slab, t)
-    return np.stack([lower, np.maximum(lower, upper)])
+def _newton(plane: Plane, pairs: NDArray[np.int64], q: Floats) -> Floats:
+    """Two steps of Newton on pairs of forms, (k, 2), from base and lift values near, (k, 2)."""
+    table = plane.table[pairs]
+    for _ in range(2):
+        t, v = q.T
+        base, lift = basis(plane.base_kind, t)[:, None, None], basis(plane.lift_kind, v)
+        slopes = basis_slope(plane.base_kind, t)[:, None, None], basis_slope(plane.lift_kind, v)
+        over, steep = (base @ table)[:, :, 0], (slopes[0] @ table)[:, :, 0]
+        value, along_lift = np.einsum("kfj,rkj->rkf", over, np.stack([lift, slopes[1]]))
+        along_base = np.einsum("kfj,kj->kf", steep, lift)
+        det = along_base[:, 0] * along_lift[:, 1] - along_base[:, 1] * along_lift[:, 0]
+        size = np.maximum(np.abs(along_base), np.abs(along_lift)).max(axis=1)
+        firm = np.abs(det) > TRANSVERSAL * size**2  # a tangency gives Newton nothing to hold on to
+        safe = np.where(firm, det, np.inf)
+        by_base = (value[:, 0] * along_lift[:, 1] - value[:, 1] * along_lift[:, 0]) / safe
+        by_lift = (along_base[:, 0] * value[:, 1] - along_base[:, 1] * value[:, 0]) / safe
+        q = q - np.stack([by_base, by_lift], axis=-1)
+    return np.asarray(q)
 
 
-def _moments(cells: Complex, sheets: dict[int, tuple[int, int]]) -> tuple[float, float, float]:
-    """Area and both first moments of a component, unrolled, to machine precision (Green)."""
-    total = np.zeros(3)
-    for k, sheet in sheets.items():
-        total += _cell_moments(cells, k, TURN * np.array(sheet))
-    return float(total[0]), float(total[1]), float(total[2])
+def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
+    for arcs in loops:
+        for before, arc in zip(_behind(arcs), arcs, strict=True):
+            if before.boundary != arc.boundary:
+                yield Vertex(arc.points[0], (before.boundary, arc.boundary))
 
 
-@cache
-def _legendre(n: int) -> tuple[Floats, Floats]:
-    nodes, weights = np.polynomial.legendre.leggauss(n)
-    return nodes, weights
+def _behind(ring: Sequence[Item]) -> list[Item]:
+    """Return for each entry of a ring the one before it."""
+    return [ring[-1], *ring[:-1]]
 
 
-def _cell_moments(cells: Complex, k: int, offset: Floats) -> Floats:
-    """Gauss-Legendre in t = m + h sin(angle): a fold's square root is smooth in the angle."""
-    start, end = cells.abscissae[cells.cells[k].slab :][:2]
-    before = np.full(3, np.inf)
-    for n in (24, 48, 96, 192, 384, 768):
-        nodes, weights = _legendre(n)
-        angle = nodes * math.pi / 2
-        t = (start + end) / 2 + (end - start) / 2 * np.sin(angle)
-        weights = weights * math.pi / 2 * (end - start) / 2 * np.cos(angle)
-        low, high = _interval(cells, k, t) + offset[1]
-        height = high - low
-        now = np.array(
-            [
-                (weights * height).sum(),
-                (weights * height * (t + offset[0])).sum(),
-                (weights * height * (low + high) / 2).sum(),
-            ]
-        )
-        if np.abs(now - before).max() <= QUADRATURE * (1 + np.abs(now).max()):
+def _polyline(points: Floats, straight: NDArray[np.bool_]) -> Floats:
+    """Join pieces' points, (k, n, 2), to one line; of straight pieces the ends suffice."""
+    parts = [p[[0, -1]] if only_ends else p for p, only_ends in zip(points, straight, strict=True)]
+    line = np.concatenate(parts)
+    new = np.concatenate([[True], np.abs(np.diff(line, axis=0)).max(axis=1) > 1e-12])
+    new[-1], new[:-1] = True, new[:-1] & (np.abs(line[:-1] - line[-1]).max(axis=1) > 1e-12)
+    return np.asarray(line[new] if new.sum() > 1 else line[[0, -1]])
+
+
+def _cell_moments(cells: Complex) -> Floats:
+    """Return area and first moments about base and lift of each cell, shape (k, 3).
+
+    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
+    those cells whose moments still change.
+    """
+    result = np.full((len(cells.cells), 3), np.inf)
+    left = np.arange(len(cells.cells))
+    for n in NODES:
+        now = _moments(cells, left.tolist(), n)
+        settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
+        result[left] = now
+        left = left[~settled.all(axis=1)]
+        if not len(left):
             break
-        before = now
-    return now
+    return result
+
+
+def _moments(cells: Complex, chosen: list[int], n: int) -> Floats:
+    nodes, weights = legendre(n)
+    middle, half = (cells.spans(chosen) @ np.array([[0.5, -0.5], [0.5, 0.5]])).T[:, :, None]
+    angle = nodes * math.pi / 2
+    t = middle + half * np.sin(angle)
+    low, high = cells.interval(chosen, t)
+    strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
+    moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)
+    return np.asarray(moments.sum(axis=1))

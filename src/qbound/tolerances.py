@@ -41,6 +41,14 @@ Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 h
 POSITIVE: Final = 1e-11
 """Value (coefficients scaled to 1) above which a form is positive on a critical line."""
 
+TRANSVERSAL: Final = 1e-6
+"""Sine of the angle, about, under which two curves are too nearly tangent for Newton's method."""
+
+UNCHANGED: Final = 1e-3
+"""Part of a slab beside a critical line in which a cell that goes on may change by this part.
+
+Where it changes more, or is narrower, the line is kept: that costs time and no answer."""
+
 QUADRATURE: Final = 1e-13
 """Relative change of a quadrature at doubled nodes under which it has converged.
 
