@@ -124,6 +124,26 @@ def separated(paving: Paving, one: ArrayLike, other: ArrayLike) -> bool:
     return not groups.holding(paving, one) & groups.holding(paving, other)
 
 
+def wall(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
+    """Return the infeasible cells that enclose the group of a configuration: what separates it.
+
+    Every cell that touches the group and is not of it is among them.
+    """
+    groups = outer_groups(paving)
+    held = groups.holding(paving, q)
+    own = np.concatenate([np.isin(label, list(held)) for label in groups.label])
+    circles = [r is None for r in paving.problem.ranges]
+    everything = (*groups.cells, *paving.infeasible)
+    edges = _touching(everything, circles, corners=True)
+    inside = np.concatenate([own, np.zeros(sum(map(len, paving.infeasible)), dtype=bool)])
+    one, other = edges.T
+    met = np.zeros(len(inside), dtype=bool)
+    met[other[inside[one]]] = met[one[inside[other]]] = True
+    ends = np.cumsum([len(c) for c in everything])[:-1]
+    chosen = np.split(met & ~inside, ends)[len(groups.cells) :]
+    return tuple(c[k] for c, k in zip(paving.infeasible, chosen, strict=True) if k.any())
+
+
 def _words(paving: Paving, q: ArrayLike) -> set[str]:
     words = {word for word, _ in paving.cells_of(q)}
     if not words:

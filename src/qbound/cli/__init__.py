@@ -7,9 +7,9 @@ import sys
 from collections.abc import Sequence
 
 from qbound import __version__
-from qbound.cli import contains, region, robots
+from qbound.cli import connected, contains, pave, region, robots
 
-COMMANDS = (region, contains, robots)
+COMMANDS = (region, contains, connected, pave, robots)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
