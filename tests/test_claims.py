@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 import tomllib
 from functools import cache
+from importlib import resources
 from pathlib import Path
 
 import pytest
+import yaml
+from jsonschema import Draft202012Validator, ValidationError, validate
 
-from qbound import paper
-from qbound.claims import judge, undetermined
-from qbound.claims.ledger import KINDS, VERDICTS, claim, identifiers
+from qbound import paper, recorded
+from qbound.claims import Claim, cite, judge, require, undetermined
+from qbound.claims.ledger import KINDS, VERDICTS, claim, from_content, identifiers, save
+from qbound.cli import main
 
 ROOT = Path(__file__).resolve().parent.parent
 EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
@@ -90,6 +95,30 @@ def test_every_row_of_a_table_has_an_entry(table: int, rows: int) -> None:
     assert [n for n in identifiers() if re.match(rf"T-{table}(\.|$)", n)] == names
 
 
+# --- as recorded ----------------------------------------------------------------------------------
+
+
+def test_the_recorded_ledger_is_the_computed_one() -> None:
+    """Chapter 15 writes it; after a new entry run that chapter and commit results/claims.json."""
+    assert [from_content(c) for c in recorded.claims()] == [computed(n) for n in identifiers()]
+
+
+def test_the_recorded_ledger_keeps_to_its_schema() -> None:
+    schema = resources.files("qbound") / "schemas" / "claims.schema.json"
+    content = json.loads((ROOT / "results" / "claims.json").read_text(encoding="utf-8"))
+    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    content["claims"][0]["verdict"] = "true"
+    with pytest.raises(ValidationError):
+        validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+
+
+def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:
+    some = [computed(name) for name in identifiers()[:3]]
+    first = save(some, tmp_path).read_bytes()
+    assert save(some, tmp_path).read_bytes() == first
+    assert json.loads(first)["claims"] == [one.content() for one in some]
+
+
 # --- from outcome to verdict ----------------------------------------------------------------------
 
 
@@ -117,3 +146,90 @@ def test_an_outcome_decides_the_verdict(outcome, verdict) -> None:
 )
 def test_the_readings_that_fit_decide_the_verdict(fits, verdict) -> None:
     assert undetermined({str(i): fit for i, fit in enumerate(fits)}) == verdict
+
+
+def test_a_mended_statement_that_is_not_proved_stops_the_entry() -> None:
+    require(True, "1 = 1")
+    with pytest.raises(ArithmeticError, match="not proved: 1 = 2"):
+        require(False, "1 = 2")
+
+
+# --- commands -------------------------------------------------------------------------------------
+
+
+def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
+    status = main(list(words))
+    return status, capsys.readouterr().out
+
+
+def test_claims_lists_by_verdict_and_kind(capsys) -> None:
+    status, text = said(capsys, "claims", "--verdict", "refuted", "--kind", "equation")
+    names = [line.split()[0] for line in text.splitlines()[:-1]]
+    wanted = [n for n in identifiers() if VERDICT[n] == "refuted" and KIND[n] == "equation"]
+    assert (status, names) == (0, wanted)
+    assert text.splitlines()[-1] == f"{len(wanted)} entries"
+
+
+def test_claims_prints_an_entry_and_its_json(capsys) -> None:
+    _, text = said(capsys, "claims", "E-34")
+    assert computed("E-34").found in text
+    _, text = said(capsys, "claims", "E-34", "E-37", "--json")
+    entries = json.loads(text)["claims"]
+    assert [from_content(entry) for entry in entries] == [computed("E-34"), computed("E-37")]
+
+
+def test_claims_computes_an_entry_again_and_says_where_it_differs(capsys, monkeypatch) -> None:
+    assert said(capsys, "claims", "E-34", "--recompute")[0] == 0
+    other = [{**entry, "verdict": "refuted"} for entry in recorded.claims()]
+    monkeypatch.setattr(recorded, "claims", lambda: other)
+    status, text = said(capsys, "claims", "E-34", "--recompute")
+    assert status == 1
+    assert "differs from what is recorded: E-34" in text
+    assert VERDICT["E-34"] in text
+
+
+def test_an_unknown_entry_is_bad_input(capsys) -> None:
+    assert main(["claims", "E-99"]) == 2
+    assert main(["results", "no such thing"]) == 2
+    assert "E-99" in capsys.readouterr().err
+
+
+def test_results_are_found_by_id_by_chapter_and_by_both(capsys) -> None:
+    region = json.loads((ROOT / "results" / "region.json").read_text(encoding="utf-8"))
+    _, text = said(capsys, "results", "region/", "--json")
+    entries = json.loads(text)
+    assert [{k: v for k, v in e.items() if k != "chapter"} for e in entries] == region["results"]
+    _, by_both = said(capsys, "results", "region/vertex.1")
+    _, by_id = said(capsys, "results", "vertex.1")
+    assert by_both in by_id
+    assert "-94.07" in by_both
+
+
+# --- citing ---------------------------------------------------------------------------------------
+
+
+def test_an_entry_is_cited_with_version_verdict_and_anchor(capsys) -> None:
+    _, text = said(capsys, "claims", "T-4.2", "--bibtex")
+    assert cite.PAPER in text
+    assert cite.package() in text
+    (misc,) = re.findall(r"(?s)@misc\{.*", text)
+    assert "qbound-T-4.2" in misc
+    assert r"15\_what\_holds.html\#t-4-2" in misc
+    assert f"Verdict: {VERDICT['T-4.2']}" in misc
+    for record in (cite.PAPER, cite.package(), misc):
+        assert record.count("{") == record.count("}")
+
+
+def test_the_book_and_the_command_cite_alike() -> None:
+    page = (ROOT / "book" / "cite.md").read_text(encoding="utf-8")
+    assert cite.PAPER in page
+    assert cite.package() in page
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["date-released"].year == cite.YEAR
+
+
+def test_anchors_are_unique_and_made_from_the_id() -> None:
+    anchors = [computed(name).anchor for name in identifiers()]
+    assert len(set(anchors)) == len(anchors)
+    assert isinstance(computed("B-2.1.2"), Claim)
+    assert computed("B-2.1.2").anchor == "b-2-1-2"

@@ -479,7 +479,8 @@ def test_the_wheel_holds_every_file_of_the_package(tmp_path: Path) -> None:
     copy = tmp_path / "copy"
     skip = shutil.ignore_patterns("__pycache__", "*.egg-info")
     shutil.copytree(ROOT / "src", copy / "src", ignore=skip)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    shutil.copytree(ROOT / "results", copy / "results")
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, copy)
     build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
     subprocess.run(
@@ -489,10 +490,14 @@ def test_the_wheel_holds_every_file_of_the_package(tmp_path: Path) -> None:
     assert wheel.name.startswith(f"qbound-{PROJECT['version']}-py3-none-any")
     with zipfile.ZipFile(wheel) as archive:
         packed = {name for name in archive.namelist() if name.startswith("qbound/")}
+        recorded = {f"qbound/recorded_results/{p.name}": p for p in ROOT.glob("results/*.json")}
+        for name, path in recorded.items():
+            assert archive.read(name) == path.read_bytes(), "the wheel carries results/ itself"
     package = copy / "src/qbound"
     sources = {f"qbound/{p.relative_to(package).as_posix()}" for p in package.rglob("*.*")}
     assert "qbound/py.typed" in sources
-    assert packed == sources
+    assert packed == sources | set(recorded)
+    assert recorded
 
 
 WRONG_IMPORTS = [

@@ -62,13 +62,18 @@ class Results:
         The folder is `folder`, else the environment's QBOUND_RESULTS, else ``results`` beside the
         nearest pyproject.toml at or above the working directory, else ``results`` in it.
         """
-        target = _folder(folder) / f"{self.chapter}.json"
-        target.parent.mkdir(parents=True, exist_ok=True)
         content = {"schema": "qbound/results/1", "chapter": self.chapter, "results": self.entries}
-        draft = target.with_suffix(".json.part")
-        draft.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-        draft.replace(target)
-        return target
+        return write_json(self.chapter, content, folder)
+
+
+def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path:
+    """Write ``<name>.json``, complete or not at all, into the folder that `Results.save` names."""
+    target = _folder(folder) / f"{name}.json"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    draft = target.with_suffix(".json.part")
+    draft.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    draft.replace(target)
+    return target
 
 
 def _folder(folder: str | Path | None) -> Path:

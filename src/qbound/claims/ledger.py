@@ -7,9 +7,12 @@ the list under its id. No entry types its verdict: it hands outcomes to `judge` 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any, Final, Literal, get_args
+
+from qbound.results import write_json
 
 Kind = Literal["equation", "bound", "table", "figure", "sentence"]
 Verdict = Literal[
@@ -22,6 +25,7 @@ Verdict = Literal[
 
 KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
+SCHEMA: Final = "qbound/claims/1"
 MODULES: Final = (
     "labels",
     "theorem_1",
@@ -192,6 +196,17 @@ def claim(name: str) -> Claim:
     if name not in identifiers():
         raise ValueError(f"no claim {name!r}; `qbound claims` lists all")
     return _ENTRIES[name]()
+
+
+def from_content(content: Mapping[str, Any]) -> Claim:
+    """Return the claim of an entry of ``results/claims.json``."""
+    return Claim(**{**content, "evidence": Evidence(**content["evidence"])})
+
+
+def save(ledger: Iterable[Claim], folder: str | Path | None = None) -> Path:
+    """Write ``claims.json`` where `qbound.results.Results.save` writes, complete or not at all."""
+    content = {"schema": SCHEMA, "claims": [one.content() for one in ledger]}
+    return write_json("claims", content, folder)
 
 
 def claims() -> tuple[Claim, ...]:

@@ -7,9 +7,9 @@ import sys
 from collections.abc import Sequence
 
 from qbound import __version__
-from qbound.cli import connected, contains, pave, region, robots
+from qbound.cli import claims, connected, contains, pave, region, results, robots
 
-COMMANDS = (region, contains, connected, pave, robots)
+COMMANDS = (region, contains, connected, pave, robots, claims, results)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
