@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arcs import Arc
 from qbound.balls import ball, precision, turns
 from qbound.crossings import (
     Balls,
@@ -34,7 +35,7 @@ from qbound.crossings import (
 )
 from qbound.exact import ExactProblem
 from qbound.harmonic import HarmonicForm
-from qbound.region import Arc, Component, Region
+from qbound.region import Component, Region
 from qbound.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
 
 if TYPE_CHECKING:
