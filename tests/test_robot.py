@@ -173,7 +173,7 @@ def test_lookups_name_what_there_is() -> None:
 
 @pytest.mark.parametrize("q", [[0.0], [0.0, 0.0, 0.0]])
 def test_a_wrong_number_of_joint_values_is_refused(q) -> None:
-    with pytest.raises(ValueError, match="zip"):
+    with pytest.raises(ValueError, match="expected 2 joint values on the last axis, found"):
         MINERVA.frames(q)
 
 

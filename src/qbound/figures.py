@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from itertools import count, pairwise
-from os import PathLike
+from itertools import count, pairwise, product
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.bodies import outline
+from qbound.outline import polygons
 from qbound.region import Region
 from qbound.robot import Robot
 from qbound.traversal import Traversal
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
-FilePath = str | PathLike[str]
 
 FEASIBLE: Final = "#0072B2"
 COLLIDING: Final = "#D55E00"
@@ -33,6 +32,8 @@ USED: Final = "#007A5E"
 UNUSED: Final = "#CC79A7"
 SECOND: Final = "#E69F00"
 INK: Final = "#222222"
+DRAWN: Final = 1e-3
+"""Largest deviation of a drawn polygon from its arcs, joint units: a tenth of a line's width."""
 LINKS: Final = ("#8C8C8C", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 
 STYLE: Final[dict[str, Any]] = {
@@ -75,17 +76,19 @@ def joint_axes(
     """Label the plane of two joints, degrees, and give both axes one scale."""
     (x0, x1), (y0, y1) = np.degrees(np.asarray(ranges))
     ax.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
-    ax.set_xlabel(f"${_tex(robot.joints[0].name)}$ / °")
-    ax.set_ylabel(f"${_tex(robot.joints[1].name)}$ / °")
-    ax.xaxis.set_major_locator(_every(x1 - x0))
-    ax.yaxis.set_major_locator(_every(y1 - y0))
+    ax.set_xlabel(f"${tex(robot.joints[0].name)}$ / °")
+    ax.set_ylabel(f"${tex(robot.joints[1].name)}$ / °")
+    ax.xaxis.set_major_locator(every(x1 - x0))
+    ax.yaxis.set_major_locator(every(y1 - y0))
 
 
-def plane_axes(ax: Axes, robot: Robot, limits: ArrayLike | None = None) -> None:
-    """Label the plane of motion x, z of a planar arm and give both axes one scale."""
+def plane_axes(
+    ax: Axes, robot: Robot, limits: ArrayLike | None = None, plane: tuple[int, int] = (0, 2)
+) -> None:
+    """Label the plane of motion of a planar arm, x and z, and give both axes one scale."""
     ax.set_aspect("equal")
-    ax.set_xlabel(f"$x$ / {robot.length_unit}")
-    ax.set_ylabel(f"$z$ / {robot.length_unit}")
+    ax.set_xlabel(f"${'xyz'[plane[0]]}$ / {robot.length_unit}")
+    ax.set_ylabel(f"${'xyz'[plane[1]]}$ / {robot.length_unit}")
     if limits is not None:
         (x0, x1), (z0, z1) = np.asarray(limits)
         ax.set(xlim=(x0, x1), ylim=(z0, z1))
@@ -99,6 +102,7 @@ def draw_robot(
     points: Sequence[str] = (),
     bodies: bool = True,
     alpha: float = 1.0,
+    plane: tuple[int, int] = (0, 2),
 ) -> list[Artist]:
     """Draw a planar arm at one configuration: bodies, links, joints, and points by name.
 
@@ -107,23 +111,25 @@ def draw_robot(
     q : array_like, shape (n,)
     points : sequence of str
         Points to mark and name.
+    plane : tuple of int
+        The two coordinates drawn; 0, 1, 2 for x, y, z. Bodies lie in x, z and are drawn there.
     """
+    axes = list(plane)
     frames = robot.frames(np.asarray(q, dtype=float))
     artists: list[Artist] = []
-    for body in robot.bodies if bodies else ():
+    for body in robot.bodies if bodies and plane == (0, 2) else ():
         colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
         seen = outline(robot, body, q)
         artists += ax.fill(*seen.T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1)
     names = [robot.base, *(joint.frame for joint in robot.joints), robot.tool]
-    spine = np.array([frames.position(robot.base, name, robot.base) for name in names])
-    artists += ax.plot(spine[:, 0], spine[:, 2], color=INK, lw=2, alpha=alpha, zorder=3)
-    artists += ax.plot(
-        spine[1:-1, 0], spine[1:-1, 2], "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4
-    )
-    artists += ax.plot(spine[-1:, 0], spine[-1:, 2], "s", color=INK, ms=5, alpha=alpha, zorder=4)
+    spine = np.array([frames.position(robot.base, name, robot.base)[axes] for name in names])
+    joints, tool = spine[1:-1], spine[-1:]
+    artists += ax.plot(*spine.T, color=INK, lw=2, alpha=alpha, zorder=3)
+    artists += ax.plot(*joints.T, "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4)
+    artists += ax.plot(*tool.T, "s", color=INK, ms=5, alpha=alpha, zorder=4)
     # Names go left and right by turns: the two points of a pair in contact are at one place.
     for i, name in enumerate(points):
-        x, _, z = frames.position(robot.base, name, robot.base)
+        x, z = frames.position(robot.base, name, robot.base)[axes]
         artists += ax.plot(x, z, "o", color=COLLIDING, ms=5, zorder=5)
         left = i % 2 == 0 and len(points) > 1
         shift = (-6, -9) if left else (6, 4)
@@ -296,12 +302,14 @@ def bound_label(label: str) -> str:
     return f"$\\{label}$"
 
 
-def _tex(name: str) -> str:
+def tex(name: str) -> str:
+    """Write a name such as ``q1`` as mathtext, its digits below the line."""
     letters = name.rstrip("0123456789")
     return f"{letters}_{{{name[len(letters) :]}}}" if letters and letters != name else name
 
 
-def _every(span: float) -> Any:
+def every(span: float) -> Any:
+    """Return ticks at 30 or 60 degrees, whichever suits the span."""
     from matplotlib.ticker import MultipleLocator
 
     return MultipleLocator(60 if span > 180 else 30)
@@ -316,54 +324,28 @@ def _halo(text: Any) -> Any:
 
 
 def draw_components(ax: Axes, region: Region) -> list[Artist]:
-    """Fill every component, home's in blue, others in grey, with its copies a turn away.
-
-    A component that goes round a joint has no inside in the plane: its boundary alone is drawn.
-    """
+    """Fill every component, home's in blue, others in grey, with its copies a turn away."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
     artists: list[Artist] = []
-    scale = _scales(region)
-    turns = [
-        [0.0] if r is not None else [-2 * np.pi, 0.0, 2 * np.pi] for r in region.problem.ranges
-    ]
-    for component in region.components:
-        style: dict[str, Any] = {
-            "ec": FEASIBLE if component.contains_home else "#777777",
-            "lw": 1.5,
-        }
-        style |= {"fill": not any(component.wraps), "fc": style["ec"] + "40"}
-        rings = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
-        for shift in ((a, b) for a in turns[0] for b in turns[1] if rings):
-            paths = [Path((ring + shift) * scale) for ring in rings]
-            artists.append(ax.add_patch(PathPatch(Path.make_compound_path(*paths), **style)))
+    scale = joint_scales(region)
+    turns = [[0.0] if r else [-2 * np.pi, 0.0, 2 * np.pi] for r in region.problem.ranges]
+    for component in reversed(region.components):  # home's last, over the edges of the others
+        colour = FEASIBLE if component.contains_home else "#777777"
+        pieces, _ = polygons(component, DRAWN)
+        rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
+        walks = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
+        for shift in (np.array(s) for s in product(*turns)):
+            closed = ((np.append(ring, ring[:1], axis=0) + shift) * scale for ring in rings)
+            inside = Path.make_compound_path(*(Path(ring, closed=True) for ring in closed))
+            artists.append(ax.add_patch(PathPatch(inside, fc=colour, alpha=0.25, lw=0)))
+            for walk in walks:
+                artists += ax.plot(*((walk + shift) * scale).T, color=colour, lw=1.5)
     return artists
 
 
-def save_region(file: FilePath, region: Region, joints: Sequence[str], unit: str) -> None:
-    """Draw a region into an SVG file, the same bytes on every run; `unit` is that of lengths."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    scale, kinds = _scales(region), region.problem.forms.kinds
-    ends = [
-        np.array(r or (-np.pi, np.pi)) * s
-        for r, s in zip(region.problem.ranges, scale, strict=True)
-    ]
-    labels = [
-        f"${_tex(name)}$ / {'°' if kind == 'revolute' else unit}"
-        for name, kind in zip(joints, kinds, strict=True)
-    ]
-    with mpl.rc_context(STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(6, 6))
-        ax = figure.add_subplot()
-        draw_components(ax, region)
-        ax.set(xlim=ends[0], ylim=ends[1], xlabel=labels[0], ylabel=labels[1])
-        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
-
-
-def _scales(region: Region) -> Floats:
-    """Degrees a radian for revolute joints, 1 for prismatic ones."""
+def joint_scales(region: Region) -> Floats:
+    """Return degrees a radian for a revolute joint, 1 for a prismatic one, shape (2,)."""
     kinds = region.problem.forms.kinds
     return np.array([np.degrees(1.0) if kind == "revolute" else 1.0 for kind in kinds])

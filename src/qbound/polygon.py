@@ -51,3 +51,19 @@ def along_edges(vertices: ArrayLike, t: ArrayLike) -> Floats:
 def _cross(p: Floats) -> Floats:
     x, y = p.T
     return np.asarray(x * np.roll(y, -1) - y * np.roll(x, -1))
+
+
+def contains(vertices: ArrayLike, point: ArrayLike) -> bool:
+    """Tell whether a point lies inside a polygon: a ray from it crosses the edges an odd number.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (m, 2)
+    point : array_like, shape (2,)
+    """
+    p, (x, y) = np.asarray(vertices, dtype=float), np.asarray(point, dtype=float)
+    q = np.roll(p, -1, axis=0)
+    spans = (p[:, 1] > y) != (q[:, 1] > y)
+    p, q = p[spans], q[spans]
+    ahead = x < p[:, 0] + (y - p[:, 1]) * (q[:, 0] - p[:, 0]) / (q[:, 1] - p[:, 1])
+    return bool(np.count_nonzero(ahead) % 2)

@@ -132,8 +132,19 @@ class Robot:
         ----------
         q : array_like, shape (..., n)
             Joint values, or SymPy expressions.
+
+        Raises
+        ------
+        ValueError
+            If the last axis has not one value a joint.
         """
-        columns = np.moveaxis(np.asarray(q), -1, 0)
+        values, n = np.asarray(q), len(self.joints)
+        if values.shape[-1:] != (n,):
+            found = values.shape[-1] if values.ndim else "a bare number"
+            raise ValueError(
+                f"expected {n} joint value{'s' * (n != 1)} on the last axis, found {found}"
+            )
+        columns = np.moveaxis(values, -1, 0)
         moved = [_joint_frame(joint, x) for joint, x in zip(self.joints, columns, strict=True)]
         fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
         return Frames(self.base, [*moved, *fixed])

@@ -50,8 +50,18 @@ class Sample:
         return float(np.sqrt(p * (1 - p) / len(self.free)))
 
 
+BATCH = 50_000
+"""Configurations that are judged at once: enough to be fast, few enough for any memory."""
+
+
 def sample(
-    robot: Robot, n: int, predicate: Predicate, *, seed: int, limits: ArrayLike | None = None
+    robot: Robot,
+    n: int,
+    predicate: Predicate,
+    *,
+    seed: int,
+    limits: ArrayLike | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> Sample:
     """Draw `n` configurations evenly and judge each (Figure 11).
 
@@ -63,10 +73,19 @@ def sample(
         Of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
         Range of each joint; default: its limits, or (-pi, pi) where it turns all the way round.
+    progress : callable, optional
+        Told, now and then, how many are done.
     """
     low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
-    return Sample(q, position(robot, robot.tool)(q), predicate(robot, q))
+    tool, free = np.empty((n, 3)), np.empty(n, dtype=bool)
+    where = position(robot, robot.tool)
+    for start in range(0, n, BATCH):
+        batch = slice(start, min(start + BATCH, n))
+        tool[batch], free[batch] = where(q[batch]), predicate(robot, q[batch])
+        if progress is not None:
+            progress(batch.stop)
+    return Sample(q, tool, free)
 
 
 def joint_ranges(robot: Robot) -> Floats:

@@ -60,3 +60,9 @@ CONTACT: Final = 1e-14
 
 Conservative advancement comes closer by a fixed factor each step and ends in the rounding of the
 corners' coordinates, a few 1e-16 of the arm."""
+
+SAME_PLACE: Final = 1e-7
+"""Parameters of a path closer than this are one place.
+
+Newton, with slopes from central differences, ends within 1e-10 of a crossing; two that a reader
+would tell apart are farther from each other than this."""

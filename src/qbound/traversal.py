@@ -1,7 +1,8 @@
-"""Traversals: vertices visited in an order, the joint path between them and the tool's path."""
+"""Traversals: vertices or arcs visited in an order, the joint path and the tool's path."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, permutations
@@ -10,14 +11,34 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary import position
+from qbound.curves import Curve, flatten, self_crossings
 from qbound.robot import Robot
+
+__all__ = ["Leg", "Traversal", "follow", "self_crossings", "simple_orders", "straight", "traverse"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class Leg:
+    """A smooth piece of a joint path.
+
+    Attributes
+    ----------
+    at : callable
+        Parameters in [0, 1], shape (k,), to joint values, shape (k, n).
+    bend : float or None
+        Bound on the second derivative of the tool's place by the parameter, length; None where
+        none is known, as on an arc.
+    """
+
+    at: Curve
+    bend: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Traversal:
-    """A path through joint space, straight from vertex to vertex, and what the tool does.
+    """A path through joint space, leg by leg, and what the tool does.
 
     Attributes
     ----------
@@ -26,24 +47,49 @@ class Traversal:
     tool : ndarray, shape (m, 3)
         Tool positions seen from the base; length.
     stops : ndarray of int
-        Rows of `q` at which the vertices are visited.
+        Rows of `q` at which legs begin and end.
     reach : ndarray, shape (m,)
         Distance of the tool from the origin of the first joint's frame; length.
+    s : ndarray, shape (m,)
+        Place of each row on the path: legs behind it, plus the parameter on its own.
+    legs : tuple of Leg
+    deviation : float
+        The tool's path is nowhere farther than this from the polyline through `tool`; length.
+    proved : bool
+        Whether `deviation` is a bound (straight legs) or measured between the rows (arcs).
     """
 
     q: Floats
     tool: Floats
     stops: NDArray[np.int64]
     reach: Floats
+    s: Floats
+    legs: tuple[Leg, ...]
+    deviation: float
+    proved: bool
 
     @property
     def final_pose(self) -> Floats:
         """Joint values at the end, shape (n,)."""
         return np.asarray(self.q[-1])
 
+    def at(self, s: ArrayLike) -> Floats:
+        """Return the joint values at places of the path (as in `s`), shape (k, n)."""
+        s = np.atleast_1d(np.asarray(s, dtype=float))
+        index = np.clip(s.astype(int), 0, len(self.legs) - 1)
+        q = np.empty((len(s), self.q.shape[1]))
+        for i in np.unique(index):
+            q[index == i] = self.legs[i].at(s[index == i] - i)
+        return q
+
 
 def traverse(
-    robot: Robot, vertices: ArrayLike, *, closed: bool = False, step: float = 0.01
+    robot: Robot,
+    vertices: ArrayLike,
+    *,
+    closed: bool = False,
+    step: float = 0.01,
+    deviation: float | None = None,
 ) -> Traversal:
     """Visit vertices in the order given, along straight lines in joint space (Figures 7-9).
 
@@ -54,38 +100,70 @@ def traverse(
     closed : bool
         Whether to return to the first vertex.
     step : float
-        Largest change of any joint from one row to the next.
+        Largest change of any joint from one row to the next, where no `deviation` is given.
+    deviation : float, optional
+        Largest distance of the tool's path from the polyline through its rows; length. Rows are
+        as close as a bound on the second derivative asks for (not in the paper).
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two vertices or a value is not finite.
     """
     stops = np.asarray(vertices, dtype=float)
+    if len(stops) < 2 or not np.isfinite(stops).all():
+        raise ValueError("a path needs two vertices or more, of finite joint values")
     if closed:
         stops = np.concatenate([stops, stops[:1]])
-    q, rows = _straight(stops, step)
-    tool = position(robot, robot.tool)(q)
-    shoulder = robot.frames(q).position(robot.base, robot.joints[0].frame, robot.base)
-    return Traversal(q, tool, rows, np.linalg.norm(tool - shoulder, axis=-1))
+    legs = [straight(robot, a, b) for a, b in pairwise(stops)]
+    if deviation is not None:
+        return follow(robot, legs, deviation)
+    steps = [max(1, math.ceil(np.abs(b - a).max() / step)) for a, b in pairwise(stops)]
+    return _joined(robot, legs, [np.linspace(0, 1, n + 1) for n in steps], 0.0)
 
 
-def self_crossings(path: ArrayLike) -> Floats:
-    """Return the points at which a plane path crosses itself, shape (k, 2).
-
-    Two pieces cross where each has its ends on different sides of the other. A path that only
-    touches itself, as a closed one does at its start, does not cross; nor is a crossing counted
-    that passes exactly through a corner.
+def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
+    """Go along legs one after the other, in rows that keep to the tool's path (not in the paper).
 
     Parameters
     ----------
-    path : array_like, shape (m, 2)
+    deviation : float
+        Largest distance of the tool's path from the polyline through its rows; length.
+
+    Raises
+    ------
+    ValueError
+        If there is no leg or the deviation is not above zero.
     """
-    p = np.asarray(path, dtype=float)
-    start, step = p[:-1], np.diff(p, axis=0)
-    gap = start[None, :] - start[:, None]
-    turn = _cross(step[:, None], step[None, :])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = _cross(gap, step[None, :]) / turn
-        s = _cross(gap, step[:, None]) / turn
-    later = np.triu(np.ones(turn.shape, dtype=bool), k=2)
-    i, j = np.nonzero(later & (t > 0) & (t < 1) & (s > 0) & (s < 1))
-    return np.asarray(start[i] + t[i, j, None] * step[i])
+    if not legs:
+        raise ValueError("a path needs a leg")
+    if not deviation > 0:
+        raise ValueError(f"a deviation must be above 0, found {deviation:g}")
+    tool = position(robot, robot.tool)
+    grids, measured = [], 0.0
+    for leg in legs:
+        if leg.bend is None:
+            grid, off = flatten(_image(tool, leg.at), deviation)
+            measured = max(measured, off)
+        else:  # a chord of a curve of length 1 in s, cut in n: bend / (8 n^2) at most
+            n = max(1, math.ceil(math.sqrt(leg.bend / (8 * deviation))))
+            grid = np.linspace(0, 1, n + 1)
+        grids.append(grid)
+    return _joined(robot, legs, grids, measured)
+
+
+def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:
+    r"""Return the straight line between two configurations and the bound on the tool's bend.
+
+    Notes
+    -----
+    Not in the paper. Along the line each joint moves at the constant rate :math:`d_j`. A vector
+    of length l carried by revolute joints of rates :math:`d_j` has a second derivative of at most
+    :math:`(\sum |d_j|)^2\, l`; a prismatic joint adds :math:`2 |d| \sum |d_j|`. The tool is the
+    sum of the links, so the bound is the sum of theirs.
+    """
+    a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    return Leg(lambda s: (1 - s)[:, None] * a + s[:, None] * b, _bend(robot, a, b))
 
 
 def simple_orders(
@@ -104,15 +182,45 @@ def _tool_path(robot: Robot, q: Floats, order: Sequence[int]) -> Floats:
     return traverse(robot, q[list(order)], step=0.03).tool
 
 
-def _straight(stops: Floats, step: float) -> tuple[Floats, NDArray[np.int64]]:
-    """Divide each straight piece evenly, no joint changing by more than `step`."""
-    pieces = [
-        np.linspace(a, b, max(1, int(np.ceil(np.abs(b - a).max() / step))) + 1)
-        for a, b in pairwise(stops)
-    ]
-    rows = np.cumsum([0, *(len(piece) - 1 for piece in pieces)])
-    return np.concatenate([stops[:1], *(piece[1:] for piece in pieces)]), rows
+def _bend(robot: Robot, a: Floats, b: Floats) -> float:
+    """Sum over the links up to the tool; see `straight`."""
+    point = robot.point(robot.tool)
+    bend = turning = 0.0
+    carrier = robot.base
+    for joint, low, high in zip(robot.joints, a, b, strict=True):
+        if carrier == point.frame:
+            break
+        slide = joint.mount @ joint.axis if joint.kind == "prismatic" else np.zeros(3)
+        ends = (np.linalg.norm(joint.origin + q * slide) for q in (low, high))
+        bend += turning**2 * float(max(ends))
+        if joint.kind == "revolute":
+            turning += abs(high - low)
+        else:
+            bend += 2 * turning * abs(high - low)
+        carrier = joint.frame
+    return float(bend + turning**2 * np.linalg.norm(point.at))
 
 
-def _cross(u: Floats, v: Floats) -> Floats:
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+def _joined(
+    robot: Robot, legs: Sequence[Leg], grids: Sequence[Floats], measured: float
+) -> Traversal:
+    """Put the rows of all legs together; a stop is one row, that of the leg that begins there."""
+    pieces = [leg.at(grid) for leg, grid in zip(legs, grids, strict=True)]
+    q = np.concatenate([*(piece[:-1] for piece in pieces), pieces[-1][-1:]])
+    places = [i + grid[:-1] for i, grid in enumerate(grids)]
+    s = np.concatenate([*places, [float(len(legs))]])
+    stops = np.cumsum([0, *(len(grid) - 1 for grid in grids)])
+    bounds = (
+        leg.bend / (8 * (len(grid) - 1) ** 2)
+        for leg, grid in zip(legs, grids, strict=True)
+        if leg.bend is not None
+    )
+    proved = all(leg.bend is not None for leg in legs)
+    tool = position(robot, robot.tool)(q)
+    shoulder = robot.frames(q).position(robot.base, robot.joints[0].frame, robot.base)
+    reach = np.linalg.norm(tool - shoulder, axis=-1)
+    return Traversal(q, tool, stops, reach, s, tuple(legs), max(measured, *bounds, 0.0), proved)
+
+
+def _image(tool: Curve, at: Curve) -> Curve:
+    return lambda s: tool(at(s))

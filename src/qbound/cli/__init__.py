@@ -3,25 +3,74 @@
 from __future__ import annotations
 
 import argparse
+import os
+import re
 import sys
 from collections.abc import Sequence
 
 from qbound import __version__
-from qbound.cli import claims, connected, contains, pave, region, results, robots
+from qbound.cli import (
+    claims,
+    connected,
+    contains,
+    draw,
+    pave,
+    region,
+    results,
+    robots,
+    sample,
+    traverse,
+)
 
-COMMANDS = (region, contains, connected, pave, robots, claims, results)
+COMMANDS = (
+    region,
+    contains,
+    connected,
+    traverse,
+    sample,
+    pave,
+    draw,
+    robots,
+    claims,
+    results,
+)
+"""In the order of the help."""
+
+STOPPED, NO_READER = 130, 141
+"""Exit status after Ctrl-C, and where nobody reads the output any more: as shells have it."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0 done or proved, 1 infeasible or refuted, 2 bad input, 3 undecided."""
+    words = sys.argv[1:] if arguments is None else arguments
+    options = command_line().parse_args([_shielded(word) for word in words])
+    try:
+        status = int(options.run(options))
+        sys.stdout.flush()
+    except BrokenPipeError:  # as in `qbound region ... | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NO_READER
+    except (ValueError, OSError, ImportError) as error:
+        print(f"qbound: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("qbound: stopped", file=sys.stderr)
+        return STOPPED
+    return status
+
+
+def command_line() -> argparse.ArgumentParser:
+    """Return the parser of the command, with one subparser a command."""
     parser = argparse.ArgumentParser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action="version", version=f"qbound {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add_to(commands)
-    options = parser.parse_args(arguments)
-    try:
-        return int(options.run(options))
-    except (ValueError, OSError, ImportError) as error:
-        print(f"qbound: {error}", file=sys.stderr)
-        return 2
+    for subparser in commands.choices.values():
+        subparser.formatter_class = argparse.RawDescriptionHelpFormatter  # examples stay in line
+    return parser
+
+
+def _shielded(word: str) -> str:
+    """Let ``-45deg`` be a value: argparse knows plain negative numbers only."""
+    return f" {word}" if re.match(r"-\.?\d", word) else word

@@ -1,4 +1,4 @@
-"""``qbound region``: all regions of two joints, on the screen, as JSON, as a picture."""
+"""``qbound region``: all regions of two joints, on the screen, as JSON, polygons, a picture."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from qbound import __version__, paper_rule
-from qbound.cli.values import held, write_text, write_whole
-from qbound.region import Component, Region, find_region, solve, violated
+from qbound import __version__
+from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
+from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
+from qbound.cli.values import Content, check_targets, held, joint_units, write_all
+from qbound.region import Component, Region, violated
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
 
@@ -23,38 +25,61 @@ def add_to(commands: Any) -> None:
         help="all regions of two joints",
         epilog="example: qbound region minervabot-v2 --json -",
     )
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
-    parser.add_argument("--rule", choices=("clearance", "paper"), default="clearance")
+    add_robot(parser)
+    add_rule(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the components")
+    parser.add_argument("--csv", metavar="FILE", help="write polygons, a row a corner")
+    parser.add_argument("--geojson", metavar="FILE", help="write polygons as GeoJSON has them")
+    parser.add_argument("--npz", metavar="FILE", help="write polygons as NumPy arrays")
     parser.add_argument(
-        "--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints at values"
+        "--deviation",
+        type=float,
+        default=0.001,
+        metavar="D",
+        help="largest distance of polygons from the exact arcs, joint units (default 0.001)",
     )
+    add_slice(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Find the region; 1 if the home pose is not in it."""
     robot = load_robot(options.robot)
+    files = [options.svg, options.csv, options.geojson, options.npz, options.json]
+    check_targets([file for file in files if file])
     values = held(robot, options.slice)
     region = region_by_rule(robot, options.rule, values)
     content = region_content(robot, region, options.rule, values)
-    if options.svg:
-        _draw(options.svg, region, content["joints"], robot.length_unit)
-    if options.json:
-        write_text(options.json, json.dumps(content, indent=1) + "\n")
-    if options.json != "-":
+    write_all(_outputs(options, robot, region, content, values))
+    if "-" not in files:
         _say(region, content)
     return 0 if content["home"]["feasible"] else 1
 
 
-def region_by_rule(robot: Robot, rule: str, values: dict[int, float]) -> Region:
-    """Find the region by the clearance rule or by the paper's."""
-    if rule == "clearance":
-        return find_region(robot, values)
-    if values:
-        raise ValueError("--slice: the paper's rule knows two joints only")
-    return solve(paper_rule.problem(robot), robot.home)
+def _outputs(
+    options: argparse.Namespace,
+    robot: Robot,
+    region: Region,
+    content: dict[str, Any],
+    values: dict[int, float],
+) -> list[tuple[str, Content]]:
+    """Make what was asked for; files in the order in which they are named here."""
+    joints, free = content["joints"], free_joints(robot, values)
+    units, outputs = joint_units(robot, free), list[tuple[str, Content]]()
+    if options.svg:
+        outputs.append((options.svg, _draw(robot, content["home"]["q"], region, free)))
+    if options.csv or options.geojson or options.npz:
+        drawn = outlines(region, options.deviation)
+        if options.csv:
+            outputs.append((options.csv, polygon_csv(drawn, joints, units)))
+        if options.geojson:
+            outputs.append((options.geojson, polygon_json(region, drawn, joints, units)))
+        if options.npz:
+            outputs.append((options.npz, polygon_npz(region, drawn, joints, units)))
+    if options.json:
+        outputs.append((options.json, json.dumps(content, indent=1) + "\n"))
+    return outputs
 
 
 def region_content(
@@ -121,7 +146,8 @@ def _say(region: Region, content: dict[str, Any]) -> None:
         print(f"  area {component.area:.9g}, {vertices} vertices{home}")
 
 
-def _draw(file: str, region: Region, joints: Sequence[str], unit: str) -> None:
-    from qbound.figures import save_region
+def _draw(robot: Robot, q: Sequence[float], region: Region, free: Sequence[int]) -> bytes:
+    from qbound.pictures import Chart, pose_picture
 
-    write_whole(file, lambda draft: save_region(draft, region, joints, unit))
+    numbered = region.components[0] if region.components else None
+    return pose_picture(robot, q, Chart(region, (free[0], free[1]), numbered), None)

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import math
-from collections.abc import Callable, Sequence
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from qbound.robot import Robot
+
+Content = str | bytes | Callable[[Path], object]
+"""A text, bytes, or a function that writes the file at a path."""
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
@@ -32,6 +42,7 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
 def joint_value(robot: Robot, j: int, text: str) -> float:
     """Read a joint value: with deg or rad, or a plain number in the robot file's own unit."""
     revolute = robot.joints[j].kind == "revolute"
+    text = text.strip()
     number, unit = text, robot.angle_unit if revolute else robot.length_unit
     for suffix in ("deg", "rad"):
         if revolute and text.endswith(suffix):
@@ -45,20 +56,108 @@ def joint_value(robot: Robot, j: int, text: str) -> float:
     return math.radians(value) if unit == "deg" else value
 
 
-def write_whole(file: str, write: Callable[[Path], object]) -> None:
-    """Write a file whole or not at all: a draft beside it, then renamed."""
-    target = Path(file)
-    draft = target.with_name(target.name + ".part")
+def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
+    """Write several files, every one whole, or none at all; ``-`` is standard output, written last.
+
+    Drafts are made beside the files and renamed when all of them are complete.
+    """
+    check_targets([file for file, _ in outputs])
+    targets = [(Path(file).resolve(), content) for file, content in outputs if file != "-"]
+    drafts = [path.with_name(f".{path.name}.{os.getpid()}.part") for path, _ in targets]
     try:
-        write(draft)
-        draft.replace(target)
+        for (path, content), draft in zip(targets, drafts, strict=True):
+            try:
+                _write(draft, content)
+            except OSError as error:
+                raise ValueError(f"{path}: not written: {error.strerror or error}") from None
+        for (path, _), draft in zip(targets, drafts, strict=True):
+            draft.replace(path)
     finally:
-        draft.unlink(missing_ok=True)
+        for draft in drafts:
+            draft.unlink(missing_ok=True)
+    for content in (content for file, content in outputs if file == "-"):
+        if isinstance(content, bytes):
+            sys.stdout.buffer.write(content)
+        else:
+            print(content, end="")
+
+
+def check_targets(files: Sequence[str], kinds: Sequence[str] = ()) -> None:
+    """Refuse, before any work, files that could not be written.
+
+    Parameters
+    ----------
+    kinds : sequence of str, optional
+        Endings that are allowed, such as ``svg``.
+
+    Raises
+    ------
+    ValueError
+        If two are the same, a folder is missing, a target is no regular file, or an ending unknown.
+    """
+    seen = set()
+    for file in files:
+        path = Path(file).resolve() if file != "-" else Path("-")
+        if path in seen:
+            raise ValueError(f"{file}: two outputs go to this one place")
+        seen.add(path)
+        if file == "-":
+            continue
+        if not path.parent.is_dir():
+            raise ValueError(f"{file}: No such file or directory: {path.parent}")
+        if path.exists() and not path.is_file():
+            raise ValueError(f"{file}: is no regular file")
+        if kinds and path.suffix.removeprefix(".").lower() not in kinds:
+            raise ValueError(
+                f"{file}: unknown ending {path.suffix!r}; wanted: .{', .'.join(kinds)}"
+            )
+
+
+def write_whole(file: str, write: Callable[[Path], object]) -> None:
+    """Write one file whole or not at all: a draft beside it, then renamed."""
+    write_all([(file, write)])
 
 
 def write_text(file: str, text: str) -> None:
     """Write a text whole or not at all; ``-`` is standard output."""
-    if file == "-":
-        print(text, end="")
+    write_all([(file, text)])
+
+
+def _write(draft: Path, content: Content) -> None:
+    if isinstance(content, str):
+        draft.write_text(content, encoding="utf-8", newline="\n")
+    elif isinstance(content, bytes):
+        draft.write_bytes(content)
     else:
-        write_whole(file, lambda draft: draft.write_text(text, encoding="utf-8"))
+        content(draft)
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return comma-separated values with a header; numbers with all their digits."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return buffer.getvalue()
+
+
+def npz_bytes(arrays: Mapping[str, ArrayLike]) -> bytes:
+    """Return arrays as a NumPy .npz file, the same bytes on every run."""
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=False, **{k: np.asarray(v) for k, v in arrays.items()})
+    return buffer.getvalue()
+
+
+def joint_units(robot: Robot, joints: Iterable[int] | None = None) -> list[str]:
+    """Return the unit of each joint's values: ``rad``, or the robot's length unit."""
+    chosen = range(len(robot.joints)) if joints is None else joints
+    return ["rad" if robot.kinds[j] == "revolute" else robot.length_unit for j in chosen]
+
+
+def shown(robot: Robot, j: int, value: float) -> str:
+    """Return a joint's name and value, for a reader, in the units of the robot file."""
+    joint, unit = robot.joints[j], robot.length_unit
+    if joint.kind == "revolute":
+        unit = robot.angle_unit
+        value = math.degrees(value) if unit == "deg" else value
+    return f"{joint.name} = {value:.6g} {unit}"

@@ -1,0 +1,68 @@
+"""What several commands choose alike: rule, slice, component; and the region that they mean."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound import paper_rule
+from qbound.outline import from_lowest
+from qbound.region import Component, Region, find_region, solve
+from qbound.robot import Robot
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """Add the robot."""
+    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+
+
+def add_rule(parser: argparse.ArgumentParser) -> None:
+    """Add the rule."""
+    parser.add_argument(
+        "--rule",
+        choices=("clearance", "paper"),
+        default="clearance",
+        help="clearance: every boundary keeps its distance (default); paper: windows of Table 6",
+    )
+
+
+def add_slice(parser: argparse.ArgumentParser) -> None:
+    """Add the slice."""
+    parser.add_argument(
+        "--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints at values"
+    )
+
+
+def region_by_rule(robot: Robot, rule: str, values: dict[int, float]) -> Region:
+    """Find the region by a rule; loops and vertices begin at the lowest vertex."""
+    if rule == "clearance":
+        region = find_region(robot, values)
+    elif values:
+        raise ValueError("--slice: the paper's rule knows two joints only")
+    else:
+        region = solve(paper_rule.problem(robot), robot.home)
+    return replace(region, components=tuple(map(from_lowest, region.components)))
+
+
+def component_of(region: Region, k: int) -> Component:
+    """Return a component by its number, from 0 as in the JSON."""
+    count = len(region.components)
+    if not 0 <= k < count:
+        raise ValueError(f"no component {k}; there are {count}, numbered from 0")
+    return region.components[k]
+
+
+def free_joints(robot: Robot, values: dict[int, float]) -> list[int]:
+    """Return the joints that are not held."""
+    return [j for j in range(len(robot.joints)) if j not in values]
+
+
+def embedded(robot: Robot, values: dict[int, float], q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Put the held joints' values beside those of the free ones, (..., free) to (..., n)."""
+    full = np.empty((*q.shape[:-1], len(robot.joints)))
+    full[..., free_joints(robot, values)] = q
+    full[..., list(values)] = list(values.values())
+    return full

@@ -1,0 +1,74 @@
+"""``qbound draw``: the joint-space region beside the robot in a pose."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from qbound.cli.chosen import (
+    add_robot,
+    add_rule,
+    add_slice,
+    component_of,
+    free_joints,
+    region_by_rule,
+)
+from qbound.cli.values import check_targets, configuration, held, write_all
+from qbound.encounters import plane_of_motion
+from qbound.robotfile import load_robot
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "draw",
+        help="a picture of the region and of the robot",
+        description="Draw the region of two joints, vertices numbered, and the robot in a pose.",
+        epilog="example: qbound draw minervabot-v2 -o arm.svg --q 20deg -45deg",
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "-o", metavar="FILE", dest="output", help=".svg or .png; default: the robot's name, .svg"
+    )
+    add_rule(parser)
+    parser.add_argument("--q", nargs="+", metavar="VALUE", help="the pose; default: home")
+    parser.add_argument("--region", action="store_true", help="the region alone")
+    parser.add_argument("--robot", action="store_true", dest="arm", help="the robot alone")
+    parser.add_argument(
+        "--component", type=int, default=0, metavar="K", help="number the vertices of this one"
+    )
+    add_slice(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw the picture and say where it is."""
+    robot = load_robot(options.robot)
+    output = options.output or f"{Path(options.robot).stem}.svg"
+    check_targets([output], ("svg", "png"))
+    values = held(robot, options.slice)
+    q = np.array(robot.home if options.q is None else configuration(robot, options.q))
+    q[list(values)] = list(values.values())
+    both = options.region == options.arm
+    write_all([(output, _picture(options, q, values, both))])
+    print(output)
+    return 0
+
+
+def _picture(
+    options: argparse.Namespace, q: np.ndarray[Any, Any], values: dict[int, float], both: bool
+) -> bytes:
+    from qbound.pictures import Chart, pose_picture
+
+    robot, chart = load_robot(options.robot), None
+    if both or options.region:
+        region = region_by_rule(robot, options.rule, values)
+        first, second = free_joints(robot, values)
+        numbered = component_of(region, options.component) if region.components else None
+        chart = Chart(region, (first, second), numbered)
+    plane = (plane_of_motion(robot) or (0, 2)) if both or options.arm else None
+    kind = Path(options.output or ".svg").suffix.removeprefix(".").lower() or "svg"
+    return pose_picture(robot, q, chart, plane, kind)

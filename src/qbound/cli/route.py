@@ -1,0 +1,144 @@
+"""From numbers of vertices or arcs to a path: what ``qbound traverse`` is asked for."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound import polygon
+from qbound.cli.chosen import component_of, embedded, region_by_rule
+from qbound.cli.values import held
+from qbound.curves import Curve
+from qbound.outline import arc_curve
+from qbound.region import Component, Region
+from qbound.robot import Robot
+from qbound.traversal import Leg, Traversal, follow, straight
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A path with the names of its stops and legs.
+
+    Attributes
+    ----------
+    walk : Traversal
+    region : Region
+    held : dict of int to float
+        Joints that do not move, and their values.
+    stops, legs : list of str
+        Names: numbers of vertices, or of the visit; ``3 to 4`` or ``arc 2``.
+    """
+
+    walk: Traversal
+    region: Region
+    held: dict[int, float]
+    stops: list[str]
+    legs: list[str]
+
+    def leg_of(self, s: float) -> str:
+        """Return the name of the leg at a place of the path."""
+        return self.legs[min(int(s), len(self.legs) - 1)]
+
+    def where(self, s: float) -> str:
+        """Return the leg for a reader."""
+        return f"on {self.leg_of(s)}"
+
+
+def plan(robot: Robot, options: argparse.Namespace) -> Route:
+    """Find the region, look the numbers up, and go."""
+    values = held(robot, options.slice)
+    deviation = default_deviation(robot) if options.deviation is None else options.deviation
+    region = region_by_rule(robot, options.rule, values)
+    component = component_of(region, options.component)
+    make = _along_arcs if options.arcs else _along_lines
+    stops, named = make(robot, component, values, options)
+    names, legs = [name for name, _ in named], [leg for _, leg in named]
+    return Route(follow(robot, legs, deviation), region, values, stops, names)
+
+
+def default_deviation(robot: Robot) -> float:
+    """Return a ten-thousandth of the stretched arm: all links and longest slides; length."""
+    links = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
+    slides = [
+        max(map(abs, joint.limits))
+        for joint in robot.joints
+        if joint.kind == "prismatic" and joint.limits
+    ]
+    tool = float(np.linalg.norm(robot.point(robot.tool).at))
+    return 1e-4 * (sum(links) + sum(slides) + tool) or 1e-4
+
+
+def _along_lines(
+    robot: Robot, component: Component, values: dict[int, float], options: argparse.Namespace
+) -> tuple[list[str], list[tuple[str, Leg]]]:
+    """Straight from vertex to vertex."""
+    order = [*options.order, options.order[0]] if options.closed else options.order
+    corners = np.array([vertex.q for vertex in component.vertices]).reshape(-1, 2)
+    _refuse_unknown(order, len(corners), "vertex", options.component)
+    if len(order) < 2:
+        raise ValueError("a path needs two vertices or more")
+    if not options.scale > 0:
+        raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
+    if options.scale != 1:
+        corners = polygon.scaled(corners, options.scale, polygon.centroid(corners))
+    q = embedded(robot, values, corners)
+    legs = [(f"{a} to {b}", straight(robot, q[a - 1], q[b - 1])) for a, b in pairwise(order)]
+    return [str(number) for number in order], legs
+
+
+def _along_arcs(
+    robot: Robot, component: Component, values: dict[int, float], options: argparse.Namespace
+) -> tuple[list[str], list[tuple[str, Leg]]]:
+    """Along the arcs, from the end of each straight to the start of the next if they are apart."""
+    if options.scale != 1:
+        raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
+    order = [*options.order, options.order[0]] if options.closed else options.order
+    arcs = [arc for loop in component.loops for arc in loop]
+    _refuse_unknown([abs(number) for number in order], len(arcs), "arc", options.component)
+    curves = [_turned(arc_curve(arcs[abs(k) - 1]), k < 0, robot, values) for k in order]
+    if options.closed:
+        *curves, again = curves
+        ends = [*map(_ends, curves), (_ends(again)[0],) * 2]
+    else:
+        ends = [*map(_ends, curves)]
+    named = list(_joined(robot, order, curves, ends))
+    return [str(number) for number in range(1, len(named) + 2)], named
+
+
+def _joined(
+    robot: Robot,
+    order: Sequence[int],
+    curves: Sequence[Curve],
+    ends: Sequence[tuple[Floats, Floats]],
+) -> Iterator[tuple[str, Leg]]:
+    for i, (number, (start, _)) in enumerate(zip(order, ends, strict=True)):
+        if i and np.abs(start - ends[i - 1][1]).max() > 1e-6:
+            yield f"line to arc {abs(number)}", straight(robot, ends[i - 1][1], start)
+        if i < len(curves):
+            back = " backwards" if number < 0 else ""
+            yield f"arc {abs(number)}{back}", Leg(curves[i])
+
+
+def _turned(curve: Curve, backwards: bool, robot: Robot, values: dict[int, float]) -> Curve:
+    if backwards:
+        return lambda s: embedded(robot, values, curve(1 - s))
+    return lambda s: embedded(robot, values, curve(s))
+
+
+def _ends(curve: Curve) -> tuple[Floats, Floats]:
+    start, end = curve(np.array([0.0, 1.0]))
+    return start, end
+
+
+def _refuse_unknown(order: Sequence[int], count: int, what: str, component: int) -> None:
+    for number in order:
+        if not 1 <= number <= count:
+            there = f"it has {count}, numbered from 1" if count else f"it has no {what}"
+            raise ValueError(f"no {what} {number} in component {component}: {there}")

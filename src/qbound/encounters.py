@@ -1,0 +1,275 @@
+"""What a path meets: itself, the singular curve, and how near it comes to each boundary.
+
+The rows of a traversal only say where to look: every place is refined on the path itself. The
+paper reads its paths off pictures (Section 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.boundary import clearance, pair_vector, position, required_distance
+from qbound.curves import meetings
+from qbound.region import Problem
+from qbound.robot import HalfSpace, Pair, Robot
+from qbound.tolerances import ON_BOUNDARY, SAME_PLACE
+from qbound.traversal import Traversal
+
+Floats = NDArray[np.float64]
+Form = Callable[[Floats], Floats]
+
+ROWS_OF_A_LEG = 65
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A margin that must not be negative, as a function of joint values.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        Of the margin: the robot's length unit, or that of a joint whose limit it is.
+    margin : callable
+        Joint values, shape (k, n), to margins, shape (k,).
+    scale : float
+        Size of the lengths or angles that the margin is a difference of: its rounding.
+    """
+
+    name: str
+    unit: str
+    margin: Form
+    scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A place of a path: `s` as in `Traversal.s`, and the joint values there."""
+
+    s: float
+    q: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """A point of the plane of motion that a path passes twice, in two directions."""
+
+    point: Floats
+    first: Place
+    second: Place
+
+
+@dataclass(frozen=True, eq=False)
+class Margin:
+    """The smallest margin of one boundary along a path.
+
+    Attributes
+    ----------
+    boundary : Boundary
+    value : float
+        Negative where the path is outside.
+    place : Place
+        Where it is smallest.
+    leaves : Place or None
+        Where the path is outside first; None if it keeps the boundary.
+    """
+
+    boundary: Boundary
+    value: float
+    place: Place
+    leaves: Place | None
+
+
+def plane_of_motion(robot: Robot) -> tuple[int, int] | None:
+    """Return the two coordinates (0, 1, 2 for x, y, z) that the tool moves in; None if not two."""
+    tool = position(robot, robot.tool)
+    moving = [i for i in range(3) if tool[i].joints()]
+    return (moving[0], moving[1]) if len(moving) == 2 else None
+
+
+def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> list[Crossing]:
+    """Find where the tool's path crosses itself, by Newton from the crossings of a polyline.
+
+    A stop that is visited twice is no crossing, nor is a piece that is run twice.
+    """
+    tool = position(robot, robot.tool)[list(plane)]
+
+    def path(s: Floats) -> Floats:
+        return np.asarray(tool(walk.at(s)))
+
+    found: list[Crossing] = []
+    for s, t in _candidates(path, len(walk.legs)):
+        pair = _newton(path, np.array([s, t]), len(walk.legs))
+        if pair is not None and not any(
+            abs(pair - (c.first.s, c.second.s)).max() < SAME_PLACE for c in found
+        ):
+            first, second = (Place(float(x), walk.at(x)[0]) for x in pair)
+            found.append(Crossing(path(pair[:1])[0], first, second))
+    return sorted(found, key=lambda c: (c.first.s, c.second.s))
+
+
+def singular_crossings(
+    robot: Robot, walk: Traversal, plane: tuple[int, int], joints: Sequence[int] = (0, 1)
+) -> list[Place] | None:
+    """Find where a path crosses the singular curve: det J of two joints changes its sign there.
+
+    None if det J is zero all along. Signs are compared at the rows; two changes between
+    neighbouring rows are not seen.
+    """
+    tool = position(robot, robot.tool)[list(plane)]
+
+    def det(q: Floats) -> Floats:
+        return np.asarray(np.linalg.det(tool.gradient(q)[..., list(joints)]))
+
+    grid = _grid(walk)
+    values = det(walk.at(grid))
+    rounding = ON_BOUNDARY * np.abs(tool.coefficients).max() ** 2
+    if (np.abs(values) <= rounding).all():
+        return None
+    return _sign_changes(walk, det, grid[np.abs(values) > rounding])
+
+
+def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:
+    """Places between rows of different sign, by bisection."""
+    signs = np.sign(form(walk.at(grid)))
+    changes = np.nonzero(signs[1:] != signs[:-1])[0]
+    low, high, sign = grid[changes], grid[changes + 1], signs[changes]
+    for _ in range(52 if len(changes) else 0):
+        middle = (low + high) / 2
+        before = np.sign(form(walk.at(middle))) == sign
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return [Place(float(s), walk.at(s)[0]) for s in low]
+
+
+def boundaries(robot: Robot) -> list[Boundary]:
+    """Return every boundary in use and every joint limit, as lengths and joint units (eqs. 9-12).
+
+    The margin of a pair is ``|B| - d_min``; that of a half-space the height over it.
+    """
+    found = [_of_boundary(robot, boundary) for boundary in robot.boundaries if boundary.used]
+    for j, joint in enumerate(robot.joints):
+        if joint.limits is not None:
+            unit = "rad" if joint.kind == "revolute" else robot.length_unit
+            names = f"{joint.name}.lower", f"{joint.name}.upper"
+            found += _limits(j, joint.limits, names, unit)
+    return found
+
+
+def stated_boundaries(robot: Robot, problem: Problem) -> list[Boundary]:
+    """Return the boundaries of a stated problem, such as the paper's rule, whose forms are lengths.
+
+    The windows of Table 6 are limits of the joints and bear the names of their boundaries.
+    """
+    found = []
+    for name, i in zip(problem.names, range(len(problem.names)), strict=True):
+        form = problem.forms[i]
+        scale = float(np.abs(form.coefficients).max())
+        found.append(Boundary(name, robot.length_unit, form, scale))
+    for j, ends in enumerate(problem.ranges):
+        if ends is not None:
+            unit = "rad" if problem.forms.kinds[j] == "revolute" else robot.length_unit
+            found += _limits(j, ends, problem.limits[j], unit)
+    return found
+
+
+def least_margin(walk: Traversal, boundary: Boundary) -> Margin:
+    """Find the smallest margin along a path, and where the path leaves if it does.
+
+    The smallest row is the start; the interval around it is divided again until it is a point.
+    """
+    grid = _grid(walk)
+    margins = boundary.margin(walk.at(grid))
+    i = int(margins.argmin())
+    low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
+    for _ in range(12):
+        fine = np.linspace(low, high, 33)
+        values = boundary.margin(walk.at(fine))
+        j = int(values.argmin())
+        low, high = fine[max(j - 1, 0)], fine[min(j + 1, 32)]
+    value, s = min((float(values[j]), float(fine[j])), (float(margins[i]), float(grid[i])))
+    leaves = _leaves(walk, boundary, np.sort(np.append(grid, s)))
+    return Margin(boundary, value, Place(s, walk.at(s)[0]), leaves)
+
+
+def _leaves(walk: Traversal, boundary: Boundary, grid: Floats) -> Place | None:
+    """First place at which the margin is negative beyond rounding."""
+    rounding = ON_BOUNDARY * boundary.scale
+    outside = boundary.margin(walk.at(grid)) < -rounding
+    if not outside.any():
+        return None
+    i = int(outside.argmax())
+    low, high = grid[max(i - 1, 0)], grid[i]
+    for _ in range(52):
+        middle = (low + high) / 2
+        if boundary.margin(walk.at(middle))[0] < -rounding:
+            high = middle
+        else:
+            low = middle
+    return Place(float(high), walk.at(high)[0])
+
+
+def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
+    if isinstance(boundary, Pair):
+        vector, needed = pair_vector(robot, boundary), required_distance(robot, boundary)
+        scale = float(np.abs(vector.coefficients).max())
+
+        def distance(q: Floats) -> Floats:
+            return np.asarray(np.linalg.norm(vector(q), axis=-1) - needed)
+
+        return Boundary(boundary.name, robot.length_unit, distance, scale)
+    form = clearance(robot, boundary)
+    scale = float(np.abs(form.coefficients).max())
+    return Boundary(boundary.name, robot.length_unit, form, scale)
+
+
+def _limits(j: int, ends: tuple[float, float], names: tuple[str, str], unit: str) -> list[Boundary]:
+    low, high = ends
+    scale = max(abs(low), abs(high))
+    return [
+        Boundary(names[0], unit, lambda q: q[..., j] - low, scale),
+        Boundary(names[1], unit, lambda q: high - q[..., j], scale),
+    ]
+
+
+def _grid(walk: Traversal) -> Floats:
+    """Rows of the path, and at least so many a leg that no turn hides between two of them."""
+    even = np.arange(len(walk.legs) * (ROWS_OF_A_LEG - 1) + 1) / (ROWS_OF_A_LEG - 1)
+    return np.asarray(np.unique(np.concatenate([walk.s, even])))
+
+
+def _candidates(path: Form, legs: int) -> list[tuple[float, float]]:
+    """Pairs of parameters near which a polyline of the path crosses itself, or nearly does."""
+    n = ROWS_OF_A_LEG - 1
+    s = np.arange(legs * n + 1) / n
+    p = path(s)
+    start, step = p[:-1], np.diff(p, axis=0)
+    t, u = meetings(start, step, start, step)
+    later = np.triu(np.ones(t.shape, dtype=bool), k=2)
+    i, j = np.nonzero(later & (np.abs(t - 0.5) < 1) & (np.abs(u - 0.5) < 1))
+    return [(s[a] + t[a, b] / n, s[b] + u[a, b] / n) for a, b in zip(i, j, strict=True)]
+
+
+def _newton(path: Form, pair: Floats, legs: int) -> Floats | None:
+    """Parameters of the crossing near a pair, or None: it leaves the legs, or is none."""
+    leg = np.clip(np.floor(pair), 0, legs - 1)
+    h = 1e-6
+    for _ in range(20):
+        inner = np.clip(pair, leg + h, leg + 1 - h)
+        ahead, behind = path(inner + h * (1 - 1e-9)), path(inner - h * (1 - 1e-9))
+        (u, v), (a, b) = (ahead - behind) / (2 * h), path(np.clip(pair, leg, leg + 1 - 1e-12))
+        matrix = np.stack([u, -v], axis=1)
+        if abs(np.linalg.det(matrix)) <= SAME_PLACE * np.linalg.norm(u) * np.linalg.norm(v):
+            return None  # along itself, or touching: no crossing
+        step = np.linalg.solve(matrix, a - b)
+        pair = pair - step
+        if (np.abs(pair - leg - 0.5) > 0.6).any():
+            return None
+        if np.abs(step).max() < 1e-13:
+            break
+    apart = pair[1] - pair[0] > SAME_PLACE
+    inside = (np.abs(pair - np.round(pair)) > SAME_PLACE).all() and (np.floor(pair) == leg).all()
+    return pair if apart and inside and np.abs(step).max() < SAME_PLACE else None

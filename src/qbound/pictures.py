@@ -1,0 +1,185 @@
+"""Whole pictures for a robot file: its region, the robot in a pose, a traversal; SVG or PNG.
+
+Each is returned as bytes, the same on every run; `figures` draws the parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound import figures
+from qbound.figures import INK
+from qbound.region import Component, Region
+from qbound.robot import HalfSpace, Robot
+from qbound.traversal import Traversal
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+FORMATS: Final = ("svg", "png")
+PANEL: Final = (5.4, 5.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """A region and what its axes are.
+
+    Attributes
+    ----------
+    region : Region
+    joints : tuple of two int
+        The joints of the robot that span it.
+    numbered : Component or None
+        The component whose vertices bear their numbers.
+    """
+
+    region: Region
+    joints: tuple[int, int]
+    numbered: Component | None = None
+
+
+def pose_picture(
+    robot: Robot,
+    q: ArrayLike,
+    chart: Chart | None = None,
+    plane: tuple[int, int] | None = (0, 2),
+    kind: str = "svg",
+) -> bytes:
+    """Draw the joint-space region with a pose marked and, beside it, the robot in that pose.
+
+    Parameters
+    ----------
+    q : array_like, shape (n,)
+    chart : Chart or None
+        None: no panel of joint space.
+    plane : tuple of int or None
+        The coordinates of the robot's panel, 0, 1, 2 for x, y, z; None: no such panel.
+    kind : {"svg", "png"}
+    """
+    pose = np.asarray(q, dtype=float)
+
+    def draw(axes: Sequence[Axes]) -> None:
+        if chart is not None:
+            _joint_panel(axes[0], robot, chart, pose[None])
+            place = pose[list(chart.joints)] * figures.joint_scales(chart.region)
+            axes[0].plot(*place, "P", color=INK, ms=9, mec="white", zorder=7)
+        if plane is not None:
+            figures.draw_robot(axes[-1], robot, pose, plane=plane)
+            axes[-1].set_title(_written(robot, pose))
+            _space_panel(axes[-1], robot, plane)
+
+    return _picture((chart is not None) + (plane is not None), draw, kind)
+
+
+def traversal_picture(
+    robot: Robot,
+    chart: Chart,
+    walk: Traversal,
+    labels: Sequence[str],
+    plane: tuple[int, int] = (0, 2),
+    kind: str = "svg",
+) -> bytes:
+    """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        Names of the stops, in the order of the visit.
+    """
+
+    def draw(axes: Sequence[Axes]) -> None:
+        joints, space = axes
+        path = walk.q[:, list(chart.joints)] * figures.joint_scales(chart.region)
+        _joint_panel(joints, robot, chart, walk.q)
+        figures.draw_path(joints, path, walk.stops, labels=labels, distance=-13, color=INK)
+        figures.draw_robot(space, robot, walk.final_pose, alpha=0.6, plane=plane)
+        figures.draw_path(space, walk.tool[:, list(plane)], walk.stops, labels=labels, color=INK)
+        _space_panel(space, robot, plane)
+
+    return _picture(2, draw, kind)
+
+
+def _picture(panels: int, draw: Callable[[Sequence[Axes]], None], kind: str) -> bytes:
+    """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    silent = ("Date", "Creator") if kind == "svg" else ("Software",)
+    with mpl.rc_context(figures.STYLE):  # type: ignore[arg-type]
+        figure = Figure(figsize=(PANEL[0] * panels, PANEL[1]))
+        draw(figure.subplots(1, panels, squeeze=False)[0])
+        buffer = BytesIO()
+        figure.savefig(buffer, format=kind, dpi=160, metadata=dict.fromkeys(silent))
+    return buffer.getvalue()
+
+
+def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
+    """Draw all components over one turn or the limits, and further where `q` goes."""
+    scales, ranges = figures.joint_scales(chart.region), chart.region.problem.ranges
+    figures.draw_components(ax, chart.region)
+    shown = [np.array(ends or (-np.pi, np.pi)) for ends in ranges]
+    for axis, j, ends, scale in zip(("x", "y"), chart.joints, shown, scales, strict=True):
+        joint = robot.joints[j]
+        values = np.concatenate([ends, q[:, j]]) * scale
+        unit = "°" if joint.kind == "revolute" else robot.length_unit
+        room = 0.03 * np.ptp(values)
+        if joint.kind == "revolute":
+            getattr(ax, f"{axis}axis").set_major_locator(figures.every(np.ptp(values)))
+        ax.set(
+            **{
+                f"{axis}lim": (values.min() - room, values.max() + room),
+                f"{axis}label": f"${figures.tex(joint.name)}$ / {unit}",
+            }
+        )
+    if len({robot.joints[j].kind for j in chart.joints}) == 1:
+        ax.set_aspect("equal")
+    if chart.numbered is not None and chart.numbered.vertices:
+        corners = np.array([vertex.q for vertex in chart.numbered.vertices]) * scales
+        ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)
+        figures.number_points(ax, corners, corners.mean(axis=0))
+
+
+def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
+    """Label the plane of motion and draw the walls that stand on it, over what is drawn already."""
+    figures.plane_axes(ax, robot, plane=plane)
+    ax.margins(0.12)
+    ax.autoscale_view()
+    window = ax.get_xlim(), ax.get_ylim()
+    for wall in robot.boundaries:
+        if isinstance(wall, HalfSpace) and wall.used:
+            _wall(ax, wall, np.asarray(wall.normal, dtype=float)[list(plane)])
+    ax.set(xlim=window[0], ylim=window[1])
+
+
+def _written(robot: Robot, q: Floats) -> str:
+    """Joint values for a title, angles in degrees."""
+    values = (
+        (joint, np.degrees(value) if joint.kind == "revolute" else value)
+        for joint, value in zip(robot.joints, q, strict=True)
+    )
+    return ", ".join(
+        f"${figures.tex(joint.name)}$ = {value:.4g}"
+        + ("°" if joint.kind == "revolute" else f" {robot.length_unit}")
+        for joint, value in values
+    )
+
+
+def _wall(ax: Axes, wall: HalfSpace, normal: Floats) -> None:
+    """Draw the line at which a wall cuts the plane, if it stands upright on it."""
+    if np.hypot(*normal) > 1 - 1e-9:
+        foot = wall.offset * normal
+        along = np.array([-normal[1], normal[0]])
+        ax.axline(tuple(foot), tuple(foot + along), color=figures.COLLIDING, lw=1.2)
+        if abs(along[0]) > 0.5:  # its name at the right edge
+            height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
+            ax.annotate(
+                wall.name, (ax.get_xlim()[1], height), (-3, 3), textcoords="offset points",
+                ha="right", color=figures.COLLIDING,
+            )  # fmt: skip
