@@ -14,15 +14,20 @@ Floats = NDArray[np.float64]
 Curve = Callable[[Floats], Floats]
 """Parameters in [0, 1], shape (k,), to places, shape (k, d)."""
 
-START, FINEST = 9, 2.0**-30
+PART, FINEST = 4, 2.0**-30
 BETWEEN = np.array([0.25, 0.5, 0.75])
 
 
-def flatten(curve: Curve, tolerance: float) -> tuple[Floats, float]:
+def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, float]:
     """Choose parameters so that the polyline through their places stays near the curve.
 
     Pieces are halved until the curve, looked at in three places of each, is within half of the
     tolerance of its chord: the other half is room for what lies between these places.
+
+    Parameters
+    ----------
+    parts : int
+        Equal parts of [0, 1] on each of which the curve is smooth.
 
     Returns
     -------
@@ -39,7 +44,7 @@ def flatten(curve: Curve, tolerance: float) -> tuple[Floats, float]:
     """
     if not tolerance > 0:
         raise ValueError(f"a deviation must be above 0, found {tolerance:g}")
-    s = np.linspace(0.0, 1.0, START)
+    s = np.linspace(0.0, 1.0, PART * parts + 1)
     while True:
         off = deviations(curve, s)
         wide = np.nonzero(off > tolerance / 2)[0]

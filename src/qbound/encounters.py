@@ -16,7 +16,7 @@ from qbound.boundary import clearance, pair_vector, position, required_distance
 from qbound.curves import meetings
 from qbound.region import Problem
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import ON_BOUNDARY, SAME_PLACE
+from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.traversal import Traversal
 
 Floats = NDArray[np.float64]
@@ -104,9 +104,9 @@ def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> lis
     found: list[Crossing] = []
     for s, t in _candidates(path, len(walk.legs)):
         pair = _newton(path, np.array([s, t]), len(walk.legs))
-        if pair is not None and not any(
-            abs(pair - (c.first.s, c.second.s)).max() < SAME_PLACE for c in found
-        ):
+        if pair is None or any(_stops_at(walk, x) for x in pair):
+            continue
+        if all(abs(pair - (c.first.s, c.second.s)).max() >= SAME_PLACE for c in found):
             first, second = (Place(float(x), walk.at(x)[0]) for x in pair)
             found.append(Crossing(path(pair[:1])[0], first, second))
     return sorted(found, key=lambda c: (c.first.s, c.second.s))
@@ -241,6 +241,12 @@ def _grid(walk: Traversal) -> Floats:
     return np.asarray(np.unique(np.concatenate([walk.s, even])))
 
 
+def _stops_at(walk: Traversal, s: float) -> bool:
+    """Tell whether a place is a stop: in joint values, as an arc is slow in `s` near its ends."""
+    away = np.abs(walk.q[walk.stops] - walk.at(s)).max(axis=1)
+    return bool(away.min() < TOUCH)
+
+
 def _candidates(path: Form, legs: int) -> list[tuple[float, float]]:
     """Pairs of parameters near which a polyline of the path crosses itself, or nearly does."""
     n = ROWS_OF_A_LEG - 1
@@ -271,5 +277,5 @@ def _newton(path: Form, pair: Floats, legs: int) -> Floats | None:
         if np.abs(step).max() < 1e-13:
             break
     apart = pair[1] - pair[0] > SAME_PLACE
-    inside = (np.abs(pair - np.round(pair)) > SAME_PLACE).all() and (np.floor(pair) == leg).all()
+    inside = (np.floor(pair) == leg).all()
     return pair if apart and inside and np.abs(step).max() < SAME_PLACE else None

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import polygon
-from qbound.curves import Curve, flatten
-from qbound.region import Arc, Component, Vertex
+from qbound.arcs import Arc
+from qbound.curves import flatten
+from qbound.region import Component, Vertex
 
 Floats = NDArray[np.float64]
 TURN = 2 * math.pi
@@ -36,11 +37,6 @@ class Piece:
 
     outer: Floats
     holes: tuple[Floats, ...]
-
-
-def arc_curve(arc: Arc) -> Curve:
-    """Return an arc as a curve by a parameter in [0, 1]; exact, and its ends exactly the arc's."""
-    return arc.at
 
 
 def from_lowest(component: Component) -> Component:
@@ -92,10 +88,9 @@ def polygons(
     for loop in component.loops:
         parts = []
         for arc in loop:
-            curve = arc_curve(arc)
-            s, off = flatten(curve, deviation)
+            s, off = flatten(arc.at, deviation, len(arc.pieces.roots))
             measured = max(measured, off)
-            parts.append(curve(s))
+            parts.append(arc.at(s))
         rings.append(np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]))
     pieces = _assembled(rings, component.wraps, np.asarray(window, dtype=float))
     return pieces, measured

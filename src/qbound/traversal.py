@@ -30,10 +30,13 @@ class Leg:
     bend : float or None
         Bound on the second derivative of the tool's place by the parameter, length; None where
         none is known, as on an arc.
+    parts : int
+        Equal parts of [0, 1] on each of which the leg is smooth.
     """
 
     at: Curve
     bend: float | None = None
+    parts: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +146,7 @@ def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
     grids, measured = [], 0.0
     for leg in legs:
         if leg.bend is None:
-            grid, off = flatten(_image(tool, leg.at), deviation)
+            grid, off = flatten(_image(tool, leg.at), deviation, leg.parts)
             measured = max(measured, off)
         else:  # a chord of a curve of length 1 in s, cut in n: bend / (8 n^2) at most
             n = max(1, math.ceil(math.sqrt(leg.bend / (8 * deviation))))

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import polygon
+from qbound.arcs import Arc
 from qbound.cli.chosen import component_of, embedded, region_by_rule
 from qbound.cli.values import held
-from qbound.curves import Curve
-from qbound.outline import arc_curve
 from qbound.region import Component, Region
 from qbound.robot import Robot
+from qbound.tolerances import TOUCH
 from qbound.traversal import Leg, Traversal, follow, straight
 
 Floats = NDArray[np.float64]
@@ -99,42 +99,38 @@ def _along_arcs(
     """Along the arcs, from the end of each straight to the start of the next if they are apart."""
     if options.scale != 1:
         raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
-    order = [*options.order, options.order[0]] if options.closed else options.order
+    order: list[int] = options.order
     arcs = [arc for loop in component.loops for arc in loop]
     _refuse_unknown([abs(number) for number in order], len(arcs), "arc", options.component)
-    curves = [_turned(arc_curve(arcs[abs(k) - 1]), k < 0, robot, values) for k in order]
-    if options.closed:
-        *curves, again = curves
-        ends = [*map(_ends, curves), (_ends(again)[0],) * 2]
-    else:
-        ends = [*map(_ends, curves)]
-    named = list(_joined(robot, order, curves, ends))
+    legs = [_arc_leg(robot, values, arcs[abs(number) - 1], number < 0) for number in order]
+    named = list(_joined(robot, order, legs, options.closed))
     return [str(number) for number in range(1, len(named) + 2)], named
 
 
 def _joined(
-    robot: Robot,
-    order: Sequence[int],
-    curves: Sequence[Curve],
-    ends: Sequence[tuple[Floats, Floats]],
+    robot: Robot, order: Sequence[int], legs: Sequence[Leg], closed: bool
 ) -> Iterator[tuple[str, Leg]]:
-    for i, (number, (start, _)) in enumerate(zip(order, ends, strict=True)):
-        if i and np.abs(start - ends[i - 1][1]).max() > 1e-6:
-            yield f"line to arc {abs(number)}", straight(robot, ends[i - 1][1], start)
-        if i < len(curves):
-            back = " backwards" if number < 0 else ""
-            yield f"arc {abs(number)}{back}", Leg(curves[i])
+    """Put a straight line between arcs that do not meet; a closed path ends where it began."""
+    here, first = _place(legs[0], 0.0), _place(legs[0], 0.0)
+    for number, leg in zip(order, legs, strict=True):
+        start = _place(leg, 0.0)
+        if np.abs(start - here).max() > TOUCH:
+            yield f"line to arc {abs(number)}", straight(robot, here, start)
+        yield f"arc {abs(number)}" + " backwards" * (number < 0), leg
+        here = _place(leg, 1.0)
+    if closed and np.abs(first - here).max() > TOUCH:
+        yield "line to the start", straight(robot, here, first)
 
 
-def _turned(curve: Curve, backwards: bool, robot: Robot, values: dict[int, float]) -> Curve:
-    if backwards:
-        return lambda s: embedded(robot, values, curve(1 - s))
-    return lambda s: embedded(robot, values, curve(s))
+def _arc_leg(robot: Robot, values: dict[int, float], arc: Arc, backwards: bool) -> Leg:
+    def at(s: Floats) -> Floats:
+        return embedded(robot, values, arc.at(1 - s if backwards else s))
+
+    return Leg(at, parts=len(arc.pieces.roots))
 
 
-def _ends(curve: Curve) -> tuple[Floats, Floats]:
-    start, end = curve(np.array([0.0, 1.0]))
-    return start, end
+def _place(leg: Leg, s: float) -> Floats:
+    return np.asarray(leg.at(np.array([s]))[0])
 
 
 def _refuse_unknown(order: Sequence[int], count: int, what: str, component: int) -> None:
