@@ -10,14 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.decomposition import Plane, Root
-from qbound.tolerances import QUADRATURE
+from qbound.tolerances import QUADRATURE, SAME_PLACE
 
 Floats = NDArray[np.float64]
 
@@ -64,6 +64,10 @@ class Pieces:
         """Tell of each piece whether it is straight: along a fibre, or at an end."""
         return [root is None or root.form < 0 for root in self.roots]
 
+    def ordered(self, place: Floats) -> Floats:
+        """From (base, lift) to the order of the joints."""
+        return place if self.base == 0 else place[..., ::-1]
+
     def places(self, angle: Floats) -> Floats:
         """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
         part = (1 + np.sin(angle))[:, None] / 2
@@ -75,7 +79,7 @@ class Pieces:
         values = self.plane.follow(roots, q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
         inside = np.abs(angle) < math.pi / 2  # the ends are given
         q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
-        return q if self.base == 0 else q[..., ::-1]
+        return self.ordered(q)
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
@@ -97,16 +101,33 @@ class Arc:
     boundary : str
     branch : int or None
         -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
-    points : ndarray, shape (k, 2)
-        Joint values along the arc, its two ends first and last, the region on the left.
     pieces : Pieces
-        What the arc is made of, for any other place on it.
+        What the arc is made of, the region on its left.
     """
 
     boundary: str
     branch: int | None
-    points: Floats
     pieces: Pieces
+
+    @property
+    def start(self) -> Floats:
+        """Joint values at the start, shape (2,)."""
+        return self.pieces.ordered(self.pieces.start[0])
+
+    @property
+    def end(self) -> Floats:
+        """Joint values at the end, shape (2,)."""
+        return self.pieces.ordered(self.pieces.end[-1])
+
+    @cached_property
+    def points(self) -> Floats:
+        """Joint values along the arc, exact, its two ends first and last, shape (k, 2)."""
+        places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 33))
+        ends_suffice = self.pieces.straight()
+        parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
+        line = np.concatenate(parts)
+        moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_PLACE
+        return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])
 
     def at(self, s: ArrayLike) -> Floats:
         """Return joint values at parameters in [0, 1], shape (n,) -> (n, 2); exact, ends included.
