@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.decomposition import Plane, Root
-from qbound.tolerances import QUADRATURE, SAME_PLACE
+from qbound.tolerances import QUADRATURE, SAME_POINT
 
 Floats = NDArray[np.float64]
 
@@ -126,7 +126,7 @@ class Arc:
         ends_suffice = self.pieces.straight()
         parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
         line = np.concatenate(parts)
-        moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_PLACE
+        moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_POINT
         return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])
 
     def at(self, s: ArrayLike) -> Floats:

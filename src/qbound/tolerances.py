@@ -44,7 +44,7 @@ POSITIVE: Final = 1e-11
 TRANSVERSAL: Final = 1e-6
 """Sine of the angle, about, under which two curves are too nearly tangent for Newton's method."""
 
-SAME_PLACE: Final = 1e-12
+SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line."""
 
 UNCHANGED: Final = 1e-3
