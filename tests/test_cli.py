@@ -61,10 +61,37 @@ def test_files_are_written_whole(capsys, tmp_path):
 
 
 def test_contains_names_what_is_violated(capsys):
-    assert run(capsys, "contains", "minervabot-v2", "0", "0")[:2] == (0, "feasible\n")
     status, out, _ = run(capsys, "contains", "minervabot-v2", "80deg", "0")
     assert status == 1
     assert out.startswith("violated: B7, margin -23.7")
+
+
+def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
+    status, out, _ = run(capsys, "contains", "minervabot-v2", "0", "0")
+    lines = out.splitlines()
+    assert status == 0
+    assert lines[0] == "feasible, in component 1 of 5, with the home pose"
+    margins = [float(line.split()[1]) for line in lines if line.startswith("  margin")]
+    assert len(margins) == 5
+    assert margins == sorted(margins)
+    assert lines[1].endswith("cm: B3")
+    assert lines[-1].startswith("nearest boundary: B3 at q1 = ")
+    assert lines[-1].endswith("q2 = 43.8598 deg, distance 43.8598 deg")
+
+
+def test_contains_writes_json(capsys):
+    status, out, _ = run(
+        capsys, "contains", "rp-telescopic-boom", "-35", "0.1", "--weights", "2", "1", "--json", "-"
+    )
+    content = json.loads(out)
+    assert (status, content["feasible"], content["component"]) == (0, True, 0)
+    assert content["nearest"]["boundary"] == "slide.lower"
+    assert_allclose(content["nearest"]["distance"], 0.1)
+    assert content["nearest"]["weights"] == [2.0, 1.0]
+    status, out, _ = run(capsys, "contains", "rp-telescopic-boom", "-35", "-0.1", "--json", "-")
+    content = json.loads(out)
+    assert (status, content["feasible"], content["component"]) == (1, False, None)
+    assert content["margins"][0] == {"boundary": "slide.lower", "margin": -0.1}
 
 
 def test_robots_lists_and_shows(capsys):
@@ -80,6 +107,7 @@ def test_robots_lists_and_shows(capsys):
         (("region", "minervabot-v2", "--slice", "q1=1deg"), "1 that are not held"),
         (("contains", "minervabot-v2", "0"), "1 values for 2 joints"),
         (("contains", "minervabot-v2", "nan", "0"), "'nan' is no value"),
+        (("contains", "minervabot-v2", "0", "0", "--weights", "0", "1"), "weights"),
         (("robots", "show", "nobody"), "no robot 'nobody'"),
         (("region", "minervabot-v2", "--json", "/no/such/folder/x"), "No such file"),
         (("fly",), "invalid choice"),

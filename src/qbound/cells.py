@@ -73,6 +73,7 @@ class Complex:
         self.cells: list[Cell] = decomposition.cells
         self.wrapped = self.plane.base_range is None
         self.circle = self.plane.lift_range is None
+        self.touch = TOUCH * self.plane.lift_unit
         self.n_lines = len(self.abscissae) - (1 if self.wrapped else 0)
         self.whole = [self.circle and cell.lower.form < 0 for cell in self.cells]
         self.ends: list[list[list[float]]] = self._ends().tolist()
@@ -137,7 +138,7 @@ class Complex:
     def _line(self, left: list[int], right: list[int]) -> Line:
         places = [self.ends[k][1] for k in left if not self.whole[k]]
         places += [self.ends[k][0] for k in right if not self.whole[k]]
-        line = Line(_clustered(chain.from_iterable(places), self.circle))
+        line = Line(_clustered(chain.from_iterable(places), self.circle, self.touch))
         for e in range(self.n_elements(line)):
             middle = self._middle(line, e)
             line.left.append(self._owner(left, 1, middle))
@@ -323,14 +324,14 @@ class Complex:
         return min(range(len(points)), key=lambda p: abs(math.remainder(points[p] - v, TURN)))
 
 
-def _clustered(values: Iterable[float], circle: bool) -> list[float]:
-    """Sort values and keep one of each group closer than TOUCH; on a circle within (-pi, pi]."""
+def _clustered(values: Iterable[float], circle: bool, touch: float) -> list[float]:
+    """Sort values and keep one of each group closer than `touch`; on a circle within (-pi, pi]."""
     kept: list[float] = []
     before = -math.inf
     for v in sorted(math.pi - (math.pi - v) % TURN for v in values) if circle else sorted(values):
-        if v - before > TOUCH:
+        if v - before > touch:
             kept.append(v)
         before = v
-    if circle and len(kept) > 1 and kept[0] + TURN - kept[-1] <= TOUCH:
+    if circle and len(kept) > 1 and kept[0] + TURN - kept[-1] <= touch:
         kept.pop()
     return kept

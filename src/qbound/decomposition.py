@@ -64,6 +64,9 @@ class Cell(NamedTuple):
 class Plane:
     """Forms of two joints, scaled to largest coefficient 1, with one joint as base.
 
+    A prismatic joint is measured in its farthest limit for this (`scaled`); `table` is the same
+    forms in the joints' own units.
+
     Parameters
     ----------
     forms : HarmonicForm, shape (m,)
@@ -77,14 +80,20 @@ class Plane:
     def __init__(self, forms: HarmonicForm, ranges: Sequence[Range], base: int) -> None:
         table = np.asarray(forms.coefficients, dtype=float)
         table = table if base == 0 else np.swapaxes(table, 1, 2)
-        largest = np.abs(table).max(axis=(1, 2), keepdims=True)
-        table = table / np.where(largest > 0, largest, 1.0)
-        self.table: Floats = np.where(np.abs(table) > NEGLIGIBLE, table, 0.0)
         self.base_kind: Kind = forms.kinds[base]
         self.lift_kind: Kind = forms.kinds[1 - base]
         self.base_range, self.lift_range = ranges[base], ranges[1 - base]
         self.ends = self.base_range or (-math.pi, math.pi)
         self.lift_ends = self.lift_range or (-math.pi, math.pi)
+        # In mm the high powers of a slide have coefficients that would pass for rounding.
+        self.base_unit = _unit(self.base_kind, self.ends)
+        self.lift_unit = _unit(self.lift_kind, self.lift_ends)
+        powers = np.outer(self.base_unit ** np.arange(3), self.lift_unit ** np.arange(3))
+        table = table * powers
+        largest = np.abs(table).max(axis=(1, 2), keepdims=True)
+        table = table / np.where(largest > 0, largest, 1.0)
+        self.scaled: Floats = np.where(np.abs(table) > NEGLIGIBLE, table, 0.0)
+        self.table: Floats = self.scaled / powers
 
     def along_lift(self, t: Floats) -> Floats:
         """Return the coefficients of every form along the lift, shape (len(t), m, 3)."""
@@ -134,6 +143,10 @@ class Plane:
         return np.asarray(np.where(form < 0, ends, values))
 
 
+def _unit(kind: Kind, ends: tuple[float, float]) -> float:
+    return 1.0 if kind == "revolute" else max(map(abs, ends))
+
+
 @dataclass(frozen=True, eq=False)
 class Decomposition:
     """Slabs between critical base values, and the feasible cells over them.
@@ -175,28 +188,38 @@ def critical_values(plane: Plane) -> Floats:
 
 def _events(plane: Plane) -> list[Complexes]:
     """Return the univariate polynomials whose roots are critical, as stacks of equal length."""
-    c = _univariate(plane.table, plane.base_kind)  # (m, 3 lift coefficients, length)
-    lifts = plane.table[:, :, 1:].any(axis=(1, 2))
+    c = _univariate(plane.scaled, plane.base_kind)  # (m, 3 lift coefficients, length)
+    lifts = plane.scaled[:, :, 1:].any(axis=(1, 2))
     walls, c = c[~lifts, 0], c[lifts]  # a form without the lift is a wall across every fibre
     c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
     i, j = np.triu_indices(len(c), k=1)
     if plane.lift_kind == "revolute":
-        events = [_times(c1, c1) + _times(c2, c2) - _times(c0, c0), c2, _circle_resultant(c, i, j)]
+        events = [
+            _times(c1, c1) + _times(c2, c2) - _times(c0, c0),
+            c2,
+            *_circle_resultants(c, i, j),
+        ]
     else:
         events = [_times(c1, c1) - 4 * _times(c0, c2), c1, c2, *_line_resultants(c, i, j)]
     if plane.lift_range is not None:
-        at = basis(plane.lift_kind, np.asarray(plane.lift_range))
+        at = basis(plane.lift_kind, np.asarray(plane.lift_range) / plane.lift_unit)
         events += [np.einsum("j,mjl->ml", factor, c) for factor in at]
     return [walls, *events]
 
 
-def _circle_resultant(c: Complexes, i: Ints, j: Ints) -> Complexes:
-    """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule)."""
+def _circle_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
+    """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule).
+
+    Where the two are parallel for every base value, as for two points on one ray of a link, it is
+    the sum of two squares with only double roots; their common roots are then those of each term.
+    """
     (a0, a1, a2), (b0, b1, b2) = np.moveaxis(c[i], 1, 0), np.moveaxis(c[j], 1, 0)
     determinant = _times(a1, b2) - _times(a2, b1)
     cosine = _times(a2, b0) - _times(a0, b2)
     sine = _times(a0, b1) - _times(a1, b0)
-    return _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
+    parallel = (np.abs(determinant) <= NEGLIGIBLE).all(axis=-1)
+    resultant = _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
+    return [resultant[~parallel], cosine[parallel], sine[parallel]]
 
 
 def _line_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
@@ -243,11 +266,11 @@ def _roots_in_range(events: Sequence[Complexes], plane: Plane) -> Floats:
 
 def _base_values(stack: Complexes, plane: Plane) -> Floats:
     circle = plane.base_kind == "revolute"
-    z = _polynomial_roots(stack)
     if not circle:
-        z = np.append(z, 0)  # a root at zero is trimmed with its coefficient
+        z = np.append(_polynomial_roots(stack), 0)  # a root at zero is trimmed with its coefficient
         near = np.abs(z.imag) <= NEAR_CIRCLE * (1 + np.abs(z.real))
-        return np.asarray(z.real[near])
+        return np.asarray(plane.base_unit * z.real[near])
+    z = _polynomial_roots(stack)
     t = np.angle(z[np.abs(np.abs(z) - 1) <= NEAR_CIRCLE])
     low, high = plane.ends
     turns = np.arange(math.floor((low - math.pi) / TURN), math.ceil((high + math.pi) / TURN) + 1)

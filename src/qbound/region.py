@@ -169,19 +169,24 @@ def find_region(robot: Robot, held: Mapping[int, float] | None = None) -> Region
     return solve(clearance_problem(robot, held), home)
 
 
-def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
-    """Return the boundaries that a configuration violates, with their margins (negative).
+def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
+    """Return the margin of a configuration to every boundary in use and to every joint limit.
 
-    Margins are lengths for boundaries (``|B| - d_min``, or the depth beyond a wall), joint units
-    for limits. An empty list: feasible.
+    Margins are lengths for boundaries (``|B| - d_min``, or the depth inside a wall), joint units
+    for limits; negative where violated (eqs. 9-12).
     """
     q = np.asarray(q, dtype=float)
-    margins = [(b.name, _margin(robot, b, q)) for b in robot.boundaries if b.used]
+    found = [(b.name, _margin(robot, b, q)) for b in robot.boundaries if b.used]
     for joint, value in zip(robot.joints, q, strict=True):
         if joint.limits is not None:
-            margins.append((f"{joint.name}.lower", float(value - joint.limits[0])))
-            margins.append((f"{joint.name}.upper", float(joint.limits[1] - value)))
-    return [(name, margin) for name, margin in margins if margin < 0]
+            found.append((f"{joint.name}.lower", float(value - joint.limits[0])))
+            found.append((f"{joint.name}.upper", float(joint.limits[1] - value)))
+    return found
+
+
+def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
+    """Return those of the `margins` of a configuration that are negative; none: feasible."""
+    return [(name, margin) for name, margin in margins(robot, q) if margin < 0]
 
 
 def _margin(robot: Robot, boundary: Pair | HalfSpace, q: Floats) -> float:

@@ -1,12 +1,18 @@
-"""``qbound contains``: tell whether a configuration is safe."""
+"""``qbound contains``: tell whether a configuration is safe, by how much, and where it ends."""
 
 from __future__ import annotations
 
 import argparse
+import json
 from typing import Any
 
-from qbound.cli.values import configuration
-from qbound.region import violated
+import numpy as np
+
+from qbound import __version__
+from qbound.cli.values import configuration, write_text
+from qbound.measures import BoundaryPoint, locate, nearest_boundary
+from qbound.region import Region, find_region, margins
+from qbound.robot import Robot
 from qbound.robotfile import load_robot
 
 
@@ -14,20 +20,111 @@ def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "contains",
-        help="is a configuration safe?",
+        help="is a configuration safe, and by how much?",
         epilog="example: qbound contains minervabot-v2 20deg -45deg",
     )
     parser.add_argument("robot", help="a robot file, or a packaged robot's name")
     parser.add_argument("values", nargs="+", metavar="VALUE", help="20deg, 0.35rad, or a length")
+    parser.add_argument(
+        "--weights",
+        nargs=2,
+        type=float,
+        default=[1.0, 1.0],
+        metavar="W",
+        help="weights of the two joints in the distance to the boundary (default 1 1)",
+    )
+    parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Say what the configuration violates; 1 if anything."""
+    """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
-    found = violated(robot, configuration(robot, options.values))
-    for name, margin in found:
-        print(f"violated: {name}, margin {margin:.6g}")
-    if not found:
-        print("feasible")
-    return 1 if found else 0
+    content = contents(robot, configuration(robot, options.values), options.weights)
+    if options.json:
+        write_text(options.json, json.dumps(content, indent=1) + "\n")
+    if options.json != "-":
+        _say(robot, content)
+    return 0 if content["feasible"] else 1
+
+
+def contents(robot: Robot, q: list[float], weights: list[float]) -> dict[str, Any]:
+    """Return what is known of a configuration; with two joints its component and the boundary."""
+    found = sorted(margins(robot, q), key=lambda item: item[1])
+    region = find_region(robot) if len(robot.joints) == 2 else None
+    where = None if region is None else locate(region, q)
+    return {
+        "robot": robot.name,
+        "version": __version__,
+        "q": q,
+        "feasible": all(margin > 0 for _, margin in found)
+        and (region is None or where is not None),
+        "component": where,
+        "components": None if region is None else len(region.components),
+        "contains_home": None
+        if region is None or where is None
+        else region.components[where].contains_home,
+        "margins": [{"boundary": name, "margin": margin} for name, margin in found],
+        "nearest": None if region is None else _nearest(region, q, where, weights),
+    }
+
+
+def _nearest(
+    region: Region, q: list[float], where: int | None, weights: list[float]
+) -> dict[str, Any] | None:
+    if not any(component.loops for component in region.components):
+        return None
+    found: BoundaryPoint = nearest_boundary(region, q, where, weights)
+    return {
+        "q": found.q.tolist(),
+        "boundary": found.boundary,
+        "component": found.component,
+        "distance": found.distance,
+        "weights": weights,
+    }
+
+
+def _say(robot: Robot, content: dict[str, Any]) -> None:
+    violated = [item for item in content["margins"] if item["margin"] <= 0]
+    for item in violated:
+        print(f"violated: {item['boundary']}, margin {_amount(robot, item)}")
+    if not violated:
+        print("feasible" + _component(content))
+    for item in content["margins"]:
+        if item["margin"] > 0:
+            print(f"  margin {_amount(robot, item)}: {item['boundary']}")
+    if content["nearest"]:
+        print(_nearest_line(robot, content["nearest"]))
+
+
+def _component(content: dict[str, Any]) -> str:
+    if content["component"] is None:
+        return ""
+    home = "with the home pose" if content["contains_home"] else "without the home pose"
+    return f", in component {content['component'] + 1} of {content['components']}, {home}"
+
+
+def _amount(robot: Robot, item: dict[str, Any]) -> str:
+    """Write a margin with its unit: a length, or that of a joint limit."""
+    for joint in robot.joints:
+        if item["boundary"] in (f"{joint.name}.lower", f"{joint.name}.upper"):
+            return _joint_text(joint.kind, item["margin"], robot.length_unit)
+    return f"{item['margin']:.6g} {robot.length_unit}"
+
+
+def _joint_text(kind: str, value: float, length_unit: str) -> str:
+    if kind == "revolute":
+        return f"{np.degrees(value):.6g} deg"
+    return f"{value:.6g} {length_unit}"
+
+
+def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
+    joints = robot.joints
+    place = ", ".join(
+        f"{joint.name} = {_joint_text(joint.kind, x, robot.length_unit)}"
+        for joint, x in zip(joints, nearest["q"], strict=True)
+    )
+    distance = f"{nearest['distance']:.6g}"
+    if nearest["weights"] == [1.0, 1.0] and joints[0].kind == joints[1].kind:
+        distance = _joint_text(joints[0].kind, nearest["distance"], robot.length_unit)
+    return f"nearest boundary: {nearest['boundary']} at {place}, distance {distance}"
