@@ -533,6 +533,25 @@ def test_every_component_of_an_empty_region_is_none():
     assert region.area == 0
 
 
+@pytest.mark.parametrize("angles", [(0.0, 0.0), (0.7, 0.0), (0.7, -1.1)])
+def test_a_touching_point_is_no_hole(angles):
+    """2 - cos(q1 - a) - cos(q2 - b) vanishes at one point of the torus, which bounds nothing."""
+    a, b = angles
+    one = {"00": 2, "01": -np.cos(b), "02": -np.sin(b), "10": -np.cos(a), "20": -np.sin(a)}
+    (component,) = solve(problem_of(RR, (None, None), one), (2.0, 2.0)).components
+    assert component.loops == ()
+    assert component.wraps == (True, True)
+    assert_allclose(component.area, TURN**2, rtol=1e-12)
+
+
+@pytest.mark.parametrize("radius", [1e-4, 1e-5])
+def test_a_small_hole_is_one(radius):
+    one = {"00": 2 - radius**2 / 2, "01": -1, "10": -1}
+    (component,) = solve(problem_of(RR, (None, None), one), (2.0, 2.0)).components
+    (loop,) = component.loops
+    assert_allclose(np.ptp([x for arc in loop for x in arc.points], axis=0), 2 * radius, rtol=1e-3)
+
+
 def test_a_hole_is_a_clockwise_loop():
     region = solve(problem_of(PP, ((-1.0, 1.0),) * 2, {"00": -0.25, "20": 1, "02": 1}), (1, 1))
     (component,) = region.components

@@ -34,7 +34,7 @@ SAME_CRITICAL: Final = 1e-10
 """Critical base values closer than this are one."""
 
 TOUCH: Final = 1e-6
-"""Ends of cells on a critical line closer than this are one point.
+"""Ends of cells on a critical line closer than this are one point; so is a hole smaller than this.
 
 Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 here."""
 
