@@ -1,36 +1,18 @@
 """What a browser makes of the built book, opened from the file system, without a network."""
 
-import os
-import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright import sync_api as playwright
+from browsers import refuse_remote, settle
 
 HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
-
-CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
-HOW_TO_GET_CHROMIUM = (
-    "The browser tests need Chromium: install it from your system's packages "
-    "(apt-get install chromium, brew install --cask chromium, ...)."
-)
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-LOCAL = ("file:", "data:", "blob:")
 
 QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
 
@@ -52,36 +34,6 @@ class Seen:
     faint: dict[str, list[str]] = field(default_factory=dict)
 
 
-def chromium() -> str:
-    """Return the path of the system's Chromium; without one skip, or fail where it is required."""
-    path = next(filter(None, map(shutil.which, CHROMIUM_NAMES)), None)
-    if path is None and os.environ.get("QBOUND_REQUIRE_BROWSER") == "1":
-        pytest.fail(HOW_TO_GET_CHROMIUM)
-    return path or pytest.skip(HOW_TO_GET_CHROMIUM)
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    path = chromium()
-    with playwright.sync_playwright() as run:
-        browser = run.chromium.launch(executable_path=path, args=FLAGS)
-        yield browser
-        browser.close()
-
-
-def refuse_remote(page: Any, seen: Seen) -> None:
-    """Record every request that leaves the machine, and let none pass."""
-
-    def handle(route: Any) -> None:
-        if route.request.url.startswith(LOCAL):
-            route.continue_()
-        else:
-            seen.requests.append(route.request.url)
-            route.abort()
-
-    page.route("**/*", handle)
-
-
 def open_page(page: Any, name: str) -> None:
     """Open a page of the book and wait until its formulas are typeset."""
     file = HTML / name
@@ -91,17 +43,12 @@ def open_page(page: Any, name: str) -> None:
     settle(page)
 
 
-def settle(page: Any) -> None:
-    """Wait for two frames: by then a new width is laid out."""
-    page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
-
-
 @pytest.fixture(scope="module", params=PAGES)
 def seen(browser: Any, request: pytest.FixtureRequest) -> Iterator[Seen]:
     """Open one page once; look at it at both widths and in both themes."""
     seen = Seen()
     page = browser.new_page(reduced_motion="reduce")
-    refuse_remote(page, seen)
+    refuse_remote(page, seen.requests)
     page.on("pageerror", lambda error: seen.console.append(str(error)))
     page.on("console", lambda m: m.type == "error" and seen.console.append(m.text))
     open_page(page, request.param)

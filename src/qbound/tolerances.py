@@ -69,3 +69,8 @@ SAME_PLACE: Final = 1e-7
 
 Newton, with slopes from central differences, ends within 1e-10 of a crossing; two that a reader
 would tell apart are farther from each other than this."""
+
+FLAT_ARC: Final = 1e-4
+"""Distance of an arc's points from a chord, relative to the picture, that no eye can see.
+
+A tenth of a pixel in a picture a thousand pixels wide."""

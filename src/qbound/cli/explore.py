@@ -1,0 +1,44 @@
+"""``qbound explore``: a page in which one drags the arm through its region."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.values import check_targets, held, write_text
+from qbound.explorer import explorer_page
+from qbound.robot import Robot
+from qbound.robotfile import load_robot
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "explore",
+        help="a page to drag the arm through its region",
+        description="Write one HTML file, for any browser, without a network. Of more than two\n"
+        "joints, those that --slice does not hold move, and the others have sliders; without\n"
+        "--slice every joint after the second is held at home.",
+        epilog="example: qbound explore minervabot-v2 -o minervabot.html",
+    )
+    add_robot(parser)
+    parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
+    add_rule(parser)
+    add_slice(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the page; 1 if the home pose is in no component."""
+    robot = load_robot(options.robot)
+    check_targets([options.output])
+    values = held(robot, options.slice) if options.slice else _beyond_two(robot)
+    region = region_by_rule(robot, options.rule, values)
+    write_text(options.output, explorer_page(robot, region, rule=options.rule, held=values))
+    return 0 if region.home is not None else 1
+
+
+def _beyond_two(robot: Robot) -> dict[int, float]:
+    """Hold every joint after the second at home."""
+    return {j: float(robot.home[j]) for j in range(2, len(robot.joints))}

@@ -1,0 +1,423 @@
+"""The explorer's page: its arithmetic is the library's, its data are whole, names do no harm."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from functools import cache
+from html.parser import HTMLParser
+from importlib import resources
+
+import numpy as np
+import pytest
+import quickjs
+from numpy.testing import assert_allclose
+
+from qbound import find_region, load_robot, paper_rule
+from qbound.boundary import clearance, position
+from qbound.cli import main
+from qbound.explorer import explorer_data, explorer_page
+from qbound.region import solve, violated
+from qbound.robotfile import parse_robot
+from qbound.scaling import least_along_edges
+from qbound.traversal import traverse
+
+TEMPLATES = resources.files("qbound") / "templates"
+POSES = 3000
+
+
+def joint(kind, parent, frame, origin, axis, **more):
+    return {
+        "name": f"q{frame}",
+        "type": kind,
+        "parent": parent,
+        "frame": frame,
+        "origin": origin,
+        "axis": axis,
+    } | more
+
+
+def robot_table(joints, home, tool_frame, **more):
+    """Return a small planar arm: a tool, a point on the base, a floor, a pair."""
+    return {
+        "schema": 1,
+        "name": "arm",
+        "length_unit": "m",
+        "angle_unit": "rad",
+        "home": home,
+        "tool": "t",
+        "joint": joints,
+        "point": [
+            {"name": "t", "frame": tool_frame, "at": [0.7, 0.0, 0.2], "radius": 0.05},
+            {"name": "b", "frame": "0", "at": [-0.3, 0.0, 0.4], "radius": 0.1},
+        ],
+        "boundary": [
+            {"name": "P", "type": "pair", "points": ["t", "b"], "clearance": 0.15},
+            {
+                "name": "F",
+                "type": "half-space",
+                "point": "t",
+                "normal": [0.1, 0.0, 1.0],
+                "offset": -0.8,
+            },
+        ],
+    } | more
+
+
+SIDE = [0.0, 1.0, 0.0]
+ALONG = [1.0, 0.0, 0.3]
+SLIDE = {"limits": [-0.6, 0.9]}
+ORIGINS = [0.2, 0.0, 0.3], [0.9, 0.0, -0.2]
+
+
+def two_joints(first, second, turn=SIDE):
+    kinds = {"R": ("revolute", turn, {}), "P": ("prismatic", ALONG, SLIDE)}
+    rows = []
+    for i, letter in enumerate(first + second):
+        kind, axis, more = kinds[letter]
+        axis = [-0.2, 0.0, 1.0] if (i, letter) == (1, "P") else axis
+        rows.append(joint(kind, str(i), str(i + 1), ORIGINS[i], axis, **more))
+    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2"))
+
+
+def three_joints():
+    rows = [joint("revolute", str(i), str(i + 1), [0.5, 0.0, 0.1], SIDE) for i in range(3)]
+    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4, "q3": -0.2}, "3"))
+
+
+ROBOTS = {
+    "paper": lambda: (load_robot("minervabot-v2"), {}),
+    "RR": lambda: (two_joints("R", "R"), {}),
+    "RR, axes opposed": lambda: (two_joints("R", "R", [0.0, -1.0, 0.0]), {}),
+    "RP": lambda: (two_joints("R", "P"), {}),
+    "PR": lambda: (two_joints("P", "R"), {}),
+    "PP": lambda: (two_joints("P", "P"), {}),
+    "3R, first held": lambda: (three_joints(), {0: 0.4}),
+    "3R, second held": lambda: (three_joints(), {1: -0.9}),
+    "3R, third held": lambda: (three_joints(), {2: 0.7}),
+}
+
+
+class Script:
+    """The page's arithmetic in a JavaScript engine, called with JSON."""
+
+    def __init__(self, data):
+        self.data = data
+        self.context = quickjs.Context()
+        self.context.eval((TEMPLATES / "explorer_math.js").read_text(encoding="utf-8"))
+        self.context.eval(f"const robot = {json.dumps(data)};")
+        self.context.eval("const map = toolMap(robot, robot.q); const arm = armOf(map);")
+
+    def __call__(self, expression, **values):
+        names = ", ".join(values)
+        json_values = ", ".join(json.dumps(value) for value in values.values())
+        return json.loads(
+            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
+        )
+
+
+@cache
+def case(name):
+    robot, held = ROBOTS[name]()
+    region = find_region(robot, held)
+    return robot, held, region, Script(explorer_data(robot, region, held=held))
+
+
+def poses(data, n=POSES, seed=5):
+    """Draw configurations: the free joints within the view, the held ones as they are."""
+    low, high = (np.array([v[end] for v in data["views"]]) for end in ("low", "high"))
+    q = np.tile(data["q"], (n, 1))
+    q[:, data["free"]] = np.random.default_rng(seed).uniform(low, high, (n, 2))
+    return q
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_margins_are_the_librarys(name):
+    robot, _, _, script = case(name)
+    q = poses(script.data)
+    found = script("all.map((q) => margins(robot, q))", all=q.tolist())
+    assert len(found) == POSES
+    names = [b.name for b in robot.boundaries if b.used]
+    for pose, rows in zip(q, found, strict=True):
+        safe = {row["name"]: row["value"] for row in rows if row["used"]}
+        told = dict(violated(robot, pose))
+        below = {n: v for n, v in safe.items() if v < 0}
+        assert below.keys() == told.keys()
+        assert_allclose([below[n] for n in told], list(told.values()), atol=1e-12)
+    for b in [robot.boundary(n) for n in names]:
+        values = [next(r["value"] for r in rows if r["name"] == b.name) for rows in found]
+        assert np.array_equal(np.array(values) > 0, clearance(robot, b)(q) > 0)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_places_of_points_are_the_librarys(name):
+    robot, _, _, script = case(name)
+    q = poses(script.data)
+    found = np.array(script("all.map((q) => pointPlaces(robot, q))", all=q.tolist()))
+    for i, point in enumerate(robot.points):
+        assert_allclose(found[:, i], position(robot, point.name)(q), atol=1e-11)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_tool_and_its_determinant_are_those_of_the_forms(name):
+    robot, _, _, script = case(name)
+    q = poses(script.data)
+    pairs = q[:, script.data["free"]].tolist()
+    tool, axes = position(robot, robot.tool), np.array(script("viewAxes(robot, robot.q)"))
+    assert script("map.planar && sweepsAnArea(arm, robot.reach)")
+    at = np.array(script("all.map((p) => toolAt(map, p))", all=pairs))
+    assert_allclose(at, tool(q) @ axes[:2].T, atol=1e-11)
+    jacobian = axes[:2] @ tool.gradient(q)[..., script.data["free"]]
+    det = script("all.map((p) => determinant(map, p))", all=pairs)
+    assert_allclose(det, np.linalg.det(jacobian), atol=1e-9 * np.abs(det).max())
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_inverse_kinematics_finds_every_posture(name):
+    _, _, _, script = case(name)
+    data = script.data
+    pairs = poses(data)[:, data["free"]]
+    places = np.array(script("all.map((p) => toolAt(map, p))", all=pairs.tolist()))
+    found = np.array(script("all.map((t) => postures(arm, t))", all=places.tolist()))
+    back = np.array(script("all.map((s) => s.map((p) => toolAt(map, p)))", all=found.tolist()))
+    assert_allclose(back, np.broadcast_to(places[:, None], back.shape), atol=1e-6)
+    circles = np.array([v["wraps"] for v in data["views"]])
+    gap = found - pairs[:, None]
+    gap = np.where(circles, gap - math.tau * np.round(gap / math.tau), gap)
+    assert np.abs(gap).max(axis=2).min(axis=1).max() < 1e-6  # the pose itself is among them
+    if found.shape[1] == 2:  # and the other one is the other posture
+        det = np.array(
+            script("all.map((s) => s.map((p) => determinant(map, p)))", all=found.tolist())
+        )
+        assert (np.sign(det[:, 0]) == -np.sign(det[:, 1])).all()
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_singular_curve_is_where_the_posture_changes(name):
+    _, _, _, script = case(name)
+    pairs = poses(script.data)[:, script.data["free"]]
+    det = np.array(script("all.map((p) => determinant(map, p))", all=pairs.tolist()))
+    lines = np.sort(script("singularValues(arm)"))
+    if len(lines) == 0:
+        assert len(set(np.sign(det))) == 1
+        return
+    band = np.searchsorted(lines, pairs[:, 1]) % 2 if len(lines) == 2 else pairs[:, 1] > lines[0]
+    assert len(set(np.sign(det[band == 0]))) == 1
+    assert (np.sign(det[band == 0])[0] != np.sign(det[band == 1])).all()
+
+
+def test_a_place_out_of_reach_gives_the_stretched_pose():
+    _, _, _, script = case("paper")
+    far = script("postures(arm, [300, 22.5])")
+    line = min(script("singularValues(arm)"), key=abs)
+    assert_allclose([p[1] for p in far], line, atol=1e-7)
+    assert_allclose(script("toolAt(map, p)", p=far[0]), [np.hypot(15, 25.98) + 25, 22.5])
+
+
+def test_the_mirrored_pose_mirrors_joints_and_tool_and_has_the_other_posture():
+    robot, _, _, script = case("paper")
+    q = poses(script.data)
+    other = np.array(script("all.map((p) => mirroredPose(arm, p))", all=q.tolist()))
+    tool = position(robot, robot.tool)
+    assert_allclose(tool(other), tool(q) * [-1, 1, 1], atol=1e-11)
+    elbows = [robot.frames(p).position("0", "2", "0")[..., [0, 2]] for p in (q, other)]
+    assert_allclose(elbows[1], elbows[0] * [-1, 1], atol=1e-11)
+    det = np.array(
+        script("all.map((p) => determinant(map, p))", all=[*q.tolist(), *other.tolist()])
+    )
+    assert_allclose(det[:POSES], -det[POSES:], atol=1e-9 * np.abs(det).max())
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_fibres_are_the_safe_values_of_the_second_joint(name):
+    robot, held, _, script = case(name)
+    q = poses(script.data, 400)
+    first = script.data["free"][0]
+    fibres = script(
+        "(() => { const p = sliceProblem(robot, robot.q);"
+        " return all.map((t) => fibre(p, t).map((i) => [i.low.at, i.high.at])); })()",
+        all=q[:, first].tolist(),
+    )
+    dense = np.linspace(*(script.data["views"][1][end] for end in ("low", "high")), 400)[1:-1]
+    used = [clearance(robot, b).restrict(held) for b in robot.boundaries if b.used]
+    for t, intervals in zip(q[:, first], fibres, strict=True):
+        pairs = np.stack([np.full(len(dense), t), dense], axis=-1)
+        safe = np.all([form(pairs) > 0 for form in used], axis=0)
+        edges = np.array(intervals).reshape(-1, 2)
+        inside = ((dense[:, None] > edges[:, 0]) & (dense[:, None] < edges[:, 1])).any(axis=1)
+        assert np.array_equal(inside, safe)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_cells_of_a_slice_are_the_regions_components(name):
+    _, _, region, script = case(name)
+    cells = script("sliceCells(sliceProblem(robot, robot.q), 240)")
+    pieces = {cell["piece"] for cell in cells}
+    areas = {
+        piece: sum(_area(cell["rows"]) for cell in cells if cell["piece"] == piece)
+        for piece in pieces
+    }
+    assert len(pieces) == len(region.components)
+    expected = sorted(component.area for component in region.components)
+    assert_allclose(sorted(areas.values()), expected, rtol=2e-3)
+
+
+def _area(rows):
+    t, low, high = np.array(rows).T
+    return float(np.trapezoid(high - low, t))
+
+
+@pytest.mark.parametrize("value", [-0.8, 0.1, 1.5])
+def test_a_slider_shows_the_slice_that_the_library_finds(value):
+    robot, _, _, script = case("3R, second held")
+    q = [*script.data["q"]]
+    q[1] = value
+    cells = script("sliceCells(sliceProblem(robot, q), 240)", q=q)
+    expected = [component.area for component in find_region(robot, {1: value}).components]
+    areas = [
+        sum(_area(cell["rows"]) for cell in cells if cell["piece"] == piece)
+        for piece in {cell["piece"] for cell in cells}
+    ]
+    assert_allclose(sorted(areas), sorted(expected), rtol=2e-3)
+
+
+def test_a_path_is_the_librarys_traversal():
+    robot, _, _, script = case("paper")
+    corners = np.array(script.data["polygon"]["vertices"])
+    walk = traverse(robot, corners, closed=True)
+    steps = np.abs(np.diff(walk.q, axis=0)).max(axis=1)
+    fractions = np.concatenate([[0], np.cumsum(steps)]) / steps.sum()
+    found = script(
+        "all.map((f) => alongPath(robot, stops, f))",
+        all=fractions.tolist(),
+        stops=[*corners.tolist(), corners[0].tolist()],
+    )
+    assert_allclose(found, walk.q, atol=1e-9)
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.9, 0.9650494, 1.0])
+def test_the_smallest_clearance_of_a_scaled_polygon_is_that_of_its_edges(factor):
+    robot, _, _, script = case("paper")
+    hexagon = script.data["polygon"]
+    found = script(
+        "smallestClearance(robot, robot.q, p.vertices, f, p.centroid)", p=hexagon, f=factor
+    )
+    g = np.array(hexagon["centroid"])
+    edges = g + factor * (np.array(hexagon["vertices"]) - g)
+    values = {}
+    for b in robot.boundaries:
+        if b.used:
+            least, _ = least_along_edges(clearance(robot, b), edges)
+            required = getattr(b, "clearance", None)
+            values[b.name] = (
+                least if required is None else math.sqrt(max(0, least + required**2)) - required
+            )
+    name = min(values, key=lambda n: values[n])
+    assert found["name"] == name
+    assert_allclose(found["value"], values[name], atol=0.02)
+    assert (found["value"] >= 0) == (factor <= hexagon["largest"])
+
+
+def test_the_papers_rule_gives_the_papers_polygon_and_scale():
+    robot = load_robot("minervabot-v2")
+    data = explorer_data(robot, solve(paper_rule.problem(robot), robot.home), rule="paper")
+    corners = [vertex.q for vertex in paper_rule.vertices(robot)]
+    assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
+    assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
+    script = Script(data)
+    q = poses(data)
+    safe = script("all.map((q) => isSafe(margins(robot, q)))", all=q.tolist())
+    assert np.array_equal(safe, paper_rule.feasible(robot, q))
+
+
+def test_the_arcs_that_are_drawn_lie_on_their_boundaries():
+    robot, _, region, script = case("paper")
+    arcs = [arc for c in script.data["components"] for loop in c["loops"] for arc in loop]
+    assert len(arcs) == sum(len(loop) for c in region.components for loop in c.loops)
+    for arc in arcs:
+        b = robot.boundary(arc["boundary"])
+        form = clearance(robot, b)
+        size = np.abs(form.coefficients).max()
+        assert_allclose(form(np.array(arc["points"])), 0, atol=2e-6 * size)
+
+
+# --- the page ------------------------------------------------------------------------------------
+
+
+class Parts(HTMLParser):
+    """The scripts, styles and addresses of a page, as a browser's parser finds them."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.scripts, self.addresses, self.handlers = "", {}, [], []
+
+    def handle_starttag(self, tag, attributes):
+        found = dict(attributes)
+        self.open = found.get("id", "code") if tag == "script" else ""
+        self.addresses += [v for k, v in attributes if k in ("src", "href", "action", "data")]
+        self.handlers += [k for k, _ in attributes if k.startswith("on") or k == "style"]
+
+    def handle_endtag(self, tag):
+        self.open = ""
+
+    def handle_data(self, data):
+        if self.open:
+            self.scripts[self.open] = self.scripts.get(self.open, "") + data
+
+
+def parts(page):
+    parser = Parts()
+    parser.feed(page)
+    return parser
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_page_is_one_small_file_that_loads_nothing(name):
+    robot, held, region, _ = case(name)
+    page = explorer_page(robot, region, held=held)
+    found = parts(page)
+    assert len(page.encode()) < 300_000
+    assert [a for a in found.addresses if not a.startswith(("#", "data:"))] == []
+    assert found.handlers == []
+    assert set(found.scripts) == {"robot-data", "code"}
+    assert "default-src 'none'" in page
+
+
+def test_a_robots_names_cannot_become_markup():
+    nasty = "</script><script>alert(1)</script><!--<img src=x onerror=alert(1)> & \u2028 $name ${x}"
+    rows = [joint("revolute", str(i), str(i + 1), ORIGINS[i], SIDE) for i in (0, 1)]
+    table = robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2", name=nasty)
+    table["boundary"][0]["name"] = nasty
+    robot = parse_robot(table)
+    found = parts(explorer_page(robot, find_region(robot)))
+    assert set(found.scripts) == {"robot-data", "code"}
+    assert json.loads(found.scripts["robot-data"])["name"] == nasty
+    assert "alert(1)" not in found.scripts["code"]
+    assert found.handlers == []
+
+
+def test_the_script_writes_names_as_text_only():
+    code = "".join((TEMPLATES / name).read_text() for name in ("explorer.js", "explorer_math.js"))
+    assert re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
+    assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
+
+
+# --- the command ---------------------------------------------------------------------------------
+
+
+def test_explore_writes_the_page(capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", "minervabot-v2", "-o", str(file)]) == 0
+    assert capsys.readouterr().err == ""
+    assert list(tmp_path.iterdir()) == [file]
+    assert json.loads(parts(file.read_text(encoding="utf-8")).scripts["robot-data"])["rule"] == (
+        "clearance"
+    )
+
+
+def test_explore_says_what_is_wrong_and_writes_nothing(capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", "minervabot-v2", "-o", str(file), "--slice", "q1=1deg"]) == 2
+    assert "two joints" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,425 @@
+"""The explorer in a browser, opened from the file system, without a network: what a reader does."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from browsers import refuse_remote, settle
+from numpy.testing import assert_allclose
+from test_explorer import ROBOTS
+
+from qbound import find_region, load_robot
+from qbound.explorer import explorer_page
+from qbound.region import violated
+
+WIDTHS = {"wide screen": 1280, "phone": 390}
+THEMES = ["light", "dark"]
+
+RECORD = """() => {
+  window.seen = [];
+  const move = setPair;
+  setPair = (pair) => { seen.push(pair); move(pair); };
+}"""
+LISTEN = """() => {
+  window.heard = new Set();
+  const note = () => heard.add(byId("task-text").textContent);
+  new MutationObserver(note).observe(byId("task-text"), { childList: true });
+}"""
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Write an explorer for every robot once."""
+    folder = tmp_path_factory.mktemp("explorers")
+    written = {}
+    for i, (name, make) in enumerate(ROBOTS.items()):
+        robot, held = make()
+        written[name] = folder / f"{i}.html"
+        page = explorer_page(robot, find_region(robot, held), held=held)
+        written[name].write_text(page, encoding="utf-8")
+    return written
+
+
+@pytest.fixture
+def open_explorer(browser, files):
+    """Open pages; at the end none has complained or asked for anything."""
+    pages, complaints, requests = [], [], []
+
+    def open_one(name="paper", fragment="", **options):
+        page = browser.new_page(**({"viewport": {"width": 1280, "height": 900}} | options))
+        refuse_remote(page, requests)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
+        page.goto(files[name].as_uri() + fragment)
+        settle(page)
+        pages.append(page)
+        return page
+
+    yield open_one
+    for page in pages:
+        page.close()
+    assert complaints == []
+    assert requests == []
+
+
+def pose(page):
+    return page.evaluate("state.q")
+
+
+def degrees(page):
+    return np.degrees(pose(page))
+
+
+def centre(page, selector):
+    box = page.locator(selector).bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def on_screen(page, picture, values):
+    """Return where values of a picture ("joints" or "plane") lie on the screen."""
+    x, y = page.evaluate("([name, v]) => window.eval(name).at(v)", [picture, values])
+    box = page.locator(f"#{picture}").bounding_box()
+    return box["x"] + x, box["y"] + y
+
+
+def drag(page, start, end, steps=12):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=steps)
+    page.mouse.up()
+    settle(page)
+
+
+def wait_until(page, expression, patience=300):
+    """Ask again and again: the page's policy forbids Playwright's own way of waiting."""
+    for _ in range(patience):
+        if page.evaluate(expression):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"never came true: {expression}")
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_every_kind_of_robot_opens(open_explorer, name, width):
+    page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
+    assert "afe" in page.inner_text("#status")
+    assert page.locator("#joints .arc").count() > 0
+    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    assert page.locator("#plane .workspace").count() == 2
+
+
+def test_dragging_the_dot_moves_the_arm(open_explorer):
+    page = open_explorer()
+    tool = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    target = np.radians([-60, -90]).tolist()
+    drag(page, centre(page, "#joints .handle"), on_screen(page, "joints", target))
+    assert_allclose(degrees(page), [-60, -90], atol=1)
+    assert page.evaluate("toolAt(slice.map, pairOf(state.q))") != tool
+    assert page.input_value("#value-0") == str(round(degrees(page)[0], 1))
+
+
+def test_dragging_the_tool_keeps_the_posture_and_the_tool_under_the_hand(open_explorer):
+    page = open_explorer()
+    side = page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))")
+    drag(page, centre(page, "#plane .handle"), on_screen(page, "plane", [10.0, 66.0]), 30)
+    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), [10, 66], atol=0.5)
+    assert page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))") == side
+
+
+def test_a_tool_dragged_out_of_reach_stretches_the_arm_and_says_so(open_explorer):
+    page = open_explorer()
+    drag(page, centre(page, "#plane .handle"), on_screen(page, "plane", [54.0, 75.0]), 30)
+    assert_allclose(degrees(page)[1], -59.9993, atol=1e-3)
+    assert "Singular" in page.inner_text("#posture")
+    assert page.locator("#joints .singular.lit").count() > 0
+
+
+@pytest.fixture
+def phone(browser, files):
+    page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    page.goto(files["paper"].as_uri())
+    settle(page)
+    yield page
+    page.close()
+
+
+def test_a_touch_drags_the_dot(phone):
+    x, y = centre(phone, "#joints .handle")
+    client = phone.context.new_cdp_session(phone)
+
+    def touch(kind, *points):
+        places = [{"x": px, "y": py} for px, py in points]
+        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": places})
+
+    touch("touchStart", (x, y))
+    for i in range(1, 9):
+        touch("touchMove", (x - 5 * i, y + 4 * i))
+    touch("touchEnd")
+    settle(phone)
+    assert_allclose(centre(phone, "#joints .handle"), [x - 40, y + 32], atol=1.5)
+
+
+def test_a_tap_brings_the_dot(phone):
+    x, y = centre(phone, "#joints .handle")
+    phone.touchscreen.tap(x - 60, y + 70)
+    settle(phone)
+    assert_allclose(centre(phone, "#joints .handle"), [x - 60, y + 70], atol=1.5)
+
+
+def test_arrow_keys_move_joints_and_tool(open_explorer):
+    page = open_explorer()
+    page.focus("#joints")
+    for key in ["ArrowRight", "ArrowRight", "Shift+ArrowDown", "ArrowUp"]:
+        page.keyboard.press(key)
+    assert_allclose(degrees(page), [2, -9], atol=1e-9)
+    before = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))"))
+    page.focus("#plane")
+    page.keyboard.press("ArrowUp")
+    step = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))")) - before
+    assert_allclose(step, [0, page.evaluate("robot.reach * 0.01")], atol=1e-9)
+    page.keyboard.press("h")
+    assert_allclose(pose(page), 0, atol=1e-12)
+
+
+def test_typing_a_value_moves_the_arm_and_the_screen_reader_hears_it(open_explorer):
+    page = open_explorer()
+    page.fill("#value-0", "80")
+    assert_allclose(degrees(page), [80, 0], atol=1e-9)
+    assert "Not safe" in page.inner_text("#status")
+    wait_until(page, "document.getElementById('live').textContent.includes('q1 80.0°')")
+    assert "B7 is violated by" in page.inner_text("#live")
+
+
+def test_the_violated_boundary_is_lit_in_table_and_pictures(open_explorer):
+    page = open_explorer()
+    page.fill("#value-0", "80")
+    assert page.locator("#margins tr.lit th").all_inner_texts() == ["B7"]
+    ((_, margin),) = violated(load_robot("minervabot-v2"), np.radians([80, 0]))
+    assert page.locator("#margins tr.lit td").last.inner_text() == f"−{-margin:.2f} cm"
+    assert page.locator("#plane .wall.lit").count() == 1
+    assert page.locator("#joints path.arc.lit").count() >= 2
+    page.fill("#value-0", "0")
+    assert page.locator(".lit:not(.readout)").count() == 0
+
+
+def test_switching_the_posture_passes_the_singular_curve_and_keeps_the_place(open_explorer):
+    page = open_explorer()
+    place = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    page.evaluate(RECORD)
+    page.click("#flip")
+    wait_until(page, "!isPlaying() && Math.abs(state.q[1]) > 1")
+    line = math.radians(-59.9993)
+    seen = np.array(page.evaluate("window.seen"))[:, 1]
+    assert seen.min() < line < seen.max()
+    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), place, atol=1e-6)
+    assert "Posture A" in page.inner_text("#posture")
+
+
+def test_the_mirrored_pose_is_across_the_singular_curve_and_the_page_says_why(open_explorer):
+    page = open_explorer()
+    assert "mirror image" in page.inner_text("#task-text")
+    page.evaluate(LISTEN)
+    page.click("#task-go")
+    wait_until(page, "byId('task-text').textContent.startsWith('There.')")
+    wait_until(page, "!isPlaying()")
+    assert_allclose(degrees(page), [-60, -120], atol=2e-3)
+    words = page.evaluate("[...window.heard]")
+    assert any(text.startswith("Now both links lie in one line") for text in words)
+
+
+def test_the_largest_safe_scale_divides_safe_from_unsafe(open_explorer):
+    page = open_explorer()
+    page.click("#largest")
+    assert "Safe everywhere" in page.inner_text("#clearance")
+    assert page.locator("#joints .polygon.unsafe").count() == 0
+    page.focus("#scale")
+    for _ in range(4):
+        page.keyboard.press("ArrowRight")
+    assert "Not safe everywhere" in page.inner_text("#clearance")
+    assert page.locator("#joints .polygon.unsafe").count() == 1
+
+
+def test_a_traversal_plays_pauses_and_goes_on(open_explorer):
+    page = open_explorer()
+    page.select_option("#walk", "1")
+    page.select_option("#speed", "2")
+    start = pose(page)
+    page.click("#play")
+    wait_until(page, "state.progress > 0.05")
+    page.click("#play")
+    here = pose(page)
+    settle(page)
+    assert pose(page) == here != start
+    assert page.inner_text("#play") == "Play"
+    page.click("#play")
+    wait_until(page, "!isPlaying() && state.progress === 1")
+    corners = page.evaluate("walkStops()")
+    assert_allclose(pose(page), corners[-1], atol=1e-9)
+    assert "Safe" in page.inner_text("#status")
+
+
+def test_reduced_motion_jumps_from_vertex_to_vertex(open_explorer):
+    page = open_explorer(reduced_motion="reduce")
+    page.evaluate(RECORD)
+    page.select_option("#speed", "2")
+    page.click("#play")
+    wait_until(page, "!isPlaying() && state.progress === 1")
+    corners = page.evaluate("walkStops()")
+    assert_allclose(page.evaluate("window.seen"), corners[1:], atol=1e-9)
+
+
+def test_random_poses_are_shown_and_hidden(open_explorer):
+    page = open_explorer()
+    assert page.locator("#joints .sample").count() == 0
+    page.check("#show-sample")
+    marks = page.locator("#joints .sample .dots, #plane .sample .dots")
+    assert marks.count() == 2
+    drawn = page.evaluate("state.sample.filter((one) => one.safe).length")
+    assert marks.first.get_attribute("d").count("M") == drawn > 100
+    page.uncheck("#show-sample")
+    assert page.locator("#joints .sample").count() == 0
+
+
+def test_a_link_restores_the_view(open_explorer):
+    page = open_explorer()
+    page.fill("#value-0", "-40")
+    page.fill("#value-1", "-30.5")
+    page.check("#show-names")
+    page.uncheck("#show-workspace")
+    page.evaluate("setScale(0.8)")
+    wait_until(page, "location.hash.includes('scale=0.8&')")
+    link = page.input_value("#link")
+    assert link == page.url
+    again = open_explorer(fragment=link[link.index("#") :])
+    assert_allclose(degrees(again), [-40, -30.5], atol=1e-3)
+    assert again.is_checked("#show-names")
+    assert not again.is_checked("#show-workspace")
+    assert again.evaluate("state.scale") == 0.8
+
+
+@pytest.mark.parametrize(
+    "fragment",
+    ["#q=NaN,1", "#q=1", "#q=1e999,0&scale=-3", "#scale=9&walk=77&at=x", "#q=%3Cb%3E,0&show=;"],
+)
+def test_a_broken_link_opens_the_home_pose(open_explorer, fragment):
+    page = open_explorer(fragment=fragment)
+    assert pose(page) == [0, 0]
+    assert 0 < page.evaluate("state.scale") < 1
+    assert page.evaluate("state.walk") == 0
+
+
+def test_a_held_joints_slider_shows_another_slice(open_explorer):
+    page = open_explorer("3R, third held")
+    exact = page.evaluate("slice.exact")
+    before = page.locator("#joints .home").get_attribute("d")
+    page.fill("#value-2", "-100")
+    assert (exact, page.evaluate("slice.exact")) == (True, False)
+    assert page.locator("#joints .home").get_attribute("d") != before
+    assert page.locator("#joints .arc").count() > 0
+
+
+def test_a_new_size_is_laid_out_again(open_explorer):
+    page = open_explorer()
+    wide = page.locator("#joints").bounding_box()
+    assert page.locator("#plane").bounding_box()["y"] == pytest.approx(wide["y"], abs=1)
+    page.set_viewport_size({"width": 390, "height": 844})
+    settle(page)
+    narrow = page.locator("#joints").bounding_box()
+    assert page.locator("#plane").bounding_box()["y"] > narrow["y"] + narrow["height"]
+    assert page.locator("#joints").get_attribute("viewBox") == (
+        f"0 0 {narrow['width']:.0f} {narrow['height']:.0f}"
+    )
+    assert page.evaluate("document.documentElement.scrollWidth <= 390")
+
+
+def test_it_prints_both_pictures_and_the_margins_on_one_page(open_explorer):
+    page = open_explorer()
+    page.emulate_media(media="print")
+    settle(page)
+    for shown in ("#joints", "#plane", "#margins", "#status"):
+        assert page.locator(shown).is_visible()
+    for hidden in ("#play", "#scaling", "#task", "#home"):
+        assert not page.locator(hidden).is_visible()
+    pdf = page.pdf(format="A4")
+    assert pdf.count(b"/Type /Page\n") == 1
+
+
+@pytest.mark.parametrize("theme", THEMES)
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("name", ["paper", "PP", "3R, second held"])
+def test_the_accessibility_rules_find_nothing(open_explorer, name, width, theme):
+    page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850}, color_scheme=theme)
+    page.fill("#value-0", "80")
+    results = Axe().run(page).response["violations"]
+    assert [(v["id"], [n["html"] for n in v["nodes"]]) for v in results] == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_everything_to_press_has_room_for_a_finger(open_explorer, width):
+    page = open_explorer(viewport={"width": WIDTHS[width], "height": 850})
+    small = page.evaluate(
+        """() => [...document.querySelectorAll("button, select, input, .check")]
+            .filter((e) => e.type !== "checkbox")
+            .filter((e) => e.offsetParent && e.offsetHeight < 40).map((e) => e.outerHTML)"""
+    )
+    assert small == []
+    assert page.evaluate("document.querySelector('.reach-me').getBBox().width") >= 40
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_words_in_the_pictures_stand_out_from_their_ground(open_explorer, theme):
+    page = open_explorer(color_scheme=theme)
+    ratios = page.evaluate(
+        """() => {
+          const light = (c) => { const [r, g, b] = c.match(/\\d+/g).map((v) => { v /= 255;
+            return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
+            return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+          return [...document.querySelectorAll("svg text")].map((t) => {
+            const ground = light(getComputedStyle(t.closest("svg")).backgroundColor);
+            const ink = light(getComputedStyle(t).fill);
+            return (Math.max(ground, ink) + 0.05) / (Math.min(ground, ink) + 0.05); }); }"""
+    )
+    assert len(ratios) > 20
+    assert min(ratios) >= 4.5
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_names_of_arcs_and_vertices_do_not_cover_each_other(open_explorer, width):
+    page = open_explorer(viewport={"width": WIDTHS[width], "height": 850})
+    boxes = page.evaluate(
+        """() => [...document.querySelectorAll("#joints text")].map((t) => {
+            const { x, y, width, height } = t.getBBox();
+            return [t.textContent, x, y + 2, x + width, y + height - 2]; })"""
+    )
+    pairs = [
+        (a[0], b[0])
+        for i, a in enumerate(boxes)
+        for b in boxes[i + 1 :]
+        if min(a[3], b[3]) > max(a[1], b[1]) and min(a[4], b[4]) > max(a[2], b[2])
+    ]
+    assert pairs == []
+
+
+def test_without_scripts_the_page_says_what_it_would_show(browser, files):
+    page = browser.new_page(java_script_enabled=False)
+    page.goto(files["paper"].as_uri())
+    words = page.inner_text("noscript")
+    assert "needs JavaScript" in words
+    assert "5 pieces" in words
+    page.close()
+
+
+def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):
+    robot = load_robot("minervabot-v2")
+    object.__setattr__(robot, "name", "<img src=x onerror='window.hit=1'></script><b>bold</b>")
+    file = Path(tmp_path, "nasty.html")
+    file.write_text(explorer_page(robot, find_region(robot)), encoding="utf-8")
+    files["nasty"] = file
+    page = open_explorer("nasty")
+    assert page.inner_text("h1").startswith("<img src=x")
+    assert page.evaluate("window.hit") is None
