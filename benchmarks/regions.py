@@ -1,0 +1,92 @@
+"""How long a region takes: the paper's robot from its file, and robots with many boundaries.
+
+Run with ``python benchmarks/regions.py``. Medians of processor time in one run, each beside that of
+judging one grid of the same joint space: machines differ, ratios less so.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from itertools import cycle, islice, product
+from statistics import median
+from time import process_time
+
+import numpy as np
+
+from qbound import find_region, load_robot
+from qbound.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.sampling import keeps_clear
+
+GRID = 1000
+"""Places a side of the grid: its cells are 0.36 degrees wide."""
+
+
+def many_boundaries(count: int, seed: int) -> Robot:
+    """Return a planar arm of two free joints with `count` pairs and walls at random places."""
+    rng = np.random.default_rng(seed)
+    axis, mount = np.array([0.0, 1.0, 0.0]), np.eye(3)
+    joints = (
+        Joint("q1", "revolute", "0", "1", np.array([0.0, 0.0, 1.0]), mount, axis),
+        Joint("q2", "revolute", "1", "2", np.array([1.0, 0.0, 0.3]), mount, axis),
+    )
+    places = rng.uniform(-1, 1.3, (3, count, 2))
+    points = tuple(
+        Point(f"{frame}.{i}", str(frame), np.array([places[frame, i, 0], 0, places[frame, i, 1]]))
+        for frame, i in product(range(3), range(count))
+    )
+    kinds = islice(cycle([("0", "1"), ("1", "2"), None]), count)
+    boundaries = [
+        Pair(f"B{i}", (f"{pair[0]}.{i}", f"{pair[1]}.{i}"), 0.12) if pair else wall(i, rng)
+        for i, pair in enumerate(kinds)
+    ]
+    return Robot("many", joints, points, tuple(boundaries), np.zeros(2), "2.0", "m", "rad")
+
+
+def wall(i: int, rng: np.random.Generator) -> HalfSpace:
+    angle = rng.uniform(0, 2 * np.pi)
+    return HalfSpace(f"B{i}", f"2.{i}", np.array([np.cos(angle), 0, np.sin(angle)]), -2.0)
+
+
+def milliseconds(task: Callable[[], object], repeats: int) -> float:
+    task()  # warm
+    times = []
+    for _ in range(repeats):
+        start = process_time()
+        task()
+        times.append(process_time() - start)
+    return 1e3 * median(times)
+
+
+def grid_of(robot: Robot) -> Callable[[], object]:
+    x = np.linspace(-np.pi, np.pi, GRID)
+    q = np.stack(np.meshgrid(x, x), axis=-1).reshape(-1, 2)
+    return lambda: keeps_clear(robot, q)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeats", type=int, default=21)
+    repeats = parser.parse_args().repeats
+    paper = load_robot("minervabot-v2")
+    print(f"| task | median / ms | of a grid of {GRID} x {GRID} |\n| --- | --- | --- |")
+    grid = milliseconds(grid_of(paper), max(3, repeats // 7))
+    for name, task in {
+        "read the paper's robot": lambda: load_robot("minervabot-v2"),
+        "its regions": lambda: find_region(paper),
+        "both, from file to components, arcs, area and centroid": lambda: find_region(
+            load_robot("minervabot-v2")
+        ),
+    }.items():
+        took = milliseconds(task, repeats)
+        print(f"| {name} | {took:.2f} | {took / grid:.4f} |")
+    for count in (10, 30, 100):
+        robots = [many_boundaries(count, seed) for seed in range(5)]
+        took = median(milliseconds(lambda r=robot: find_region(r), 3) for robot in robots)
+        grid = milliseconds(grid_of(robots[0]), 1)
+        name = f"{count} boundaries, median of {len(robots)} robots"
+        print(f"| {name} | {took:.2f} | {took / grid:.4f} |")
+
+
+if __name__ == "__main__":
+    main()
