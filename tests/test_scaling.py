@@ -10,21 +10,40 @@ from numpy.testing import assert_allclose
 from oracles import equation_29
 
 from qbound import clearance, load_robot
+from qbound.harmonic import HarmonicForm
 from qbound.paper_rule import vertices
 from qbound.polygon import along_edges, centroid, scaled
-from qbound.scaling import largest_safe_scale, least_along_edges
+from qbound.scaling import (
+    first_exit,
+    largest_safe_scale,
+    least,
+    least_along_edges,
+    worst_margins,
+)
 
 MINERVA = load_robot("minervabot-v2")
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
 
 
-def disc(q: np.ndarray) -> np.ndarray:
-    """Positive inside the unit circle."""
-    return 1 - (q**2).sum(axis=-1)
+def slides(**terms: float) -> HarmonicForm:
+    """A polynomial of two slides: x, y, xx, yy, xy and one name their coefficients."""
+    places = {"one": (0, 0), "x": (1, 0), "y": (0, 1), "xx": (2, 0), "yy": (0, 2), "xy": (1, 1)}
+    table = np.zeros((3, 3))
+    for name, value in terms.items():
+        table[places[name]] = value
+    return HarmonicForm(table, ("prismatic", "prismatic"))
 
 
-def below(height: float):
-    return lambda q: height - q[..., 1]
+DISC = slides(one=1, xx=-1, yy=-1)
+"""Positive inside the unit circle."""
+
+
+def below(height: float) -> HarmonicForm:
+    return slides(one=height, y=-1)
+
+
+def outside(x: float, y: float, radius: float) -> HarmonicForm:
+    return slides(one=x * x + y * y - radius**2, x=-2 * x, y=-2 * y, xx=1, yy=1)
 
 
 def floor(q: np.ndarray) -> np.ndarray:
@@ -35,9 +54,9 @@ def floor(q: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(
     ("forms", "scale", "edges", "form"),
     [
-        ([disc], 1 / sqrt(2), {0, 1, 2, 3}, 0),  # the corners touch
+        ([DISC], 1 / sqrt(2), {0, 1, 2, 3}, 0),  # the corners touch
         ([below(0.25)], 0.25, {1, 2, 3}, 0),  # the whole upper edge touches
-        ([below(5), disc, below(0.25)], 0.25, {1, 2, 3}, 2),
+        ([below(5), DISC, below(0.25)], 0.25, {1, 2, 3}, 2),
         ([below(5)], 1.0, {-1}, -1),
         ([], 1.0, {-1}, -1),
     ],
@@ -57,7 +76,7 @@ def test_largest_safe_scale_in_closed_form(forms, scale, edges, form) -> None:
 )
 def test_an_edge_may_bind_between_its_vertices(edge, x, y) -> None:
     """A disc cut out beside the middle of any edge, the closing one too: no vertex touches it."""
-    found = largest_safe_scale(SQUARE, [0, 0], [lambda q: ((q - [x, y]) ** 2).sum(-1) - 0.25])
+    found = largest_safe_scale(SQUARE, [0, 0], [outside(x, y, 0.5)])
     assert found.scale == pytest.approx(0.8, abs=1e-12)
     assert found.edge == edge
     expected = np.where(np.abs([x, y]) > 1, 0.8 * np.sign([x, y]), 0.2)
@@ -80,7 +99,7 @@ def test_highest_limits_the_search() -> None:
 
 def test_the_first_crossing_counts_and_not_the_last() -> None:
     """A strip forbidden between 0.5 and 0.6 is not jumped over, though 0.9 would be free."""
-    found = largest_safe_scale(SQUARE, [0, 0], [lambda q: (q[..., 1] - 0.5) * (q[..., 1] - 0.6)])
+    found = largest_safe_scale(SQUARE, [0, 0], [slides(one=0.3, y=-1.1, yy=1)])
     assert found.scale == pytest.approx(0.5, abs=1e-12)
 
 
@@ -96,8 +115,9 @@ def test_floor_of_the_papers_polygon_against_brute_force() -> None:
     assert scales[sum(safe) - 1] <= found.scale + 1e-7
     assert found.scale - scales[sum(safe) - 1] < 1.1e-4
     assert floor(found.q) == pytest.approx(0, abs=1e-11)
-    assert least_along_edges(floor, scaled(p, found.scale - 1e-6, g))[0] > 0
-    assert least_along_edges(floor, scaled(p, found.scale + 1e-3, g))[0] < 0
+    b7 = clearance(MINERVA, MINERVA.boundary("B7"))
+    assert least_along_edges(b7, scaled(p, found.scale - 1e-6, g))[0] > 0
+    assert least_along_edges(b7, scaled(p, found.scale + 1e-6, g))[0] < 0
 
 
 def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
@@ -107,13 +127,14 @@ def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
     assert least < -1
     assert floor(q) == pytest.approx(least)
     edges = along_edges(p, np.linspace(0, 1, 2001))
-    assert floor(edges).min() == pytest.approx(least, abs=1e-12)
+    assert floor(edges).min() == pytest.approx(least, abs=1e-8)
+    assert floor(edges).min() >= least
 
 
 @pytest.mark.parametrize("centre", [[2.0, 0.0], [0.0, 1.0]], ids=["outside", "on the boundary"])
 def test_a_centre_that_is_not_safe_is_refused(centre) -> None:
     with pytest.raises(ValueError, match="violated at the centre"):
-        largest_safe_scale(SQUARE, centre, [disc])
+        largest_safe_scale(SQUARE, centre, [DISC])
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -123,4 +144,78 @@ def test_numbers_that_are_not_finite_are_refused(bad, place) -> None:
     p, g = SQUARE.copy(), np.zeros(2)
     (p[0] if place == "vertices" else g)[0] = bad
     with np.errstate(all="ignore"), pytest.raises(ValueError, match=r"finite|centre"):
-        largest_safe_scale(p, g, [disc])
+        largest_safe_scale(p, g, [DISC])
+
+
+def test_a_dip_that_no_sample_sees_is_found() -> None:
+    """A hole of radius 1e-4 beside the middle of an edge, between any points that one would try."""
+    hole = outside(0.4321, 0.7 + 1e-4, 1e-4)
+    found = largest_safe_scale(SQUARE, [0, 0], [hole])
+    assert found.scale == pytest.approx(0.7, abs=1e-9)
+    assert found.edge == 2
+    assert found.proved < found.scale
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_nothing_is_violated_at_the_proved_scale_and_something_just_above(seed) -> None:
+    """Random forms of two turns: brute force inside, and the touching point itself."""
+    rng = np.random.default_rng(seed)
+    table = rng.normal(size=(3, 3, 3))
+    table[:, 0, 0] = np.abs(table).sum(axis=(1, 2)) * rng.uniform(0.2, 0.5, 3)
+    forms = [HarmonicForm(t, ("revolute", "revolute")) for t in table]
+    polygon = np.array([[-2.0, -1.5], [2.5, -1], [0.5, 0.2], [1.5, 2], [-1, 1.8]])
+    if not all(form(np.zeros(2)) > 0 for form in forms):
+        return
+    found = largest_safe_scale(polygon, [0, 0], forms)
+    edges = along_edges(found.proved * polygon, np.linspace(0, 1, 400)).reshape(-1, 2)
+    inside = (np.linspace(0, 1, 60)[:, None, None] * edges).reshape(-1, 2)
+    assert all((form(inside) > 0).all() for form in forms)
+    if found.form >= 0:
+        assert forms[found.form](found.q) == pytest.approx(0, abs=1e-10)
+        assert forms[found.form](found.q * (1 + 1e-5)) < 0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_ray_stops_at_the_first_root_of_all(seed) -> None:
+    """Against signs on a fine grid along each ray."""
+    rng = np.random.default_rng(seed)
+    forms = [HarmonicForm(t, ("revolute", "revolute")) for t in rng.normal(size=(2, 3, 3))]
+    centre = rng.uniform(-3, 3, 2)
+    if not all(form(centre) > 0 for form in forms):
+        return
+    rays = rng.normal(size=(20, 2)) * 3
+    found, which = first_exit(forms, centre, rays)
+    s = np.linspace(0, 1, 20001)
+    for ray, scale, form in zip(rays, found, which, strict=True):
+        values = np.stack([f(centre + s[:, None] * ray) for f in forms])
+        negative = (values < 0).any(axis=0)
+        expected = s[negative.argmax()] if negative.any() else 1.0
+        assert scale <= expected + 1e-9
+        assert scale >= expected - 6e-5  # a dip between two places of the grid may come first
+        if form >= 0:
+            assert forms[form](centre + scale * ray) == pytest.approx(0, abs=1e-9)
+
+
+def test_least_value_over_a_polygon_is_found_inside_it_too() -> None:
+    """A bowl whose bottom lies inside: no edge comes near it."""
+    bowl = slides(one=1.0, x=-0.4, xx=1, yy=1)
+    value, q = least(bowl, SQUARE, [0, 0])
+    assert value == pytest.approx(0.96, abs=1e-8)
+    assert_allclose(q, [0.2, 0], atol=1e-3)
+    assert least_along_edges(bowl, SQUARE)[0] == pytest.approx(1.6, abs=1e-11)
+
+
+def test_worst_margins_of_the_papers_polygon_against_forward_kinematics() -> None:
+    """Figure 6 at 0.95: heights and distances on a grid of the polygon, by frames."""
+    p = np.array([vertex.q for vertex in vertices(MINERVA)])
+    g = centroid(p)
+    found = worst_margins(MINERVA, scaled(p, 0.95, g), g)
+    edges = along_edges(scaled(p, 0.95, g), np.linspace(0, 1, 2001)).reshape(-1, 2)
+    frames = MINERVA.frames(edges)
+    for name in ("B1", "B2", "B3", "B4"):
+        one, other = (frames.position("0", x, "0") for x in MINERVA.boundary(name).points)
+        gap = np.linalg.norm(other - one, axis=-1).min()
+        assert found[name][0] == pytest.approx(gap - 0.1, abs=1e-4)
+        assert found[name][0] <= gap - 0.1 + 1e-9
+    height = frames.position("0", "3", "0")[:, 2].min() - 11.32
+    assert found["B7"][0] == pytest.approx(height, abs=1e-4)

@@ -74,3 +74,9 @@ FLAT_ARC: Final = 1e-4
 """Distance of an arc's points from a chord, relative to the picture, that no eye can see.
 
 A tenth of a pixel in a picture a thousand pixels wide."""
+
+PROVED_SCALE: Final = 1e-9
+"""Part of a scale by which what is proved stays below what touches.
+
+A bound of second order needs triangles as small as the square root of what it is to resolve: 1e-9
+takes triangles of 1e-5 rad beside the place of contact, and only there."""
