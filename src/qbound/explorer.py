@@ -297,8 +297,8 @@ def _polygon(region: Region) -> Data | None:
     forms = [region.problem.forms[i] for i in range(len(region.problem.names))]
     try:
         centre = polygon.centroid(vertices)
-        largest = largest_safe_scale(vertices, centre, [form.__call__ for form in forms])
-    except ValueError:  # a vertex polygon whose centroid is not safe scales to nothing
+        largest = largest_safe_scale(vertices, centre, forms)
+    except (ValueError, ArithmeticError):  # its centroid is not safe, or an edge lies in a wall
         return None
     return {
         "vertices": vertices.tolist(),
