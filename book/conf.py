@@ -43,6 +43,7 @@ extensions = [
     "sphinxcontrib.bibtex",
     "paper_numbers",
     "book_pages",
+    "ledger_links",
 ]
 exclude_patterns = ["_build", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]
@@ -86,7 +87,7 @@ html_theme = "sphinx_book_theme"
 html_title = PYPROJECT["tool"]["qbound"]["title"]
 html_static_path = ["_static", mathjax_file()]
 html_css_files = ["book.css"]
-html_js_files = ["book.js"]
+html_js_files = ["book.js", ("ledger.js", {"defer": "defer"})]
 html_favicon = "_static/logo.svg"
 html_context = {"default_mode": "auto"}
 html_domain_indices = False

@@ -1,0 +1,112 @@
+"""Link the book and the ledger both ways: ids in the text, and the entries that a section supports.
+
+An id such as E-34 in the text becomes a link to its row. Each section of a chapter that an entry
+names as its evidence ends with a line that leads to the entry. Both come from results/claims.json,
+which the chapters have written when the pages are built.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
+from sphinx.util.typing import ExtensionMetadata
+
+PAGE = "chapters/15_what_holds"
+ID = re.compile(r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b")
+NO_TEXT = (nodes.literal, nodes.literal_block, nodes.reference, nodes.title, nodes.raw, nodes.math)
+
+
+class LedgerLinks(SphinxPostTransform):
+    """Turn ids into links, and name the entries that rest on a section at its end."""
+
+    default_priority = 950
+    formats = ("html",)
+
+    def run(self, **kwargs: Any) -> None:
+        ledger = read_ledger(self.app)
+        if not ledger or PAGE not in self.env.found_docs:
+            return
+        page = self.app.builder.get_relative_uri(self.env.docname, PAGE)
+        self.link_ids({entry["id"] for entry in ledger}, page)
+        self.name_entries(ledger, page)
+
+    def link_ids(self, known: set[str], page: str) -> None:
+        for text in list(self.document.findall(nodes.Text)):
+            if not is_inside(text, NO_TEXT) and ID.search(text):
+                text.parent.replace(text, with_links(text, known, page))
+
+    def name_entries(self, ledger: Iterable[dict[str, Any]], page: str) -> None:
+        chapter = self.env.docname.rpartition("/")[2]
+        entries: dict[nodes.Element, list[str]] = defaultdict(list)
+        for entry in ledger:
+            document, _, anchor = entry["evidence"]["chapter"].partition("#")
+            section = section_of(self.document, anchor) if document == chapter else None
+            if section is not None:
+                entries[section].append(entry["id"])
+        for section, names in entries.items():
+            section.insert(end_of_own_text(section), line(names, page))
+
+
+def read_ledger(app: Sphinx) -> list[dict[str, Any]]:
+    """Return the recorded entries; none where no ledger has been written."""
+    file = Path(app.confdir).parent / "results" / "claims.json"
+    return json.loads(file.read_text(encoding="utf-8"))["claims"] if file.is_file() else []
+
+
+def is_inside(node: nodes.Node, kinds: tuple[type[nodes.Node], ...]) -> bool:
+    while node is not None:
+        if isinstance(node, kinds):
+            return True
+        node = node.parent
+    return False
+
+
+def with_links(text: nodes.Text, known: set[str], page: str) -> list[nodes.Node]:
+    """Split a text at the ids of entries."""
+    parts: list[nodes.Node] = []
+    done = 0
+    for match in ID.finditer(text):
+        if match[0] in known:
+            parts += [nodes.Text(text[done : match.start()]), link(match[0], page)]
+            done = match.end()
+    return [*parts, nodes.Text(text[done:])]
+
+
+def link(name: str, page: str) -> nodes.reference:
+    anchor = name.lower().replace(".", "-")
+    return nodes.reference("", name, internal=True, refuri=f"{page}#{anchor}")
+
+
+def line(names: list[str], page: str) -> nodes.paragraph:
+    """Return the line "In the ledger: E-34, E-37"."""
+    links = [part for name in names for part in (nodes.Text(", "), link(name, page))]
+    return nodes.paragraph("", "", nodes.Text("In the ledger: "), *links[1:], classes=["in-ledger"])
+
+
+def section_of(document: nodes.document, anchor: str) -> nodes.section | None:
+    """Return the section that an anchor names or lies in."""
+    found = (n for n in document.findall(nodes.Element) if anchor in n.get("ids", ()))
+    node: nodes.Node | None = next(found, None)
+    while node is not None and not isinstance(node, nodes.section):
+        node = node.parent
+    return node
+
+
+def end_of_own_text(section: nodes.section) -> int:
+    """Return the place before a section's first subsection, or its end."""
+    below = (i for i, child in enumerate(section.children) if isinstance(child, nodes.section))
+    return next(below, len(section.children))
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register the links with Sphinx."""
+    app.add_post_transform(LedgerLinks)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
