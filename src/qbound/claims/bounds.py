@@ -120,7 +120,7 @@ def _pair_entry(label: str, side: str) -> Callable[[], Finding]:
         text += f". The component vanishes there and the points are {found.distance:.4f} cm apart"
         text += f"; rounding allows {found.allowed:.4f} cm."
         if met and not meets:
-            text += f" With x_2,13 = 9.09 they are {right.distance:.4f} cm apart."
+            text += f" With x_{{2,13}} = 9.09 they are {right.distance:.4f} cm apart."
         if not found.at_contact:
             require(*_mended_pair_bound(label))
             text += f" They meet at the root left out, {degrees(found.other)},"
@@ -248,9 +248,9 @@ def _of_q1(label: str, text: str | None = None) -> Callable[[Any], Any]:
 MENDED = {
     "beta_{2,3": "+ arccos in place of - arccos: the other root, at which the points meet.",
     "beta_{4,3": "+ arccos in place of - arccos: the other root, at which the points meet.",
-    "beta_{4,1": "The same formula with x_2,13 = 9.09 cm.",
-    "beta_{5,1": "β_5,1,2 = -q_1 - π + arccos(...): the other root, as in the row of β_7,3.",
-    "beta_{6,1": "β_6,1,2 = -q_1 - π + arccos(...): the other root, as in the row of β_7,3.",
+    "beta_{4,1": "The same formula with x_{2,13} = 9.09 cm.",
+    "beta_{5,1": "β_{5,1,2} = -q_1 - π + arccos(...): the other root, as in the row of β_{7,3}.",
+    "beta_{6,1": "β_{6,1,2} = -q_1 - π + arccos(...): the other root, as in the row of β_{7,3}.",
 }
 
 for _label in paper.TABLE_6:
@@ -259,7 +259,7 @@ for _label in paper.TABLE_6:
     entry(
         f"B-{_i}.{_j}.{_k}",
         "bound",
-        f"Table 6, β_{_i},{_j},{_k}",
+        f"Table 6, β_{{{_i},{_j},{_k}}}",
         f"The {SIDES[_k]} bound of q_{1 if _i < 3 else 2} from the {'xyz'[_j - 1]} component"
         f" of B_{_i}.",
         test="test_paper_rule.py::test_printed_rows_5_to_7_are_among_the_derived_roots"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
 from qbound.claims import cite
 from qbound.claims.ledger import KINDS, VERDICTS, Claim
 
+WORDS = '<input type="search" name="words" autocomplete="off"'
 HEADER = ("Entry", "What the paper says", "Verdict", "What was found")
 
 
@@ -48,19 +50,24 @@ def link_to_chapter(one: Claim) -> str:
     return f'<a href="{chapter}.html#{escape(anchor)}">Chapter {int(chapter[:2])}</a>'
 
 
+def typeset(text: str) -> str:
+    """Return plain text as HTML, with β_{1,1} and q_1 as letters with subscripts."""
+    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|(\w+))", r"<sub>\1\2</sub>", escape(text))
+
+
 def _row(one: Claim) -> str:
     cells = (
         f'<th scope="row"><a href="#{one.anchor}">{one.id}</a></th>',
-        f'<td><span class="ledger-where">{escape(one.where)}</span> {escape(one.says)}</td>',
+        f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>',
         f"<td>{badge(one.verdict)}</td>",
-        f"<td>{escape(one.found)}{_mended(one)}{_evidence(one)}{_citation(one)}</td>",
+        f"<td>{typeset(one.found)}{_mended(one)}{_evidence(one)}{_citation(one)}</td>",
     )
     data = f'data-kind="{one.kind}" data-verdict="{one.verdict}"'
     return f'<tr id="{one.anchor}" {data}>{"".join(cells)}</tr>'
 
 
 def _mended(one: Claim) -> str:
-    return f'<p class="ledger-mended"><b>Holds:</b> {escape(one.mended)}</p>' if one.mended else ""
+    return f'<p class="ledger-mended"><b>Holds:</b> {typeset(one.mended)}</p>' if one.mended else ""
 
 
 def _evidence(one: Claim) -> str:
@@ -77,9 +84,9 @@ def _erratum(one: Claim) -> str:
     again = f"<code>qbound claims {one.id} --recompute</code>"
     return (
         f'<tr><th scope="row">{ledger}<br>{badge(one.verdict)}</th>'
-        f'<td><span class="ledger-where">{escape(one.where)}</span> {escape(one.says)}</td>'
-        f"<td>{escape(one.mended)}</td>"
-        f'<td>{escape(one.found)}<p class="ledger-evidence">{link_to_chapter(one)}; {again}</p></td></tr>'
+        f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>'
+        f"<td>{typeset(one.mended)}</td>"
+        f'<td>{typeset(one.found)}<p class="ledger-evidence">{link_to_chapter(one)}; {again}</p></td></tr>'
     )
 
 
@@ -87,12 +94,19 @@ def _controls() -> str:
     return (
         '<form class="ledger-controls" role="search" aria-label="Filter the ledger" hidden>\n'
         f"{_choice('verdict', 'Verdict', VERDICTS)}\n{_choice('kind', 'Kind', KINDS)}\n"
-        '<label>Search <input type="search" name="words" autocomplete="off"></label>\n'
+        f"{_labelled('words', 'Search', WORDS)}</div>\n"
         '<button type="reset">Show all</button>\n'
         '<output class="ledger-count" aria-live="polite"></output>\n</form>'
     )
 
 
 def _choice(name: str, label: str, values: Sequence[str]) -> str:
-    options = "".join(f'<option value="{value}">{value}</option>' for value in values)
-    return f'<label>{label} <select name="{name}"><option value="">all</option>{options}</select></label>'
+    options = "".join(f'<option value="{value}">{value}</option>' for value in ("", *values))
+    options = options.replace('value=""></option>', 'value="">all</option>')
+    select = _labelled(name, label, f'<select name="{name}"')
+    return f"{select}{options}</select></div>"
+
+
+def _labelled(name: str, label: str, control: str) -> str:
+    """Return a label and the control that it is for, up to the control's first tag."""
+    return f'<div><label for="ledger-{name}">{label}</label>{control} id="ledger-{name}">'

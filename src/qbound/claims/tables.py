@@ -179,7 +179,7 @@ def _pair_offsets(number: int) -> Callable[[], Finding]:
         first, second = radii(robot(), pair)
         with_9_09 = closest_approach(mended(), pairs(mended())[number - 1])[1]
         gap, limit = abs(first - second), contact(pair)
-        slip = f" With x_2,13 = 9.09, as x_2,11, it is {with_9_09:.4f} cm." if number == 4 else ""
+        slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm." if number == 4 else ""
         return Finding(
             judge(holds=gap <= limit, mended=with_9_09 <= limit),
             f"The points are {first:.4f} and {second:.4f} cm from the joint between them. The"
@@ -274,7 +274,7 @@ def _in_millimetres() -> Robot:
     "Offsets in mm and the vector of the point boundary function 4.",
     test="test_paper_rule.py::test_table_4_read_in_millimetres_leaves_beta_4_without_a_root",
     chapter="05_boundary_functions#tab-4",
-    mended="cm for mm, and x_2,13 = 9.09 for 9.00.",
+    mended="cm for mm, and x_{2,13} = 9.09 for 9.00.",
 )
 def table_4() -> Finding:
     rows = (unit_of_table_4(), _pair_offsets(4)(), _vector_of("B4")())
@@ -301,7 +301,7 @@ def unit_of_table_4() -> Finding:
     return Finding(
         judge(holds=in_mm > 0, mended=in_cm == 4),
         f"In mm the points are {far:.2f} and {near:.2f} cm from joint 2, and the two components of"
-        f" B_4 have {in_mm} roots: the bounds of Table 6 and the β_4,1,2 of Figure 4 would not"
+        f" B_4 have {in_mm} roots: the bounds of Table 6 and the β_{{4,1,2}} of Figure 4 would not"
         f" exist. In cm they have {in_cm}.",
     )
 
@@ -310,10 +310,10 @@ entry(
     "T-4.2",
     "table",
     "Table 4, offsets of B_4",
-    "Offsets of the points 12 and 13, which can meet; x_2,13 = 9.00.",
+    "Offsets of the points 12 and 13, which can meet; x_{2,13} = 9.00.",
     test="test_boundary.py::test_points_of_the_siblings_come_as_close_as_their_digits",
     chapter="05_boundary_functions#one-digit",
-    mended="x_2,13 = 9.09, the number of the opposite corner, x_2,11.",
+    mended="x_{2,13} = 9.09, the number of the opposite corner, x_{2,11}.",
 )(_pair_offsets(4))
 entry(
     "T-4.3",
@@ -370,7 +370,7 @@ def table_5() -> Finding:
 @entry(
     "T-5.1",
     "table",
-    "Table 5, z_min,1",
+    "Table 5, z_{min,1}",
     "The floor is at 11.32 mm.",
     test="test_paper_rule.py::test_floor_read_in_millimetres_leaves_no_six_vertices",
     chapter="05_boundary_functions#millimetres-or-centimetres",
@@ -390,7 +390,7 @@ def unit_of_the_floor() -> Finding:
 @entry(
     "T-5.2",
     "table",
-    "Table 5, x_min,1 and x_min,2",
+    "Table 5, x_{min,1} and x_{min,2}",
     "The side walls are at 15 mm and -15 mm.",
     test="test_paper_rule.py::test_unused_boundaries_do_not_bound",
     chapter="05_boundary_functions#millimetres-or-centimetres",
@@ -538,7 +538,7 @@ for _row, _name in enumerate(paper.EQUATION_29, start=1):
         f"T-6.{_row}",
         "table",
         f"Table 6, row {_row}",
-        f"q_{1 if _i < 3 else 2} is feasible between β_{_i},{_j},2 and β_{_i},{_j},1.",
+        f"q_{1 if _i < 3 else 2} is feasible between β_{{{_i},{_j},2}} and β_{{{_i},{_j},1}}.",
         test="test_paper_rule.py::test_every_window_is_one_turn_that_holds_home"
         if _i < 5
         else "test_paper_rule.py::test_rows_5_and_6_of_table_6_lack_a_root",

@@ -47,15 +47,16 @@ def sign_of_a_component() -> Finding:
     x = pair_vector(robot(), pairs()[0])(q)[0]
     allowed = square()[paper_rule.feasible(robot(), square())]
     vectors = np.stack([pair_vector(robot(), pair)(allowed) for pair in pairs()], axis=1)
+    negative = (vectors < 0).mean(axis=0)
     share = 100 * (vectors < 0).any(axis=(1, 2)).mean()
+    kinds = [f"β_{{{i + 1},{j + 1}}} ({100 * x:.0f} %)" for (i, j), x in np.ndenumerate(negative) if x]
     B, d = sp.symbols("B d", nonnegative=True)
     require(sp.expand((B - d) * (B + d) - B**2 + d**2) == 0, "|B|² - d² = (|B| - d)(|B| + d)")
     return Finding(
         judge(holds=not (inside and x < 0 and share > 0)),
         f"At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
-        f" β_1,1 = -(x_0,6 + z_1,7) = {float(exact):.2f} cm exactly. In {share:.1f} % of the region"
-        " some component is negative, and the y components are zero everywhere. |B|² - d² has the"
-        " sign of |B| - d.",
+        f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} % of the region"
+        f" some component is negative: {', '.join(kinds)}. The y components are zero everywhere.",
     )
 
 
@@ -66,7 +67,7 @@ def sign_of_a_component() -> Finding:
     "The one component of a wall that counts is positive inside the feasible region.",
     test="test_boundary.py::test_clearance_of_a_half_space_is_the_depth_inside_it",
     chapter="03_theorem_1#the-sign-of-a-component-is-no-verdict",
-    mended="β_7,3 ≥ 0 in the region; β_5,1 and β_6,1 do not bound it.",
+    mended="β_{7,3} ≥ 0 in the region; β_{5,1} and β_{6,1} do not bound it.",
 )
 def sign_of_a_wall() -> Finding:
     allowed = square()[paper_rule.feasible(robot(), square())]
@@ -147,7 +148,7 @@ def least_distance() -> Finding:
     "The position stays between limits along x, y and z.",
     test="test_boundary.py::test_clearance_of_a_half_space_is_the_depth_inside_it",
     chapter="07_joint_region#all-bounds-in-one-picture",
-    mended="z ≥ z_min,1 alone bounds the selected region.",
+    mended="z ≥ z_{min,1} alone bounds the selected region.",
 )
 def limits_in_space() -> Finding:
     corners = [vertex.q for vertex in paper_rule.vertices(robot())]
@@ -209,11 +210,11 @@ def null_length() -> Finding:
     "E-15",
     "equation",
     "eq. (15), Theorem 1",
-    "Under a collision the vector between the points is r_a,b + R_a,b r_b,b+m - r_a,a+n.",
+    "Under a collision the vector between the points is r_{a,b} + R_{a,b} r_{b,b+m} - r_{a,a+n}.",
     test="test_boundary.py::test_the_label_of_eqs_15_and_25_is_two_vectors_of_one_length",
     chapter="03_theorem_1#one-label-two-observers",
     mended="The same, seen from frame a, at every configuration; seen from the base it is turned"
-    " by R_0,a.",
+    " by R_{0,a}.",
 )
 def relative_position() -> Finding:
     g, small = general(), quarter_turn()
@@ -282,7 +283,7 @@ def _pair_meets(number: int) -> Callable[[], Finding]:
         limit = contact(pair)
         with_9_09 = closest_approach(mended(), pairs(mended())[number - 1])[1]
         verdict = judge(holds=gap == 0, under=gap <= limit, mended=with_9_09 <= limit)
-        slip = f" With x_2,13 = 9.09 the gap is {with_9_09:.4f} cm." if with_9_09 != gap else ""
+        slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm." if with_9_09 != gap else ""
         return Finding(
             verdict,
             f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
@@ -301,7 +302,7 @@ for _number, _pair in enumerate(pairs(), start=1):
         f"Points {_pair.points[0]} and {_pair.points[1]} meet at some joint value.",
         test="test_boundary.py::test_printed_points_never_quite_meet",
         chapter="05_boundary_functions#where-the-points-come-closest",
-        mended="x_2,13 = 9.09 cm."
+        mended="x_{2,13} = 9.09 cm."
         if _number == 4
         else "They meet up to the rounding of the print.",
     )(_pair_meets(_number))
@@ -374,8 +375,8 @@ STEPS: tuple[tuple[int, str, str, Step], ...] = (
     ),
     (
         24,
-        "R_0,b is replaced by R_0,a R_a,b.",
-        "seen from the base; it also takes r_0,b - r_0,a = R_0,a r_a,b",
+        "R_{0,b} is replaced by R_{0,a} R_{a,b}.",
+        "seen from the base; it also takes r_{0,b} - r_{0,a} = R_{0,a} r_{a,b}",
         lambda g: [
             _between(g) - (g.R_0a @ g.r_ab + g.R_0a @ g.R_ab @ g.r_bm - g.R_0a @ g.r_an),
             _r_0b(g) - g.r_0a - g.R_0a @ g.r_ab,
@@ -423,7 +424,7 @@ for _number, _says, _seen, _difference in STEPS:
     "E-25",
     "equation",
     "eq. (25), proof of Theorem 1",
-    "Taken out, the factor R_0,a leaves the vector of eq. (15) in parentheses.",
+    "Taken out, the factor R_{0,a} leaves the vector of eq. (15) in parentheses.",
     test="test_boundary.py::test_the_label_of_eqs_15_and_25_is_two_vectors_of_one_length",
     chapter=PAGE + "25",
     mended="The left side is seen from the base, that of eq. (15) from a.",
@@ -435,7 +436,7 @@ def rotation_taken_out() -> Finding:
     return Finding(
         judge(holds=under and vanishes(from_a - g.R_0a @ g.B), under=under),
         "An identity seen from the base. The left side has the label of eq. (15), which holds seen"
-        " from a: one arrow, two observers, and the two equal columns only where R_0,a leaves B as"
+        " from a: one arrow, two observers, and the two equal columns only where R_{0,a} leaves B as"
         " it is.",
     )
 
@@ -455,8 +456,8 @@ def bracket_null() -> Finding:
     needed = not (flat @ up).any() and bool(up.any())
     return Finding(
         judge(holds=back and needed),
-        "The transpose of R_0,a times the vector is B, identically. This is the reason that the"
-        " step needs and leaves out: R_0,a is invertible. With a projection, which is not,"
+        "The transpose of R_{0,a} times the vector is B, identically. This is the reason that the"
+        " step needs and leaves out: R_{0,a} is invertible. With a projection, which is not,"
         f" diag(1, 1, 0) sends {tuple(int(x) for x in up)} to null.",
     )
 
@@ -491,7 +492,7 @@ def collision_condition_again() -> Finding:
     there, back = vanishes(_between(g) - g.R_0a @ g.B), vanishes(g.R_0a.T @ _between(g) - g.B)
     return Finding(
         judge(holds=there and back),
-        "Both directions: the vector is R_0,a B, and B is the transpose of R_0,a times the vector,"
+        "Both directions: the vector is R_{0,a} B, and B is the transpose of R_{0,a} times the vector,"
         " identically. The first gives 'if', the second 'only if'.",
     )
 
@@ -580,7 +581,7 @@ for _name in paper.EQUATION_29:
     entry(
         f"E-29.{_i}.{_j}",
         "equation",
-        f"eq. (29), β_{_i},{_j}",
+        f"eq. (29), β_{{{_i},{_j}}}",
         f"Component {'xyz'[int(_j) - 1]} of B_{_i} in the offsets and joint values.",
         test="test_boundary.py::test_derived_component_is_the_printed_formula_by_identity",
         chapter="05_boundary_functions#equation-eq-29",

@@ -209,7 +209,7 @@ def amplitude_and_phase() -> Finding:
     left = missing(negative, sp.atan(b / negative)) == 0
     mended = all(missing(a, sp.atan2(b, a)) == 0 for a in (positive, negative))
     behind = [
-        f"β_{window.boundary[1:]},{window.component}"
+        f"β_{{{window.boundary[1:]},{window.component}}}"
         for window in paper_rule.windows(robot())
         if _cosine(window) < 0
     ]

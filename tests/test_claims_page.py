@@ -1,0 +1,184 @@
+"""The ledger in the built book: complete without a script, filtered with one, linked both ways."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bs4 import BeautifulSoup
+from test_book_browser import browser, open_page, refuse_remote  # noqa: F401  (browser: a fixture)
+
+from qbound import recorded
+from qbound.claims import cite
+from qbound.claims.ledger import KINDS, VERDICTS, from_content
+
+HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
+LEDGER = [from_content(content) for content in recorded.claims()]
+PAGE, ERRATA = "chapters/15_what_holds.html", "chapters/16_errata.html"
+
+every_entry = pytest.mark.parametrize("one", LEDGER, ids=lambda one: one.id)
+
+
+@cache
+def read(page: str) -> BeautifulSoup:
+    file = HTML / page
+    assert file.exists(), "run `python3 run.py book` first"
+    return BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
+
+
+@cache
+def by_id(page: str) -> dict[str, Any]:
+    return {tag["id"]: tag for tag in read(page).find_all(id=True)}
+
+
+def flat(text: str) -> str:
+    """Text as the page shows it: letters with subscripts for β_{1,1} and q_1."""
+    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|(\w+))", r"\1\2", text)
+
+
+# --- as a file ------------------------------------------------------------------------------------
+
+
+@every_entry
+def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
+    row = by_id(PAGE)[one.anchor]
+    assert row.name == "tr"
+    assert (row["data-kind"], row["data-verdict"]) == (one.kind, one.verdict)
+    assert not row.has_attr("hidden")
+    text = row.get_text()
+    assert all(flat(part) in text for part in (one.id, one.where, one.says, one.found, one.mended))
+    assert row.select_one(".verdict").get_text() == one.verdict
+    assert row.select_one("details pre").get_text() == cite.entry(one)
+
+
+@every_entry
+def test_the_evidence_of_an_entry_is_in_the_book_and_leads_back(one) -> None:
+    chapter, _, anchor = one.evidence.chapter.partition("#")
+    (link,) = by_id(PAGE)[one.anchor].select(".ledger-evidence a")
+    assert link["href"] == f"{chapter}.html#{anchor}"
+    place = by_id(f"chapters/{chapter}.html").get(anchor)
+    assert place is not None, f"no {anchor} in {chapter}"
+    back = f"15_what_holds.html#{one.anchor}"
+    section = place if place.name == "section" else place.find_parent("section")
+    assert section.select(f'.in-ledger a[href="{back}"]')
+
+
+def test_an_id_in_the_text_is_a_link() -> None:
+    for page in sorted((HTML / "chapters").glob("0*.html")):
+        for paragraph in read(f"chapters/{page.name}").select("article p"):
+            for link in paragraph.select("a"):
+                link.extract()
+            for code in paragraph.select("code"):
+                code.extract()
+            assert re.findall(r"\bE-\d+\b", paragraph.get_text()) == [], page.name
+
+
+def test_the_table_is_a_table_with_headings() -> None:
+    (table,) = read(PAGE).select("table.ledger-table")
+    assert len(table.select("thead th[scope=col]")) == 4
+    rows = table.select("tbody tr")
+    assert [row.select_one("th[scope=row]").get_text() for row in rows] == [c.id for c in LEDGER]
+    assert table.caption is not None
+
+
+def test_every_control_has_a_label_and_waits_for_the_script() -> None:
+    (form,) = read(PAGE).select("form.ledger-controls")
+    assert form.has_attr("hidden")
+    controls = form.select("select, input")
+    labels = [form.select_one(f"label[for={control['id']}]").get_text() for control in controls]
+    assert labels == ["Verdict", "Kind", "Search"]
+    for name, values in (("verdict", VERDICTS), ("kind", KINDS)):
+        options = form.select(f"select[name={name}] option")
+        assert [option["value"] for option in options] == ["", *values]
+
+
+def test_the_errata_are_what_the_ledger_finds_wrong() -> None:
+    wrong = {one.id: one for one in LEDGER if one.verdict in ("misprint", "refuted")}
+    rows = read(ERRATA).select("table.errata-table tbody tr")
+    assert sorted(row.a.get_text() for row in rows) == sorted(wrong)
+    for row in rows:
+        one = wrong[row.a.get_text()]
+        assert row.a["href"] == f"15_what_holds.html#{one.anchor}"
+        assert all(flat(part) in row.get_text() for part in (one.says, one.mended, one.found))
+        assert f"qbound claims {one.id} --recompute" in row.get_text()
+
+
+# --- in a browser ---------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def page(browser) -> Any:  # noqa: F811
+    page = browser.new_page()
+    refuse_remote(page, type("Seen", (), {"requests": []})())
+    open_page(page, PAGE)
+    yield page
+    page.close()
+
+
+def shown(page: Any) -> list[str]:
+    script = "[...document.querySelectorAll('.ledger tbody tr')].filter(r => r.checkVisibility())"
+    return page.evaluate(f"{script}.map(r => r.querySelector('th').textContent)")
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_the_reader_filters_by_verdict(page, verdict) -> None:
+    page.get_by_label("Verdict", exact=True).select_option(verdict)
+    wanted = [one.id for one in LEDGER if one.verdict == verdict]
+    assert shown(page) == wanted
+    assert page.locator(".ledger-count").text_content() == (
+        f"{len(wanted)} of {len(LEDGER)} entries"
+    )
+
+
+def test_the_reader_combines_kind_and_words_and_shows_all_again(page) -> None:
+    page.get_by_label("Kind").select_option("table")
+    page.get_by_label("Search", exact=True).fill("TABLE 4 unit")
+    found = shown(page)
+    assert "T-4.1" in found
+    assert 0 < len(found) < 10
+    page.get_by_role("button", name="Show all").press("Enter")
+    page.wait_for_function("document.querySelectorAll('.ledger tr[hidden]').length === 0")
+    assert shown(page) == [one.id for one in LEDGER]
+
+
+def test_a_link_to_an_entry_shows_it_whatever_the_filter_says(page) -> None:
+    page.get_by_label("Verdict", exact=True).select_option("misprint")
+    assert "E-34" not in shown(page)
+    page.evaluate("location.hash = '#e-34'")
+    page.wait_for_function("document.getElementById('e-34').checkVisibility()")
+    assert page.locator("#e-34").is_visible()
+
+
+def test_on_paper_the_whole_table_is_there_without_its_controls(page) -> None:
+    page.get_by_label("Verdict", exact=True).select_option("misprint")
+    page.emulate_media(media="print")
+    assert shown(page) == [one.id for one in LEDGER]
+    assert not page.locator(".ledger-controls").is_visible()
+
+
+def test_without_a_script_the_whole_table_is_shown(browser) -> None:  # noqa: F811
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto((HTML / PAGE).as_uri())
+    assert page.locator(".ledger tbody tr").count() == len(LEDGER)
+    assert page.locator(f"#{LEDGER[-1].anchor}").is_visible()
+    assert not page.locator(".ledger-controls").is_visible()
+    context.close()
+
+
+def test_the_citation_unfolds_by_keyboard(page) -> None:
+    summary = page.locator("#e-34 summary")
+    summary.press("Enter")
+    assert page.locator("#e-34 pre").is_visible()
+    assert "qbound-E-34" in page.locator("#e-34 pre").text_content()
+
+
+def test_the_ledger_needs_no_other_host_and_no_module() -> None:
+    scripts = [tag for tag in read(PAGE).find_all("script") if "ledger" in tag.get("src", "")]
+    assert len(scripts) == 1
+    assert scripts[0].get("type") in (None, "text/javascript")
+    assert json.dumps(scripts[0]["src"]).startswith('"../_static/')
