@@ -88,7 +88,7 @@ NOT_PROSE = [
     r"(?m)^:::.*$|^:label:.*$|^\d\. ",  # directives, numbered items
     r"`[^`]*`",  # code and the targets of roles
     r"\]\([^)]*\)",  # targets of links
-    r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # entries of the ledger, the book's own numbers
+    r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # the ledger's ids, own numbers
 ]
 # What a number may name instead of count: Figure 4, eqs. (11), (12), points 6 and 8, point 1 to 2.
 NAMED = (

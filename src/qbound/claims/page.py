@@ -76,17 +76,20 @@ def _evidence(one: Claim) -> str:
 
 
 def _citation(one: Claim) -> str:
-    return f"<details><summary>Cite {one.id}</summary><pre>{escape(cite.entry(one))}</pre></details>"
+    return (
+        f"<details><summary>Cite {one.id}</summary><pre>{escape(cite.entry(one))}</pre></details>"
+    )
 
 
 def _erratum(one: Claim) -> str:
     ledger = f'<a href="{cite.PAGE.rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
     again = f"<code>qbound claims {one.id} --recompute</code>"
+    why = f'{typeset(one.found)}<p class="ledger-evidence">{link_to_chapter(one)}; {again}</p>'
     return (
         f'<tr><th scope="row">{ledger}<br>{badge(one.verdict)}</th>'
         f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>'
         f"<td>{typeset(one.mended)}</td>"
-        f'<td>{typeset(one.found)}<p class="ledger-evidence">{link_to_chapter(one)}; {again}</p></td></tr>'
+        f"<td>{why}</td></tr>"
     )
 
 

@@ -179,7 +179,11 @@ def _pair_offsets(number: int) -> Callable[[], Finding]:
         first, second = radii(robot(), pair)
         with_9_09 = closest_approach(mended(), pairs(mended())[number - 1])[1]
         gap, limit = abs(first - second), contact(pair)
-        slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm." if number == 4 else ""
+        slip = (
+            f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm."
+            if number == 4
+            else ""
+        )
         return Finding(
             judge(holds=gap <= limit, mended=with_9_09 <= limit),
             f"The points are {first:.4f} and {second:.4f} cm from the joint between them. The"

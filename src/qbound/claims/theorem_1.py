@@ -49,14 +49,17 @@ def sign_of_a_component() -> Finding:
     vectors = np.stack([pair_vector(robot(), pair)(allowed) for pair in pairs()], axis=1)
     negative = (vectors < 0).mean(axis=0)
     share = 100 * (vectors < 0).any(axis=(1, 2)).mean()
-    kinds = [f"β_{{{i + 1},{j + 1}}} ({100 * x:.0f} %)" for (i, j), x in np.ndenumerate(negative) if x]
+    kinds = [
+        f"β_{{{i + 1},{j + 1}}} ({100 * x:.0f} %)" for (i, j), x in np.ndenumerate(negative) if x
+    ]
     B, d = sp.symbols("B d", nonnegative=True)
     require(sp.expand((B - d) * (B + d) - B**2 + d**2) == 0, "|B|² - d² = (|B| - d)(|B| + d)")
     return Finding(
         judge(holds=not (inside and x < 0 and share > 0)),
         f"At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
-        f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} % of the region"
-        f" some component is negative: {', '.join(kinds)}. The y components are zero everywhere.",
+        f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} %"
+        f" of the region some component is negative: {', '.join(kinds)}. The y components are zero"
+        " everywhere.",
     )
 
 
@@ -436,8 +439,8 @@ def rotation_taken_out() -> Finding:
     return Finding(
         judge(holds=under and vanishes(from_a - g.R_0a @ g.B), under=under),
         "An identity seen from the base. The left side has the label of eq. (15), which holds seen"
-        " from a: one arrow, two observers, and the two equal columns only where R_{0,a} leaves B as"
-        " it is.",
+        " from a: one arrow, two observers, and two equal columns only where R_{0,a} leaves B as it"
+        " is.",
     )
 
 
@@ -492,8 +495,8 @@ def collision_condition_again() -> Finding:
     there, back = vanishes(_between(g) - g.R_0a @ g.B), vanishes(g.R_0a.T @ _between(g) - g.B)
     return Finding(
         judge(holds=there and back),
-        "Both directions: the vector is R_{0,a} B, and B is the transpose of R_{0,a} times the vector,"
-        " identically. The first gives 'if', the second 'only if'.",
+        "Both directions: the vector is R_{0,a} B, and B is the transpose of R_{0,a} times the"
+        " vector, identically. The first gives 'if', the second 'only if'.",
     )
 
 
