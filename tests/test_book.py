@@ -1,17 +1,21 @@
 """The built pages, read as text: complete, self-contained, and well formed."""
 
+import os
 import re
 import shutil
 from collections import Counter
 from copy import copy
 from functools import cache
 from pathlib import Path
+from unittest import mock
 from xml.etree import ElementTree
 
 import nbformat
 import pytest
 from bs4 import BeautifulSoup, Tag
 from sphinx.testing.util import SphinxTestApp
+
+from qbound.cli import command_parsers
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
 pytestmark = pytest.mark.filterwarnings(
@@ -239,6 +243,18 @@ def test_without_an_address_no_link_needs_one(tmp_path):
     html = build_trial(tmp_path, "")
     text = (html / "chapters" / "01_trial.html").read_text("utf-8")
     assert re.findall(r"mybinder|colab\.research|github\.com|/edit/|issues/new", text) == []
+
+
+def test_the_page_of_the_command_is_its_own_help(tmp_path):
+    """Each command has a section whose text is what ``--help`` prints, to the letter."""
+    html = build_trial(tmp_path, "", TRIAL_INDEX + "\n```{commands}\n```\n")
+    page = BeautifulSoup((html / "index.html").read_text("utf-8"), "html.parser")
+    blocks = [block.get_text() for block in page.select("section pre")]
+    with mock.patch.dict(os.environ, COLUMNS="88", NO_COLOR="1"):
+        expected = [parser.format_help() for parser in command_parsers().values()]
+    assert [block.strip() for block in blocks] == [text.strip() for text in expected]
+    titles = [title.next_element for title in page.select("section section h2")]
+    assert titles == [*command_parsers()]
 
 
 def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):

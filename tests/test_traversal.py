@@ -155,3 +155,57 @@ def test_orders_without_crossing_are_shapelys() -> None:
 def test_orders_of_fewer_points_in_another_plane() -> None:
     """In the plane x, y a planar arm draws on one line: nothing crosses, every order is simple."""
     assert len(simple_orders(MINERVA, SMALL[:4], 3, plane=(0, 1))) == 12
+
+
+# --- deviation -----------------------------------------------------------------------------------
+
+
+@settings(max_examples=20, deadline=None)
+@given(robot_tables(), st.data())
+def test_the_tool_is_nowhere_farther_from_the_polyline_than_is_stated(table, data) -> None:
+    """Any chain, revolute and prismatic, askew: dense places against the rows' polyline."""
+    robot, n = parse_robot(table), len(table["joint"])
+    values = st.lists(st.integers(-20, 20).map(lambda k: k / 10), min_size=n, max_size=n)
+    stops = np.array(data.draw(st.lists(values, min_size=2, max_size=3)))
+    wanted = data.draw(st.sampled_from([5.0, 0.5, 0.05]))
+    path = traverse(robot, stops, deviation=wanted)
+    assert path.proved
+    assert path.deviation <= wanted
+    places = (path.s[:-1, None] + np.diff(path.s)[:, None] * np.linspace(0, 1, 9)).ravel()
+    for s, q in zip(places[::23], path.at(places[::23]), strict=True):
+        tool = point_seen_from(table, robot.tool, "0", q)
+        row = min(np.searchsorted(path.s, s, side="right") - 1, len(path.s) - 2)
+        a, b = path.tool[row], path.tool[row + 1]
+        chord = (b - a) @ (b - a)
+        t = np.clip((tool - a) @ (b - a) / chord, 0, 1) if chord > 0 else 0.0
+        assert np.linalg.norm(tool - a - t * (b - a)) <= path.deviation + 1e-9
+
+
+def test_the_bound_on_the_deviation_is_no_idle_one() -> None:
+    """One link turned by one joint: the true deviation, r (1 - cos(half a step)), to a percent."""
+    table = packaged_table()
+    table["joint"] = table["joint"][:1]
+    table["home"] = {"q1": 0.0}
+    table["tool"] = "t"
+    table["point"] = [{"name": "t", "frame": "1", "at": [10.0, 0.0, 0.0]}]
+    table["boundary"], table["body"] = [], []
+    path = traverse(parse_robot(table), [[0.0], [1.0]], deviation=0.01)
+    exact = 10 * (1 - np.cos(np.diff(path.q[:, 0]).max() / 2))
+    assert exact <= path.deviation <= 1.01 * exact
+
+
+def test_a_finer_deviation_keeps_the_stops() -> None:
+    for deviation in (1.0, 0.1, 0.01):
+        path = traverse(MINERVA, SIX, closed=True, deviation=deviation)
+        assert_array_equal(path.q[path.stops], np.concatenate([SIX, SIX[:1]]))
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan])
+def test_a_deviation_that_is_not_above_zero_is_refused(bad) -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        traverse(MINERVA, SIX, deviation=bad)
+
+
+def test_one_vertex_is_no_path() -> None:
+    with pytest.raises(ValueError, match="two vertices"):
+        traverse(MINERVA, SIX[:1])

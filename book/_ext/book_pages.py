@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 from base64 import b64encode
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import nbformat
 from docutils import nodes
@@ -13,8 +15,10 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.transforms import SphinxTransform
 from sphinx.transforms.post_transforms import SphinxPostTransform
-from sphinx.util.docutils import SphinxRole
+from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.typing import ExtensionMetadata
+
+from qbound.cli import command_parsers
 
 VERDICTS = (
     "confirmed",
@@ -30,6 +34,9 @@ LONGEST_VALUE = 40
 # A picture wider than this has panels side by side, too small to read on a phone; in points.
 WIDEST_PANEL = 6.5 * 72
 SVG_WIDTH = re.compile(r'<svg\b[^>]*\swidth="([\d.]+)pt"')
+
+# Help is folded here, in characters; argparse itself leaves two of them free.
+HELP_WIDTH = "88"
 
 # Chapters are built from executed copies; readers run and edit the notebooks themselves.
 COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
@@ -52,6 +59,25 @@ class VerdictRole(SphinxRole):
             return [], [problem]
         classes = ["verdict", f"verdict-{nodes.make_id(self.text)}"]
         return [nodes.inline(self.rawtext, self.text, classes=classes)], []
+
+
+class CommandHelp(SphinxDirective):
+    """Show the help of every command, asked for now: nothing of it is written down in the book."""
+
+    def run(self) -> list[nodes.Node]:
+        return [self.section(name, text) for name, text in command_help().items()]
+
+    def section(self, name: str, text: str) -> nodes.Node:
+        section = nodes.section(ids=[nodes.make_id(f"qbound {name}")])
+        section += nodes.title(name, name)
+        section += nodes.literal_block(text, text, language="none")
+        return section
+
+
+def command_help() -> dict[str, str]:
+    """Return each command's help, folded at one width wherever the book is built."""
+    with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
+        return {name: parser.format_help() for name, parser in command_parsers().items()}
 
 
 class UniqueProofIds(SphinxTransform):
@@ -153,6 +179,7 @@ def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register role, transforms and links with Sphinx."""
     app.add_role("verdict", VerdictRole())
+    app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.add_post_transform(PanelsScroll)

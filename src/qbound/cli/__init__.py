@@ -62,7 +62,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def command_line() -> argparse.ArgumentParser:
-    """Return the parser of the command, with one subparser a command."""
+    """Return the parser of the whole command."""
+    return _parsers()[0]
+
+
+def command_parsers() -> dict[str, argparse.ArgumentParser]:
+    """Return the parser of each command, by its name; the book shows their help."""
+    return _parsers()[1]
+
+
+def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
     parser = argparse.ArgumentParser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action="version", version=f"qbound {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -70,7 +79,7 @@ def command_line() -> argparse.ArgumentParser:
         command.add_to(commands)
     for subparser in commands.choices.values():
         subparser.formatter_class = argparse.RawDescriptionHelpFormatter  # examples stay in line
-    return parser
+    return parser, dict(commands.choices)
 
 
 def _shielded(word: str) -> str:
