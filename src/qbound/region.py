@@ -149,17 +149,26 @@ def solve(problem: Problem, home: ArrayLike) -> Region:
     A component is open; touching in points or curves neither joins components nor makes one.
     """
     base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
+    _, found = components_over(problem, home, base)
+    return Region(tuple(component for component, _ in found), problem)
+
+
+def components_over(
+    problem: Problem, home: ArrayLike, base: int
+) -> tuple[Complex, list[tuple[Component, frozenset[int]]]]:
+    """Find every component with one joint, 0 or 1, as the base, and the cells that make it up.
+
+    The components do not depend on the base; the cells do. Arguments and order as in `solve`.
+    """
     cells = Complex(decompose(Plane(problem.forms, problem.ranges, base)))
     found = _measured(cells, problem, np.asarray(home, dtype=float), base)
     walks = [Walk(steps, f.sheets, f.shift) for f in found for steps in cells.loops(f.sheets)]
     loops = Layout(cells, base, problem.names, problem.limits).arcs(walks)
-    components = [
-        _component(
-            f, base, [arcs for arcs, w in zip(loops, walks, strict=True) if w.sheets is f.sheets]
-        )
-        for f in found
-    ]
-    return Region(tuple(sorted(components, key=lambda c: (not c.contains_home, -c.area))), problem)
+    components = []
+    for f in found:
+        own = [arcs for arcs, w in zip(loops, walks, strict=True) if w.sheets is f.sheets]
+        components.append((_component(f, base, own), frozenset(f.sheets)))
+    return cells, sorted(components, key=lambda item: (not item[0].contains_home, -item[0].area))
 
 
 def find_region(robot: Robot, held: Mapping[int, float] | None = None) -> Region:

@@ -21,10 +21,12 @@ from qbound.cli import (
     robots,
     sample,
     traverse,
+    workspace,
 )
 
 COMMANDS = (
     region,
+    workspace,
     contains,
     connected,
     traverse,

@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 
 from qbound import __version__
+from qbound.arcs import Arc
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
 from qbound.cli.values import Content, check_targets, held, joint_units, write_all
+from qbound.planar import NoPlanarWorkspaceError, planar_arm
 from qbound.region import Component, Region, violated
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
+from qbound.workspace import NoHomeError, find_workspace
 
 
 def add_to(commands: Any) -> None:
@@ -104,9 +107,18 @@ def region_content(
             "violated": [{"boundary": name, "margin": margin} for name, margin in found],
         },
         "components": [_component_content(component) for component in region.components],
-        "workspace": None,
-        "workspace_reason": "this version does not compute the exact workspace",
+        **_workspace_content(robot, region, values),
     }
+
+
+def _workspace_content(robot: Robot, region: Region, values: dict[int, float]) -> dict[str, Any]:
+    """Return the workspace of the home component, or the reason why there is none."""
+    home = robot.home[free_joints(robot, values)]
+    try:
+        found = find_workspace(planar_arm(robot, values), region.problem, home)
+    except (NoPlanarWorkspaceError, NoHomeError) as reason:
+        return {"workspace": None, "workspace_reason": str(reason)}
+    return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
 
 
 def _component_content(component: Component) -> dict[str, Any]:
@@ -119,20 +131,22 @@ def _component_content(component: Component) -> dict[str, Any]:
             {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
             for vertex in component.vertices
         ],
-        "loops": [
+        "loops": [loop_content(loop) for loop in component.loops],
+    }
+
+
+def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
+    """Return the JSON form of a closed walk."""
+    return {
+        "arcs": [
             {
-                "arcs": [
-                    {
-                        "boundary": arc.boundary,
-                        "branch": arc.branch,
-                        "from": arc.points[0].tolist(),
-                        "to": arc.points[-1].tolist(),
-                    }
-                    for arc in loop
-                ]
+                "boundary": arc.boundary,
+                "branch": arc.branch,
+                "from": arc.points[0].tolist(),
+                "to": arc.points[-1].tolist(),
             }
-            for loop in component.loops
-        ],
+            for arc in loop
+        ]
     }
 
 

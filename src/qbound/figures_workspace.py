@@ -1,0 +1,124 @@
+"""Figures of the exact workspace: aspects in joint space, images and patches in the plane."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import cycle
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.arcs import Arc
+from qbound.figures import COLLIDING, FEASIBLE, SECOND, STYLE, UNUSED, USED, FilePath
+from qbound.workspace import SINGULAR, Aspect, Workspace
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+
+ONCE: Final = "#CDE3F0"
+TWICE: Final = "#7FB8D8"
+"""Tints of FEASIBLE: places reached in one posture, and in two."""
+
+SIDES: Final = {1: "#CDE3F0", -1: "#F8E2BF"}
+"""Tints of FEASIBLE and SECOND: the two signs of det J."""
+
+LINES: Final = (
+    (USED, "-"),
+    (UNUSED, (0, (6, 1.5))),
+    (FEASIBLE, (0, (4, 1.5, 1, 1.5))),
+    (SECOND, "-"),
+    ("#56B4E9", (0, (2, 1))),
+    ("#8C8C8C", "-"),
+)
+
+
+def draw_aspects(ax: Axes, workspace: Workspace, scale: ArrayLike = 1.0) -> list[Artist]:
+    """Fill the aspects in joint space, tinted by the sign of det J, with their boundaries.
+
+    Parameters
+    ----------
+    scale : array_like, shape (2,)
+        Factor of each joint, such as degrees a radian.
+    """
+    artists: list[Artist] = []
+    factor = np.asarray(scale, dtype=float)
+    for aspect in workspace.aspects:
+        loops = aspect.region.loops
+        rings: list[Floats] = [np.vstack([arc.points for arc in loop]) * factor for loop in loops]
+        label = f"det J {'>' if aspect.side > 0 else '<'} 0"
+        artists.append(_fill(ax, rings, SIDES[aspect.side], label))
+    return artists + _draw_arcs(ax, workspace, lambda points: points * factor)
+
+
+def draw_patches(ax: Axes, workspace: Workspace) -> list[Artist]:
+    """Fill the workspace: light where one posture is safe, darker where both are."""
+    artists: list[Artist] = []
+    for postures, outline in sorted(workspace.patches(), key=lambda patch: patch[0]):
+        colour, label = ((ONCE, "one safe posture"), (TWICE, "two safe postures"))[postures - 1]
+        artists.append(_fill(ax, [outline], colour, label))
+    return artists
+
+
+def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
+    """Draw where the tool goes as the joints walk round every aspect, named by boundary."""
+    return _draw_arcs(ax, workspace, workspace.arm.tool)
+
+
+def save_workspace(file: FilePath, workspace: Workspace, unit: str) -> None:
+    """Draw a workspace into an SVG file, the same bytes on every run; `unit` is that of lengths."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    names = ["xyz"[int(np.abs(axis).argmax())] for axis in workspace.arm.axes]
+    with mpl.rc_context(STYLE):  # type: ignore[arg-type]
+        figure = Figure(figsize=(7, 6))
+        ax = figure.add_subplot()
+        draw_patches(ax, workspace)
+        draw_images(ax, workspace)
+        ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
+        legend(ax)
+        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+
+
+def legend(ax: Axes, **style: Any) -> None:
+    """Put a legend with one entry a name under the axes."""
+    handles, labels = ax.get_legend_handles_labels()
+    named = dict(zip(labels, handles, strict=True))
+    look: dict[str, Any] = {
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.14),
+        "ncols": 4,
+    } | style
+    ax.legend(list(named.values()), list(named), **look)
+
+
+def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
+    artists: list[Artist] = []
+    arcs = list(_arcs(workspace.aspects))
+    names = sorted({arc.boundary for arc in arcs} - {SINGULAR})
+    looks = dict(zip(names, cycle(LINES), strict=False)) | {SINGULAR: (COLLIDING, (0, (1, 1)))}
+    for arc in arcs:
+        colour, dash = looks[arc.boundary]
+        path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces.roots)))).T
+        width = 2.6 if arc.boundary == SINGULAR else 1.7
+        artists += ax.plot(*path, color=colour, ls=dash, lw=width, label=arc.boundary)
+    return artists
+
+
+def _arcs(aspects: tuple[Aspect, ...]) -> Iterator[Arc]:
+    """Yield every arc of the aspects; the singular curve, the same from both sides, first."""
+    arcs = [arc for aspect in aspects for loop in aspect.region.loops for arc in loop]
+    yield from sorted(arcs, key=lambda arc: arc.boundary != SINGULAR)
+
+
+def _fill(ax: Axes, rings: list[Floats], colour: str, label: str) -> Artist:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    path = Path.make_compound_path(*(Path(ring, closed=False) for ring in rings))
+    # An edge of the same colour closes the hairlines between neighbours.
+    return ax.add_patch(PathPatch(path, fc=colour, ec=colour, lw=0.6, label=label))

@@ -1,0 +1,216 @@
+"""The exact geometric workspace of two joints: areas by one integral over circles or lines.
+
+The first joint moves the tool rigidly, so the plane falls into circles about its axis (or lines
+along its slide), one for each distance u of the second joint from the fold. On each of them the
+places that the arm reaches are intervals: the fibres of the region moved along by a known angle
+(or length), one set a posture. The lengths of their union and intersection, times abs(det J),
+integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
+samples (Figure 11).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.arcs import Arc, integrate
+from qbound.fibres import Fibres, find_fibres
+from qbound.harmonic import HarmonicForm
+from qbound.layers import Cover, Layers, Ranges
+from qbound.planar import PlanarArm, Posture, postures
+from qbound.region import Component, Problem
+
+Floats = NDArray[np.float64]
+
+SINGULAR = "det J"
+"""Name of the singular curve among the boundaries of an aspect."""
+
+
+class NoHomeError(ValueError):
+    """The home pose is in no component: no workspace belongs to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Aspect:
+    """A connected part of the region in which det J keeps its sign.
+
+    Attributes
+    ----------
+    region : Component
+        Its boundary in joint space; the arcs named `SINGULAR` are the singular curve.
+    component : int
+        Index of the component of the whole region that it is a part of.
+    side : int
+        Sign of det J.
+    image : float
+        Area of the places that the tool reaches, each counted once; length squared.
+    swept : float
+        Integral of abs(det J): more than `image` where full turns reach a place twice.
+    """
+
+    region: Component
+    component: int
+    side: int
+    image: float
+    swept: float
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """The places that the tool reaches safely.
+
+    Attributes
+    ----------
+    arm : PlanarArm
+    region : Fibres
+        All components of the region.
+    chosen : frozenset of int
+        The components whose workspace this is.
+    aspects : tuple of Aspect
+        Of these components, by falling area of the image.
+    area : float
+        Of all places that are reached; length squared.
+    covered_twice : float
+        Of those reached in both postures.
+    sides : dict of int to float
+        Area of the image on each side of the singular curve, by the sign of det J.
+    covers : Layers
+        What is covered on each circle or line.
+    """
+
+    arm: PlanarArm
+    region: Fibres
+    chosen: frozenset[int]
+    aspects: tuple[Aspect, ...]
+    area: float
+    covered_twice: float
+    sides: dict[int, float]
+    covers: Layers
+
+    @property
+    def singular(self) -> tuple[Arc, ...]:
+        """The singular curve inside these components, det J > 0 on its left."""
+        arcs = (
+            a for part in self.aspects for loop in part.region.loops for a in loop if part.side > 0
+        )
+        return tuple(arc for arc in arcs if arc.boundary == SINGULAR)
+
+    def postures(self, place: ArrayLike) -> list[tuple[Posture, int | None]]:
+        """Return every posture of a place within the joints' ranges, with its component.
+
+        The component is None where the posture is not safe. Errors as `qbound.planar.postures`.
+        """
+        found = postures(self.arm, place, self.region.problem.ranges)
+        return [(posture, self.region.component(posture.q)) for posture in found]
+
+    def safe_postures(self, place: ArrayLike) -> int:
+        """Count the safe postures of a place, 0, 1 or 2, full turns of a joint counted once."""
+        return len({p.side for p, owner in self.postures(place) if owner in self.chosen})
+
+    def patches(self) -> list[tuple[int, Floats]]:
+        """Cut the workspace into patches that are reached in one posture, or in two.
+
+        Returns
+        -------
+        list of (int, ndarray of shape (k, 2))
+            Number of postures and outline; points of the outline are exact.
+        """
+        return list(self.covers.patches())
+
+
+def find_workspace(
+    arm: PlanarArm, problem: Problem, home: ArrayLike, *, every: bool = False
+) -> Workspace:
+    """Return the exact workspace of the component with the home pose, or of every component.
+
+    Parameters
+    ----------
+    arm : PlanarArm
+        Of the same two joints as the problem.
+    problem : Problem
+        By either rule.
+    home : array_like, shape (2,)
+    every : bool
+        Whether to take all components.
+
+    Raises
+    ------
+    NoHomeError
+        If the home pose is in no component.
+    """
+    region = find_fibres(problem, home)
+    chosen = frozenset(
+        i for i, component in enumerate(region.components) if every or component.contains_home
+    )
+    if not chosen and not every:
+        raise NoHomeError("the home pose is in no component of the region")
+    sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
+    owned = {
+        side: {i: region.component(part.inside(i)) for i in range(len(part.components))}
+        for side, part in sides.items()
+    }
+    kept = {s: frozenset(i for i, c in own.items() if c in chosen) for s, own in owned.items()}
+    covers = Layers(arm, sides, kept, problem.ranges)
+    area, twice, *images = covers.areas(
+        lambda cover: cover.length(cover.reached()),
+        lambda cover: cover.length(cover.twice()),
+        *(partial(_on_side, side) for side in sides),
+    )
+    found = [_aspect(covers, side, i, owned[side][i]) for side in sides for i in kept[side]]
+    aspects = tuple(sorted(found, key=lambda aspect: -aspect.image))
+    by_side = dict(zip(sides, images, strict=True))
+    return Workspace(arm, region, chosen, aspects, area, twice, by_side, covers)
+
+
+def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
+    """Return the area of the places reached both safely and unsafely (Figure 11).
+
+    Parameters
+    ----------
+    square : pair of (low, high) or None
+        The joint values that are looked at, such as those that Figure 11 draws from; None for one
+        full turn. A configuration is safe if it is in any component, unsafe if it is in none.
+    """
+    sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
+    kept = {side: frozenset(range(len(part.components))) for side, part in sides.items()}
+    (area,) = Layers(arm, sides, kept, square).areas(lambda cover: cover.length(cover.mixed()))
+    return area
+
+
+def area_by_green(arm: PlanarArm, region: Component) -> float:
+    """Integrate x dz along the image of a component's boundary: the integral of det J over it.
+
+    Another way to an aspect's `swept`, with its sign: the first goes over circles, this one along
+    arcs. Length squared.
+    """
+
+    def x_dz(q: Floats, dq: Floats) -> Floats:
+        return np.asarray(arm.tool[0](q) * (arm.tool[1].gradient(q) * dq).sum(axis=-1))
+
+    return float(integrate([arc for loop in region.loops for arc in loop], x_dz))
+
+
+def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> Fibres:
+    """Find the aspects with one sign of det J: the region with it as one more form."""
+    if arm.fold is None:
+        return find_fibres(problem, home)
+    forms = [*problem.forms.coefficients, side * arm.singular.coefficients]
+    stacked = HarmonicForm(np.array(forms), problem.forms.kinds)
+    names = (*problem.names, SINGULAR)
+    return find_fibres(Problem(stacked, names, problem.ranges, problem.limits), home)
+
+
+def _on_side(side: int, cover: Cover) -> Floats:
+    return cover.length(cover.on_side(side))
+
+
+def _aspect(covers: Layers, side: int, i: int, component: int | None) -> Aspect:
+    assert component is not None
+    kept = {s: frozenset([i] if s == side else []) for s in covers.sides}
+    image, swept = replace(covers, kept=kept).areas(
+        lambda cover: cover.length(cover.reached()), Cover.swept
+    )
+    return Aspect(covers.sides[side].components[i], component, side, image, swept)
