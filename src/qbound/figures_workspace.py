@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc
-from qbound.figures import COLLIDING, FEASIBLE, SECOND, STYLE, UNUSED, USED, FilePath
+from qbound.figures import COLLIDING, FEASIBLE, SECOND, STYLE, UNUSED, USED
 from qbound.workspace import SINGULAR, Aspect, Workspace
 
 if TYPE_CHECKING:
@@ -68,8 +69,8 @@ def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
     return _draw_arcs(ax, workspace, workspace.arm.tool)
 
 
-def save_workspace(file: FilePath, workspace: Workspace, unit: str) -> None:
-    """Draw a workspace into an SVG file, the same bytes on every run; `unit` is that of lengths."""
+def workspace_picture(workspace: Workspace, unit: str) -> bytes:
+    """Draw a workspace as SVG, the same bytes on every run; `unit` is that of lengths."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -81,7 +82,9 @@ def save_workspace(file: FilePath, workspace: Workspace, unit: str) -> None:
         draw_images(ax, workspace)
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
-        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+        buffer = BytesIO()
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    return buffer.getvalue()
 
 
 def legend(ax: Axes, **style: Any) -> None:

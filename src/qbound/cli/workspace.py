@@ -79,10 +79,9 @@ def _outputs(
 ) -> list[tuple[str, Content]]:
     outputs = list[tuple[str, Content]]()
     if options.svg:
-        from qbound.figures_workspace import save_workspace
+        from qbound.figures_workspace import workspace_picture
 
-        unit = content["length_unit"]
-        outputs.append((options.svg, lambda draft: save_workspace(draft, workspace, unit)))
+        outputs.append((options.svg, workspace_picture(workspace, content["length_unit"])))
     if options.json:
         outputs.append((options.json, json.dumps(content, indent=1) + "\n"))
     return outputs
@@ -173,4 +172,3 @@ def _pose(robot: Robot, free: list[int], text: str) -> list[float]:
     if len(numbers) != len(free):
         raise ValueError(f"--go {text}: {len(free)} joint values are needed, as 20deg,-45deg")
     return [joint_value(robot, j, number) for j, number in zip(free, numbers, strict=True)]
-
