@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from bs4 import BeautifulSoup
-from test_book_browser import browser, open_page, refuse_remote  # noqa: F401  (browser: a fixture)
+from test_book_browser import open_page, refuse_remote
 
 from qbound import recorded
 from qbound.claims import cite
@@ -37,7 +37,7 @@ def by_id(page: str) -> dict[str, Any]:
 
 def flat(text: str) -> str:
     """Text as the page shows it: letters with subscripts for β_{1,1} and q_1."""
-    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|(\w+))", r"\1\2", text)
+    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"\1\2", text)
 
 
 # --- as a file ------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ def test_the_errata_are_what_the_ledger_finds_wrong() -> None:
 
 
 @pytest.fixture
-def page(browser) -> Any:  # noqa: F811
+def page(browser) -> Any:
     page = browser.new_page()
     refuse_remote(page, type("Seen", (), {"requests": []})())
     open_page(page, PAGE)
@@ -160,7 +160,7 @@ def test_on_paper_the_whole_table_is_there_without_its_controls(page) -> None:
     assert not page.locator(".ledger-controls").is_visible()
 
 
-def test_without_a_script_the_whole_table_is_shown(browser) -> None:  # noqa: F811
+def test_without_a_script_the_whole_table_is_shown(browser) -> None:
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto((HTML / PAGE).as_uri())

@@ -52,7 +52,7 @@ def link_to_chapter(one: Claim) -> str:
 
 def typeset(text: str) -> str:
     """Return plain text as HTML, with β_{1,1} and q_1 as letters with subscripts."""
-    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|(\w+))", r"<sub>\1\2</sub>", escape(text))
+    return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"<sub>\1\2</sub>", escape(text))
 
 
 def _row(one: Claim) -> str:
