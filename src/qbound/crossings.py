@@ -191,14 +191,15 @@ class _Pair:
 
     def refined(self, x: list[arb]) -> list[arb]:
         """Shrink a box that holds one zero until rounding stops it."""
-        while True:
+        for _ in range(BITS):  # about a zero at 0 the radius could shrink for ever
             image = self.krawczyk(x)
             if image is None:
-                return x
+                break
             new = [a.intersection(b) for a, b in zip(image, x, strict=True)]
             if not any(a.rad() < b.rad() * 7 / 8 for a, b in zip(new, x, strict=True)):
                 return new
             x = new
+        return x
 
 
 def pair_zeros(
