@@ -187,6 +187,8 @@ class _Prover:
     def _loop(self, loop: Sequence[Arc]) -> Iterator[Run]:
         """Cut a proposed loop into runs that share their ends."""
         curves = self._curves(loop)
+        if len(curves) == 1:
+            curves = [(curves[0][0], self._begun_apart(*curves[0]))]
         corners = [
             self._corner(before, curve, points[0])
             for (before, _), (curve, points) in zip([curves[-1], *curves[:-1]], curves, strict=True)
@@ -207,6 +209,14 @@ class _Prover:
             (curve, np.concatenate([points for _, points in group]))
             for curve, group in groupby(unrolled, key=lambda item: item[0])
         ]
+
+    def _begun_apart(self, curve: int, points: Floats) -> Floats:
+        """Let a loop without a vertex begin where it is far from turning back in either joint."""
+        if curve >= len(self.problem.names):
+            return points
+        g = np.abs(self.floats[curve].gradient(points)).min(axis=-1)
+        k, shift = int(g.argmax()), points[-1] - points[0]
+        return np.concatenate([points[k:], points[1 : k + 1] + shift])
 
     def _number(self, arc: Arc) -> int:
         """Return the number of an arc's curve: an end of a range, or a form."""
