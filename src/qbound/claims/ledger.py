@@ -33,7 +33,10 @@ MODULES: Final = (
     "bounds",
     "tables",
     "figures",
-    "sentences",
+    "sentences_method",
+    "sentences_region",
+    "sentences_workspace",
+    "sentences_outlook",
 )
 """Modules of this package whose functions are the entries, in the order of the ledger."""
 

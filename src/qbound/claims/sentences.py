@@ -1,1 +1,0 @@
-"""Sentences: see `qbound.claims.ledger` for what an entry is."""

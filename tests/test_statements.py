@@ -1,0 +1,248 @@
+"""What the ledger says of the paper's sentences, each checked in another way than it was computed.
+
+Kinematics and components come from the formulas expanded by hand in `oracles`, regions from
+sampling, derivatives from differences.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise, permutations
+
+import numpy as np
+import pytest
+import shapely
+from oracles import OFFSETS, equation_29
+from skimage.measure import marching_cubes
+
+from qbound import bodies, clearance, find_region, load_robot, paper_rule, polygon
+from qbound.claims import effort, walks
+from qbound.claims.sentences_outlook import sliding
+from qbound.claims.sentences_workspace import CAPTIONS, NAMED
+
+ROBOT = load_robot("minervabot-v2")
+SYMMETRIC = load_robot("minervabot-v2-symmetric")
+CORNERS = np.array([corner.q for corner in paper_rule.vertices(ROBOT)])
+STRETCHED = -np.arctan2(OFFSETS["z12"], OFFSETS["x12"])
+DRAWN = np.random.default_rng(5).uniform(-np.pi, np.pi, (200_000, 2))
+
+
+def tool(q):
+    """Place of the tool in the plane, by the formulas of eq. (29)."""
+    found = equation_29(q[..., 0], q[..., 1])
+    x = found["beta_{5,1}"] + OFFSETS["xmin1"]
+    return np.stack([x, found["beta_{7,3}"] + OFFSETS["zmin1"]], axis=-1)
+
+
+def determinant(q, step=1e-6):
+    """det J of the tool's place, by central differences."""
+    columns = [(tool(q + step * e) - tool(q - step * e)) / (2 * step) for e in np.eye(2)]
+    return columns[0][..., 0] * columns[1][..., 1] - columns[1][..., 0] * columns[0][..., 1]
+
+
+def legs(order, scale):
+    """Joint values along a walk through points of the polygon scaled about its centroid."""
+    p = shapely.affinity.scale(
+        shapely.Polygon(CORNERS), scale, scale, origin=shapely.Polygon(CORNERS).centroid
+    )
+    stops = np.array(p.exterior.coords)[list(order)]
+    t = np.linspace(0, 1, 400)[:, None]
+    return np.concatenate([a + t * (b - a) for a, b in pairwise(stops)])
+
+
+# --- singular poses -------------------------------------------------------------------------------
+
+
+def test_the_arm_is_singular_where_it_is_stretched() -> None:
+    q1 = np.linspace(-3, 3, 50)
+    assert np.abs(determinant(np.stack([q1, 0 * q1 + STRETCHED], -1))).max() < 1e-5
+    assert np.abs(determinant(np.stack([q1, 0 * q1 + STRETCHED + 0.1], -1))).min() > 50
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.964, 0.95, 0.5, 0.1, 0.01])
+def test_no_useful_scale_leaves_out_the_singular_poses(scale) -> None:
+    det = determinant(legs(range(6), scale))
+    assert det.min() < 0 < det.max()
+
+
+def test_a_scale_of_nine_thousandths_leaves_them_out() -> None:
+    det = determinant(legs(range(6), 0.0094))
+    assert det.min() > 0 or det.max() < 0
+
+
+def test_every_walk_of_five_points_is_stretched_on_the_way() -> None:
+    sides = np.sign(determinant(CORNERS))
+    assert sorted(sides) == [-1, -1, -1, 1, 1, 1]
+    assert all(len(set(sides[list(five)])) == 2 for five in permutations(range(6), 5))
+
+
+def test_the_mirrored_pose_is_reached_through_the_stretched_one() -> None:
+    """The mirrored arm has both links on the other side of the z axis."""
+    p = walks.scaled(0.95, SYMMETRIC)
+    straight = p[0] + np.linspace(0, 1, 3001)[:, None] * (p[3] - p[0])
+    elbow, end = (SYMMETRIC.frames(p[[0, 3]]).position("0", name, "0") for name in "23")
+    for places in (elbow, end):
+        assert places[0] == pytest.approx(places[1] * [-1, 1, 1], abs=1e-9)
+    lowest = np.min([gap.min() for gap in bodies.gaps(SYMMETRIC, straight).values()])
+    assert lowest > 0
+    assert SYMMETRIC.frames(straight).position("0", "3", "0")[:, 2].min() > OFFSETS["zmin1"]
+    assert straight[0, 1] < np.radians(-60) < straight[-1, 1]
+
+
+# --- traversals -----------------------------------------------------------------------------------
+
+
+def test_the_final_place_depends_on_the_order_under_a_linear_map_too() -> None:
+    linear = np.array([[2.0, 0.3], [-0.5, 1.0]])
+    ends = {tuple(np.round(linear @ CORNERS[order[-1]], 9)) for order in permutations(range(6), 5)}
+    assert len(ends) == 6
+
+
+def test_right_and_left_reach_equally_far_on_the_symmetric_arm() -> None:
+    for scale in (1.0, 0.95, 0.8):
+        p = walks.scaled(scale, SYMMETRIC)
+        places = SYMMETRIC.frames(p[[3, 0]]).position("0", "3", "0") - [0, 0, 22.5]
+        reach = np.linalg.norm(places, axis=-1)
+        assert reach[0] == pytest.approx(reach[1], abs=1e-9)
+
+
+def test_tangents_stay_inside_and_chords_do_not() -> None:
+    t = np.linspace(0, 1, 500)
+    for n in (2, 3, 5):
+        for tangents in (True, False):
+            edge = polygon.along_edges(paper_rule.refined(ROBOT, n, tangents=tangents), t)
+            height = equation_29(edge[..., 0], edge[..., 1])["beta_{7,3}"]
+            assert (height.min() > -1e-9) == tangents
+
+
+# --- the geometric workspace ----------------------------------------------------------------------
+
+
+def postures(places):
+    """Both configurations for each place, by the cosine rule; NaN out of reach."""
+    l1, l2 = np.hypot(OFFSETS["x12"], OFFSETS["z12"]), OFFSETS["x23"]
+    x, z = places[..., 0], places[..., 1] - OFFSETS["z01"]
+    with np.errstate(invalid="ignore"):
+        bend = np.arccos((x**2 + z**2 - l1**2 - l2**2) / (2 * l1 * l2))
+    found = []
+    for sign in (1, -1):
+        q2 = STRETCHED + sign * bend  # angles from x towards -z, as the axis y turns them
+        inner = np.arctan2(l2 * np.sin(sign * bend), l1 + l2 * np.cos(bend))
+        q1 = np.arctan2(-z, x) - inner - STRETCHED
+        found.append((np.stack([q1, q2], -1) + np.pi) % (2 * np.pi) - np.pi)
+    return found
+
+
+def test_the_overlap_is_where_one_posture_alone_is_safe() -> None:
+    places = np.random.default_rng(6).uniform([-60, 0], [60, 80], (100_000, 2))
+    both = postures(places)
+    reachable = ~np.isnan(both[0][:, 0])
+    assert tool(both[0][reachable]) == pytest.approx(places[reachable], abs=1e-9)
+    safe = np.zeros(len(places))
+    for q in both:
+        safe[reachable] += paper_rule.feasible(ROBOT, q[reachable])
+    areas, cell = walks.workspace(), 120 * 80 / len(places)
+    assert cell * (safe > 0).sum() == pytest.approx(areas["union"], rel=0.02)
+    assert cell * (safe == 2).sum() == pytest.approx(areas["twice"], rel=0.02)
+    assert cell * (safe == 1).sum() == pytest.approx(areas["union"] - areas["twice"], rel=0.04)
+
+
+def test_the_image_of_the_boundary_encloses_a_part_of_the_workspace() -> None:
+    """The tool at home is reached in the region and lies outside all that the path encloses."""
+    ring = np.concatenate([arc.points[:-1] for arc in walks.by_windows().loops[0]])
+    outline = np.array(shapely.segmentize(shapely.Polygon(ring), 0.005).exterior.coords)
+    faces = shapely.polygonize([shapely.node(shapely.LineString(tool(outline)))])
+    inside = shapely.union_all(faces)
+    stretched = tool(np.array([-0.5, STRETCHED]))
+    assert not inside.contains(shapely.Point(stretched))
+    assert not inside.contains(shapely.Point(tool(np.zeros(2))))
+    assert paper_rule.feasible(ROBOT, np.array([-0.5, STRETCHED]))
+    assert inside.area == pytest.approx(walks.workspace()["enclosed"], rel=1e-4)
+    assert inside.area < 0.3 * walks.workspace()["union"]
+
+
+# --- points, walls, bodies ------------------------------------------------------------------------
+
+
+def test_clearances_allow_links_that_overlap() -> None:
+    region = find_region(ROBOT)
+    for component in region.components[1:]:
+        q = component.centroid
+        distances = [
+            np.hypot(equation_29(*q)[f"beta_{{{i},1}}"], equation_29(*q)[f"beta_{{{i},3}}"])
+            for i in (1, 2, 3, 4)
+        ]
+        assert min(distances) > 0.1
+        assert equation_29(*q)["beta_{7,3}"] > 0
+        a, b, c = (shapely.Polygon(bodies.outline(ROBOT, body, q)) for body in ROBOT.bodies)
+        assert (a & b).area + (b & c).area + (a & c).area > 5
+
+
+def test_walls_5_and_6_are_nested() -> None:
+    found = equation_29(*DRAWN.T)
+    signs = np.stack([found[f"beta_{{{name}}}"] >= 0 for name in ("5,1", "6,1", "7,3")], -1)
+    assert not (signs[:, 0] & ~signs[:, 1]).any()
+    assert len(np.unique(signs, axis=0)) == 6
+
+
+def test_the_figure_meant_is_the_one_whose_caption_says_so() -> None:
+    cited, subject = NAMED
+    assert CAPTIONS[cited] != subject
+    assert [number for number, shows in CAPTIONS.items() if shows == subject] == [11]
+
+
+# --- effort ---------------------------------------------------------------------------------------
+
+
+def test_the_closed_form_needs_few_evaluations() -> None:
+    """Its own area, by sampling: only three digits, but they share nothing."""
+    part = paper_rule.feasible(ROBOT, DRAWN).mean() * (2 * np.pi) ** 2
+    assert effort.closed_form_area(8) == pytest.approx(part, rel=0.01)
+    errors = [effort.closed_form_error(n) for n in (2, 4, 8, 16)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 1e-8
+
+
+def test_samples_needed_is_the_binomial_law() -> None:
+    n = int(effort.samples_needed(0.02))
+    shares = [paper_rule.feasible(ROBOT, draw).mean() for draw in np.split(DRAWN[: 30 * n], 30)]
+    assert np.std(shares) / np.mean(shares) == pytest.approx(0.02, rel=0.4)
+
+
+def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
+    (ring,) = effort.contour_of_grid(200)
+    assert np.allclose(ring[0], ring[-1])
+    region = np.concatenate([arc.points for arc in walks.by_windows().loops[0]])
+    apart = shapely.Polygon(ring).symmetric_difference(shapely.Polygon(region)).area
+    assert apart < 0.01
+    errors = [effort.contour_error(n) for n in (50, 100, 200, 400)]
+    assert errors == sorted(errors, reverse=True)
+
+
+# --- slides and surfaces --------------------------------------------------------------------------
+
+
+def test_what_is_affine_in_a_slide_and_what_is_quadratic() -> None:
+    """By differences along the slide, and across a turn and the slide."""
+    robot = sliding()
+    q = np.random.default_rng(7).uniform(-3, 3, (100, 3))
+    step = np.array([0, 0, 0.5])
+    for boundary in robot.boundaries:
+        form = clearance(robot, boundary)
+        second = (form(q + step) - 2 * form(q) + form(q - step)) / 0.25
+        expected = 2.0 if boundary.name == "B8" else 0.0
+        assert second == pytest.approx(np.full(len(q), expected), abs=1e-9)
+    wall, turn = clearance(robot, robot.boundary("B7")), np.array([0.5, 0, 0])
+    mixed = wall(q + turn + step) - wall(q + turn) - wall(q + step) + wall(q)
+    assert np.abs(mixed).max() > 0.1
+
+
+def test_marching_cubes_come_to_the_surface_as_the_square_of_the_step() -> None:
+    form = clearance(sliding(), sliding().boundary("B7"))
+    low, high = np.array([-1.5, -1.5, -10.0]), np.array([1.5, 1.5, 10.0])
+    off = []
+    for n in (16, 31, 61):
+        axes = [np.linspace(a, b, n) for a, b in zip(low, high, strict=True)]
+        grid = np.stack(np.meshgrid(*axes, indexing="ij"), -1)
+        places = low + marching_cubes(form(grid), 0.0)[0] * (high - low) / (n - 1)
+        off.append(np.abs(form(places)).max())
+    assert all(3 < a / b < 5 for a, b in pairwise(off))
