@@ -6,6 +6,7 @@ import ast
 import json
 import re
 import tomllib
+from collections.abc import Iterator
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -15,7 +16,19 @@ import yaml
 from jsonschema import Draft202012Validator, ValidationError, validate
 
 from qbound import paper, recorded
-from qbound.claims import Claim, cite, judge, require, undetermined
+from qbound.claims import (
+    Claim,
+    bounds,
+    cite,
+    facts,
+    judge,
+    require,
+    rounding,
+    tables,
+    theorem_1,
+    theorem_2,
+    undetermined,
+)
 from qbound.claims.ledger import KINDS, VERDICTS, claim, from_content, identifiers, save
 from qbound.cli import main
 
@@ -72,6 +85,47 @@ def test_every_expected_entry_is_on_the_list_and_no_other() -> None:
     assert len(VERDICT) == sum(len(names) for names in EXPECTED.values())
     assert tuple(EXPECTED) == KINDS
     assert set(VERDICT.values()) <= set(VERDICTS)
+
+
+# --- a verdict follows its computation ------------------------------------------------------------
+
+
+@pytest.fixture
+def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
+    """Let an entry be computed from something else than the print, then forget it."""
+    bounds.pair_bound.cache_clear()
+    yield monkeypatch
+    bounds.pair_bound.cache_clear()
+
+
+def test_a_bound_with_its_sign_mended_is_confirmed(fresh) -> None:
+    plus = {k: t.replace("- acos", "+ acos") for k, t in paper.TABLE_6.items()}
+    fresh.setattr(paper, "TABLE_6", plus)
+    assert [claim(f"B-2.3.{k}").verdict for k in (1, 2)] == ["confirmed"] * 2
+    assert claim("B-1.3.1").verdict == "refuted", "there the minus was right"
+
+
+def test_a_component_with_another_sign_is_refuted(fresh) -> None:
+    other = {**paper.EQUATION_29, "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 - z_1_7*sin(q1)"}
+    fresh.setattr(paper, "EQUATION_29", other)
+    assert {claim(n).verdict for n in ("E-29", "E-29.1.1", "T-3.4", "T-3")} == {"refuted"}
+    assert claim("E-29.1.3").verdict == "confirmed"
+
+
+def test_the_mended_digit_has_its_points_meet(fresh) -> None:
+    for module in (theorem_1, tables, rounding):
+        fresh.setattr(module, "robot", facts.mended)
+        if hasattr(module, "pairs"):
+            fresh.setattr(module, "pairs", lambda of=None: facts.pairs(of or facts.mended()))
+    assert claim("E-17.4").verdict == "confirmed with a condition"
+    assert claim("T-4.2").verdict == "confirmed"
+
+
+def test_a_lost_step_of_the_restated_theorem_stops_its_entries(fresh) -> None:
+    fresh.setattr(theorem_2, "theorem_2", lambda: {"a step": False})
+    for name in ("E-31", "E-37", "TH-2"):
+        with pytest.raises(ArithmeticError, match="a step"):
+            claim(name)
 
 
 # --- what the paper has ---------------------------------------------------------------------------

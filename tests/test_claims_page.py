@@ -36,7 +36,8 @@ def by_id(page: str) -> dict[str, Any]:
 
 
 def flat(text: str) -> str:
-    """Text as the page shows it: letters with subscripts for β_{1,1} and q_1."""
+    """Text as the page shows it: letters with subscripts for β_{1,1} and q_1, minus signs."""
+    text = re.sub(r"(?<=[\s(\[])-(?=[\s\dπθαq(])", "\N{MINUS SIGN}", text)
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"\1\2", text)
 
 
@@ -136,7 +137,7 @@ def test_the_reader_filters_by_verdict(page, verdict) -> None:
 
 def test_the_reader_combines_kind_and_words_and_shows_all_again(page) -> None:
     page.get_by_label("Kind").select_option("table")
-    page.get_by_label("Search", exact=True).fill("TABLE 4 unit")
+    page.get_by_role("searchbox", name="Search").fill("TABLE 4 unit")
     found = shown(page)
     assert "T-4.1" in found
     assert 0 < len(found) < 10

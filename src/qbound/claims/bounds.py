@@ -79,7 +79,8 @@ def pair_bound(label: str, mend: bool = False) -> PairBound:
     value, plain = (float(formula(label, reading, of)) for reading in ("atan2", "arctan"))
     c0, a, b = vector[component].along(joint, of.home)
     contact = closest_approach(of, pair)[0]
-    other = float(nearest_turn(circle_roots(a, b, -c0).q[0], contact))
+    roots = nearest_turn(circle_roots(a, b, -c0).q, contact)
+    other = float(max(roots, key=lambda q: abs(nearest_turn(q, value) - value)))
     places = np.tile(of.home, (3, 1))
     places[:, joint] = value, plain, other
     there = vector(places)
@@ -132,12 +133,11 @@ def _pair_entry(label: str, side: str) -> Callable[[], Finding]:
     return bound
 
 
-def _with_plus(label: str) -> str:
-    """Return the printed formula with + arccos in place of - arccos: the other root."""
+def _other_sign(label: str) -> str:
+    """Return the printed formula with the other sign before arccos: the other root."""
     text = paper.TABLE_6[label]
-    if text.count("- acos") != 1:
-        raise ValueError(f"{label} has not one - arccos")
-    return text.replace("- acos", "+ acos")
+    old, new = ("- acos", "+ acos") if "- acos" in text else ("+ acos", "- acos")
+    return text.replace(old, new)
 
 
 def _mended_pair_bound(label: str) -> tuple[bool, str]:
@@ -147,10 +147,10 @@ def _mended_pair_bound(label: str) -> tuple[bool, str]:
     vector = pair_vector(of, pair)
     (joint,) = vector.joints()
     q = np.array(of.home)
-    q[joint] = float(paper.expression(_with_plus(label), arctan="atan2").subs(with_symbols(of)[1]))
+    q[joint] = float(paper.expression(_other_sign(label), arctan="atan2").subs(with_symbols(of)[1]))
     apart = float(np.linalg.norm(vector(q)))
     allowed = at_a_root(vector.gradient(q)[:, joint], int(label[8]) - 1)
-    return apart <= allowed, f"with + arccos the points of {label} meet"
+    return apart <= allowed, f"with the other sign the points of {label} meet"
 
 
 # --- walls ----------------------------------------------------------------------------------------
@@ -230,10 +230,10 @@ def _counterexample(label: str) -> str:
 def _mended_wall_bound(label: str) -> tuple[bool, str]:
     """Tell whether the bound with the sign mended is a root above which the component rises."""
     q1 = wall_bound(label).q[:, 0]
-    q = np.stack([q1, _of_q1(label, _with_plus(label))(q1)], -1)
+    q = np.stack([q1, _of_q1(label, _other_sign(label))(q1)], -1)
     form = components(robot(), robot().boundary(f"B{label[6]}"))[0]
     rises = bool((form.gradient(q)[:, 1] >= 0).all() and np.abs(form(q)).max() < RESIDUAL)
-    return rises, f"with + arccos {label} is the lower end of the arc"
+    return rises, f"with the other sign {label} is the lower end of the arc"
 
 
 def _of_q1(label: str, text: str | None = None) -> Callable[[Any], Any]:

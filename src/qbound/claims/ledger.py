@@ -131,6 +131,7 @@ def entry(
 
         if name in _ENTRIES:
             raise ValueError(f"the claim {name} is there already")
+        judged.__module__ = compute.__module__
         _ENTRIES[name] = judged
         return compute
 
@@ -183,9 +184,8 @@ def require(outcome: bool, statement: str) -> None:
 
 def identifiers() -> tuple[str, ...]:
     """Return every id, in the order of the ledger, without computing anything."""
-    for module in MODULES:
-        importlib.import_module(f"qbound.claims.{module}")
-    return tuple(_ENTRIES)
+    modules = [importlib.import_module(f"qbound.claims.{name}").__name__ for name in MODULES]
+    return tuple(sorted(_ENTRIES, key=lambda name: modules.index(_ENTRIES[name].__module__)))
 
 
 def claim(name: str) -> Claim:

@@ -51,7 +51,8 @@ def link_to_chapter(one: Claim) -> str:
 
 
 def typeset(text: str) -> str:
-    """Return plain text as HTML, with β_{1,1} and q_1 as letters with subscripts."""
+    """Return plain text as HTML: β_{1,1} and q_1 with subscripts, a minus sign for a hyphen."""
+    text = re.sub(r"(?<=[\s(\[])-(?=[\s\dπθαq(])", "\N{MINUS SIGN}", text)
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"<sub>\1\2</sub>", escape(text))
 
 
@@ -83,8 +84,10 @@ def _citation(one: Claim) -> str:
 
 def _erratum(one: Claim) -> str:
     ledger = f'<a href="{cite.PAGE.rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
-    again = f"<code>qbound claims {one.id} --recompute</code>"
-    why = f'{typeset(one.found)}<p class="ledger-evidence">{link_to_chapter(one)}; {again}</p>'
+    words = (f"qbound claims {one.id}", "--recompute")
+    again = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
+    repeat = f"{link_to_chapter(one)}; <code>{again}</code>"
+    why = f'{typeset(one.found)}<p class="ledger-evidence">{repeat}</p>'
     return (
         f'<tr><th scope="row">{ledger}<br>{badge(one.verdict)}</th>'
         f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>'
