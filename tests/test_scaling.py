@@ -115,6 +115,9 @@ def test_floor_of_the_papers_polygon_against_brute_force() -> None:
     assert scales[sum(safe) - 1] <= found.scale + 1e-7
     assert found.scale - scales[sum(safe) - 1] < 1.1e-4
     assert floor(found.q) == pytest.approx(0, abs=1e-11)
+    edge = p[(found.edge + 1) % 6] - p[found.edge]
+    slope = (floor(found.q + 1e-6 * edge) - floor(found.q - 1e-6 * edge)) / 2e-6
+    assert slope == pytest.approx(0, abs=1e-6)
     b7 = clearance(MINERVA, MINERVA.boundary("B7"))
     assert least_along_edges(b7, scaled(p, found.scale - 1e-6, g))[0] > 0
     assert least_along_edges(b7, scaled(p, found.scale + 1e-6, g))[0] < 0

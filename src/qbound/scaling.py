@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary import clearance, required_distance
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import PROVED_SCALE
+from qbound.tolerances import PROVED_SCALE, TANGENT
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -90,8 +90,10 @@ def largest_safe_scale(
         proved = best.scale * (1 - PROVED_SCALE)
         witness = _violation(walls, _fan(g + proved * (p - g), g))
         if witness is None:
-            edge = best.edge if best.form >= 0 else -1
-            return SafeScale(best.scale, proved, best.q, edge, best.form)
+            if best.form < 0:
+                return SafeScale(best.scale, proved, best.q, -1, -1)
+            q = _contact(forms[best.form], p, best)
+            return SafeScale(best.scale, proved, q, best.edge, best.form)
         best = _ray_through(p, g, witness)
 
 
@@ -325,6 +327,25 @@ def _touch(walls: _Walls, p: Floats, g: Floats, best: _Touch, highest: float) ->
         if best.high - best.low < 1e-12 or found is not best:
             break
     return best
+
+
+def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
+    """Return the place of contact to all digits: the form and its slope along the edge vanish.
+
+    Where the scale is least it is flat, so narrowing finds the place to half the digits only. A
+    scaled edge keeps its direction: the place is the same for every centre.
+    """
+    along = p[(best.edge + 1) % len(p)] - p[best.edge]
+    q = best.q
+    for _ in range(6):
+        slope = form.gradient(q)
+        h = 1e-5 * along
+        bend = (form.gradient(q + h) - form.gradient(q - h)) / 2e-5
+        matrix = np.stack([slope, bend])
+        if abs(np.linalg.det(matrix)) <= TANGENT * np.abs(matrix).max() ** 2:
+            return best.q
+        q = q - np.linalg.solve(matrix, [float(form(q)), float(slope @ along)])
+    return q if np.linalg.norm(q - best.q) <= 1e-5 * np.linalg.norm(along) else best.q
 
 
 def _on_edge(
