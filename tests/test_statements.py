@@ -148,9 +148,9 @@ def test_the_overlap_is_where_one_posture_alone_is_safe() -> None:
 
 def test_the_image_of_the_boundary_encloses_a_part_of_the_workspace() -> None:
     """The tool at home is reached in the region and lies outside all that the path encloses."""
-    ring = np.concatenate([arc.points[:-1] for arc in walks.by_windows().loops[0]])
-    outline = np.array(shapely.segmentize(shapely.Polygon(ring), 0.005).exterior.coords)
-    faces = shapely.polygonize([shapely.node(shapely.LineString(tool(outline)))])
+    steps = np.linspace(0, 1, 1501)[:-1]
+    outline = np.concatenate([arc.at(steps) for arc in walks.by_windows().loops[0]])
+    faces = shapely.polygonize([shapely.node(shapely.LinearRing(tool(outline)))])
     inside = shapely.union_all(faces)
     stretched = tool(np.array([-0.5, STRETCHED]))
     assert not inside.contains(shapely.Point(stretched))
