@@ -131,3 +131,54 @@ def test_an_unsafe_home_pose_is_an_answer(capsys, tmp_path):
     assert content["home_component"] is None
     assert [v["boundary"] for v in content["home"]["violated"]] == ["B7"]
     assert len(content["components"]) == 5
+
+
+def test_workspace_writes_the_promised_json_and_nothing_else(capsys):
+    status, out, err = run(
+        capsys, "workspace", "minervabot-v2", "--at=-45,20", "--go", "0,0", "0,20deg", "--json", "-"
+    )
+    content = json.loads(out)
+    assert (status, err) == (0, "")
+    schema = resources.files("qbound") / "schemas" / "workspace.schema.json"
+    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    found = content["workspace"]
+    assert_allclose(sum(found["sides"].values()), found["area"] + found["covered_twice"])
+    assert content["at"][0]["safe_postures"] == 1
+    assert content["go"]["possible"]
+    region = json.loads(run(capsys, "region", "minervabot-v2", "--json", "-")[1])
+    assert region["workspace"] == {key: found[key] for key in ("area", "covered_twice")}
+
+
+def test_a_place_or_a_passage_that_is_not_safe_is_status_1(capsys):
+    assert run(capsys, "workspace", "minervabot-v2", "--at", "0,40")[0] == 1
+    status, out, _ = run(capsys, "workspace", "minervabot-v2", "--go", "0,0", "0,170deg")
+    assert status == 1
+    assert "go: no, from component 0 to component 1" in out
+    assert "every path crosses the loop of" in out
+
+
+def test_an_unsafe_home_pose_has_no_workspace_and_says_why(capsys, tmp_path):
+    packaged = resources.files("qbound") / "robots" / "minervabot-v2.toml"
+    text = packaged.read_text(encoding="utf-8").replace("q1 = 0.0", "q1 = 120.0")
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    content = json.loads(run(capsys, "region", str(file), "--json", "-")[1])
+    assert content["workspace"] is None
+    assert "home pose" in content["workspace_reason"]
+    assert run(capsys, "workspace", str(file))[0] == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--at", "3"), "a place is two lengths"),
+        (("--at", "3,high"), "a place is two lengths"),
+        (("--at", "nan,1"), "finite"),
+        (("--go", "0", "0,0"), "2 joint values are needed"),
+        (("--go", "0,0", "0,x"), "'x' is no value"),
+    ],
+)
+def test_a_bad_place_or_pose_is_one_sentence_and_status_2(capsys, arguments, words):
+    status, out, err = run(capsys, "workspace", "minervabot-v2", *arguments)
+    assert (status, out) == (2, "")
+    assert words in err

@@ -27,14 +27,9 @@ TWICE: Final = "#7FB8D8"
 SIDES: Final = {1: "#CDE3F0", -1: "#F8E2BF"}
 """Tints of FEASIBLE and SECOND: the two signs of det J."""
 
-LINES: Final = (
-    (USED, "-"),
-    (UNUSED, (0, (6, 1.5))),
-    (FEASIBLE, (0, (4, 1.5, 1, 1.5))),
-    (SECOND, "-"),
-    ("#56B4E9", (0, (2, 1))),
-    ("#8C8C8C", "-"),
-)
+COLOURS: Final = (USED, UNUSED, FEASIBLE, SECOND, "#56B4E9", "#8C8C8C")
+DASHES: Final = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (9, 2, 2, 2)))
+"""Taken in turn for the boundaries: no two of the first thirty look alike."""
 
 
 def draw_aspects(ax: Axes, workspace: Workspace, scale: ArrayLike = 1.0) -> list[Artist]:
@@ -87,23 +82,19 @@ def workspace_picture(workspace: Workspace, unit: str) -> bytes:
     return buffer.getvalue()
 
 
-def legend(ax: Axes, **style: Any) -> None:
-    """Put a legend with one entry a name under the axes."""
+def legend(ax: Axes, columns: int = 4) -> None:
+    """Put a legend with one entry a name under the figure."""
     handles, labels = ax.get_legend_handles_labels()
     named = dict(zip(labels, handles, strict=True))
-    look: dict[str, Any] = {
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.14),
-        "ncols": 4,
-    } | style
-    ax.legend(list(named.values()), list(named), **look)
+    ax.figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=columns)
 
 
 def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
     artists: list[Artist] = []
     arcs = list(_arcs(workspace.aspects))
     names = sorted({arc.boundary for arc in arcs} - {SINGULAR})
-    looks = dict(zip(names, cycle(LINES), strict=False)) | {SINGULAR: (COLLIDING, (0, (1, 1)))}
+    looks = dict(zip(names, zip(cycle(COLOURS), cycle(DASHES), strict=False), strict=False))
+    looks[SINGULAR] = (COLLIDING, (0, (1, 1)))
     for arc in arcs:
         colour, dash = looks[arc.boundary]
         path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces.roots)))).T
@@ -115,7 +106,7 @@ def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
 def _arcs(aspects: tuple[Aspect, ...]) -> Iterator[Arc]:
     """Yield every arc of the aspects; the singular curve, the same from both sides, first."""
     arcs = [arc for aspect in aspects for loop in aspect.region.loops for arc in loop]
-    yield from sorted(arcs, key=lambda arc: arc.boundary != SINGULAR)
+    yield from sorted(arcs, key=lambda arc: (arc.boundary != SINGULAR, arc.boundary))
 
 
 def _fill(ax: Axes, rings: list[Floats], colour: str, label: str) -> Artist:

@@ -99,12 +99,15 @@ class Workspace:
         return tuple(arc for arc in arcs if arc.boundary == SINGULAR)
 
     def postures(self, place: ArrayLike) -> list[tuple[Posture, int | None]]:
-        """Return every posture of a place within the joints' ranges, with its component.
+        """Return every posture of a place with its component, None where it is not safe.
 
-        The component is None where the posture is not safe. Errors as `qbound.planar.postures`.
+        All full turns within the ranges are listed; a posture that is outside them is listed once,
+        as not safe. Errors as `qbound.planar.postures`.
         """
-        found = postures(self.arm, place, self.region.problem.ranges)
-        return [(posture, self.region.component(posture.q)) for posture in found]
+        inside = postures(self.arm, place, self.region.problem.ranges)
+        sides = {posture.side for posture in inside}
+        outside = [p for p in postures(self.arm, place) if p.side not in sides]
+        return [(p, self.region.component(p.q)) for p in [*inside, *outside]]
 
     def safe_postures(self, place: ArrayLike) -> int:
         """Count the safe postures of a place, 0, 1 or 2, full turns of a joint counted once."""

@@ -10,7 +10,7 @@ from typing import Any
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.region import loop_content
-from qbound.cli.values import Content, check_targets, held, joint_value, write_all
+from qbound.cli.values import Content, check_targets, held, joint_value, shown, write_all
 from qbound.passage import Passage, find_passage
 from qbound.planar import planar_arm
 from qbound.robot import Robot
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     }
     write_all(_outputs(options, workspace, content))
     if "-" not in files:
-        _say(content)
+        _say(content, robot, free)
     unsafe = any(not place["safe_postures"] for place in content["at"])
     return 1 if unsafe or (content["go"] and not content["go"]["possible"]) else 0
 
@@ -130,29 +130,39 @@ def _go_content(passage: Passage) -> dict[str, Any]:
     }
 
 
-def _say(content: dict[str, Any]) -> None:
+def _say(content: dict[str, Any], robot: Robot, free: list[int]) -> None:
     unit, found = content["length_unit"], content["workspace"]
     print(f"area {found['area']:.9g} {unit}^2, {found['covered_twice']:.9g} in both postures")
     print(f"reached both safely and not: {found['safe_and_unsafe']:.9g} {unit}^2")
     for aspect in content["aspects"]:
         print(f"  det J {'>' if aspect['side'] > 0 else '<'} 0: image {aspect['image']:.9g}")
     for place in content["at"]:
-        print(f"at {place['place']}: {place['safe_postures']} safe postures")
+        x, z = place["place"]
+        print(f"at ({x:g}, {z:g}): safe postures {place['safe_postures']}")
         for posture in place["postures"]:
             owner = posture["component"]
-            print(f"  {posture['q']}, {'not safe' if owner is None else f'component {owner}'}")
+            state = "not safe" if owner is None else f"component {owner}"
+            print(f"  {_shown(robot, free, posture['q'])}: {state}")
     if content["go"]:
-        _say_go(content["go"])
+        _say_go(content["go"], robot, free)
 
 
-def _say_go(go: dict[str, Any]) -> None:
-    print("go: yes" if go["possible"] else f"go: no, components {go['components']}")
-    for loop in go["separated_by"]:
-        names = dict.fromkeys(arc["boundary"] for arc in loop["arcs"])
-        print(f"  every path crosses a loop of {', '.join(names)}")
+def _say_go(go: dict[str, Any], robot: Robot, free: list[int]) -> None:
+    names = ["not safe" if k is None else f"component {k}" for k in go["components"]]
+    print(f"go: {'yes' if go['possible'] else 'no'}, from {names[0]} to {names[1]}")
+    loops = go["separated_by"]
+    if loops:
+        walls = dict.fromkeys(arc["boundary"] for loop in loops for arc in loop["arcs"])
+        what = "the loop" if len(loops) == 1 else f"one of {len(loops)} loops"
+        print(f"  every path crosses {what} of {', '.join(walls)}")
     if go["straight_path_leaves"]:
         place = go["straight_path_leaves"]
-        print(f"  the straight path leaves at {place['q']} through {place['boundary']}")
+        where = _shown(robot, free, place["q"])
+        print(f"  the straight path leaves at {where}, through {place['boundary']}")
+
+
+def _shown(robot: Robot, free: list[int], q: list[float]) -> str:
+    return ", ".join(shown(robot, j, value) for j, value in zip(free, q, strict=True))
 
 
 def _place(text: str) -> list[float]:
