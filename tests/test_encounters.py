@@ -124,6 +124,9 @@ def test_a_path_along_the_boundary_is_not_outside() -> None:
     found = [least_margin(walk, boundary) for boundary in boundaries(MINERVA)]
     assert all(margin.leaves is None for margin in found)
     assert all(abs(margin.value) < 1e-9 for margin in found)
+    (crossing,) = tool_crossings(MINERVA, walk, (0, 2))  # the stops themselves are none
+    assert abs(crossing.point[1] - tool_by_hand(crossing.first.q)[2]) < 1e-9
+    assert np.abs(walk.q[walk.stops] - crossing.first.q).max(axis=1).min() > 0.01
 
 
 def test_windows_of_the_papers_rule_are_limits_in_radians() -> None:

@@ -60,6 +60,18 @@ def test_arcs_are_timed_as_safely() -> None:
     assert top_speeds(trajectory) == pytest.approx([1, 2], rel=0.2)
 
 
+def test_a_bend_between_rows_slows_the_whole_path() -> None:
+    """A circle of joint space in few rows: cubics overshoot, by more than a thousandth."""
+
+    def circle(s):
+        return np.stack([np.cos(6 * s), np.sin(6 * s)], axis=-1)
+
+    trajectory = timed(follow(MINERVA, [Leg(circle)], 5.0), [1.0, 1.0])
+    fastest = np.abs(np.diff(trajectory.q, axis=0)).max(axis=1) / np.diff(trajectory.t)
+    assert fastest[1:-1].max() < 0.999
+    assert top_speeds(trajectory).max() == pytest.approx(1.0)
+
+
 @settings(max_examples=30, deadline=None)
 @given(STOPS, SPEEDS)
 def test_time_is_the_shortest_but_for_gathering_speed_and_braking(stops, speeds) -> None:
