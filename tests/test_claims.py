@@ -11,6 +11,7 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from jsonschema import Draft202012Validator, ValidationError, validate
@@ -22,6 +23,7 @@ from qbound.claims import (
     cite,
     facts,
     judge,
+    proofs,
     require,
     rounding,
     tables,
@@ -200,6 +202,30 @@ def test_an_outcome_decides_the_verdict(outcome, verdict) -> None:
 )
 def test_the_readings_that_fit_decide_the_verdict(fits, verdict) -> None:
     assert undetermined({str(i): fit for i, fit in enumerate(fits)}) == verdict
+
+
+@pytest.mark.parametrize("proof", [proofs.theorem_2, proofs.mirror], ids=["theorem 2", "mirror"])
+def test_every_step_of_a_proof_is_decided(proof) -> None:
+    assert len(proof()) > 5
+    assert set(proof().values()) == {True}
+
+
+def test_the_decision_about_general_rotations_can_say_no() -> None:
+    g = proofs.general()
+    assert proofs.vanishes(g.R_0a @ g.R_0a.T - proofs.UNTURNED)
+    assert not proofs.vanishes(g.R_0a - proofs.UNTURNED)
+    assert not proofs.vanishes(g.R_0a @ g.R_ab - g.R_ab @ g.R_0a)
+
+
+def test_the_mirrored_pose_is_a_point_reflection_of_joint_space() -> None:
+    """By frames of the packaged robot, which the symbolic proof does not use."""
+    arm = facts.robot()
+    x, _, z = arm.joints[1].origin
+    lean = np.arctan2(x, z)
+    q = np.random.default_rng(4).uniform(-np.pi, np.pi, (200, 2))
+    tool = arm.frames(q).position("0", "3", "0")
+    image = arm.frames(np.array([-2 * lean, 2 * lean - np.pi]) - q).position("0", "3", "0")
+    assert np.allclose(image, tool * [-1, 1, 1])
 
 
 def test_a_mended_statement_that_is_not_proved_stops_the_entry() -> None:

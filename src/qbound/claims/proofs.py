@@ -116,6 +116,53 @@ def theorem_2() -> dict[str, bool]:
     }
 
 
+@cache
+def mirror() -> dict[str, bool]:
+    r"""Return why symmetric offsets have symmetric paths: the steps, and whether each holds.
+
+    The mirror image of a pose of the paper's arm is its point reflection in joint space,
+    :math:`q \mapsto c - q` with :math:`c = (-2\gamma, 2\gamma - \pi)`, where :math:`\gamma` is the
+    angle of link 1 from the vertical. Scaling about a centroid and straight joint paths commute
+    with it. Not in the paper.
+    """
+    import sympy as sp
+
+    z01, x23, length = sp.symbols("z_01 x_23 l", positive=True)
+    gamma, s = sp.symbols("gamma s", real=True)
+    q = sp.Matrix(sp.symbols("q1 q2", real=True))
+    p, g = (sp.Matrix(sp.symbols(f"{name}1 {name}2", real=True)) for name in "pg")
+    c = sp.Matrix([-2 * gamma, 2 * gamma - sp.pi])
+
+    def tool(q: Any) -> Any:
+        one, two = q[0] + gamma, q[0] + q[1] + sp.pi / 2  # directions of the links from z to x
+        turned = [length * f(one) + x23 * f(two) for f in (sp.sin, sp.cos)]
+        return sp.Matrix([turned[0], z01 + turned[1]])
+
+    def singular(q: Any) -> Any:
+        return tool(q).jacobian(q).det()
+
+    mirrored = sp.diag(-1, 1) * tool(q)
+    scaled = g + s * (p - g)
+    straight = p + s * (q - p)
+    determinant = sp.simplify(singular(q) + length * x23 * sp.sin(q[1] + sp.pi / 2 - gamma))
+    return {
+        "tool(c - q) is the mirror image of tool(q)": (
+            sp.simplify(sp.expand_trig(tool(c - q) - mirrored)) == sp.zeros(2, 1)
+        ),
+        "c - q applied twice is q": c - (c - q) == q,
+        "scaling commutes: c - (g + s(p - g)) = (c - g) + s((c - p) - (c - g))": (
+            sp.expand((c - scaled) - ((c - g) + s * ((c - p) - (c - g)))) == sp.zeros(2, 1)
+        ),
+        "a straight joint path goes to a straight one": (
+            sp.expand((c - straight) - ((c - p) + s * ((c - q) - (c - p)))) == sp.zeros(2, 1)
+        ),
+        "det J = -l x_23 sin(q2 + π/2 - γ): singular where the links are in line": determinant == 0,
+        "the singular line goes through the centre c / 2 of the reflection": (
+            sp.simplify(sp.sin((c / 2)[1] + sp.pi / 2 - gamma)) == 0
+        ),
+    }
+
+
 def _rotation(letter: str) -> Array:
     """Return the rotation of the quaternion with entries such as e0, e1, e2, e3."""
     import sympy as sp

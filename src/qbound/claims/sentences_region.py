@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from qbound import bodies, circle_roots, pair_vector, paper_rule, polygon, scaling
 from qbound.boundary import closest_approach
 from qbound.claims.facts import mended, pairs, robot, square, vertices, walls
-from qbound.claims.ledger import Finding, entry, judge
+from qbound.claims.ledger import Finding, entry, judge, undetermined
 from qbound.claims.walks import (
     body_gap,
     by_points,
@@ -160,6 +160,24 @@ def other_regions_are_out_of_reach() -> Finding:
         judge(holds=holding == [True, *([False] * len(others))]),
         "The regions are the connected pieces of what the clearances leave; home is in one of"
         f" {len(holding)}, walled in by {', '.join(names)}.",
+    )
+
+
+@entry(
+    "S-23.1", "sentence", "Section 4, after Figure 4",
+    "The robot has a home pose; its joint values are not printed.",
+    test="test_robot.py::test_home_pose_holds_the_tool_where_the_offsets_add_up",
+    chapter="04_planar_robot#the-home-pose",
+)  # fmt: skip
+def home_pose_is_not_printed() -> Finding:
+    poses = {"both joints at zero": (0, 0), "the arm upright": (-30, -60), "q1 alone": (45, 0)}
+    within = {name: bool(paper_rule.feasible(robot(), np.radians(q))) for name, q in poses.items()}
+    seen = ", ".join(f"{name} ({q1}°, {q2}°)" for name, (q1, q2) in poses.items() if within[name])
+    return Finding(
+        undetermined(within),
+        f"The selected region holds {sum(within.values())} of {len(within)} candidates: {seen}. Any"
+        " pose in it gives the same region, so nothing hangs on it; the robot file takes the pose"
+        " in which Tables 1 and 2 are read off, both joints at zero.",
     )
 
 
