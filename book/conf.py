@@ -44,6 +44,7 @@ extensions = [
     "paper_numbers",
     "book_pages",
     "ledger_links",
+    "explorer_pages",
 ]
 exclude_patterns = ["_build", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]

@@ -163,3 +163,41 @@ def test_a_chapter_downloads_its_notebook(page):
         page.click(".notebook-line a[download]")
     assert download.value.suggested_filename == f"{chapter.stem}.ipynb"
     assert '"cells"' in download.value.path().read_text(encoding="utf-8")
+
+
+def test_the_explorer_fits_its_frame_and_follows_the_theme(page):
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda m: m.type == "error" and complaints.append(m.text))
+    for width in WIDTHS.values():
+        page.set_viewport_size({"width": width, "height": 900})
+        open_page(page, "explore.html")
+        frame = page.locator("iframe.explorer")
+        inside = page.frame_locator("iframe.explorer")
+        inside.locator("#status").wait_for()
+        page.wait_for_function(
+            "() => Math.abs(document.querySelector('iframe.explorer').height - 760) > 0"
+        )
+        last = inside.locator("#full-page").bounding_box()
+        whole = frame.bounding_box()
+        assert 0 <= whole["y"] + whole["height"] - (last["y"] + last["height"]) < 40
+    ground = "() => getComputedStyle(document.documentElement).backgroundColor"
+    dark = inside.locator("#status").evaluate(ground)
+    page.evaluate("() => { document.documentElement.dataset.theme = 'light'; }")
+    page.wait_for_timeout(200)
+    assert inside.locator("#status").evaluate(ground) != dark
+    assert complaints == []
+
+
+def test_a_reader_moves_the_arm_in_the_book(page):
+    page.set_viewport_size({"width": 1280, "height": 900})
+    open_page(page, "explore.html")
+    inside = page.frame_locator("iframe.explorer")
+    before = inside.locator("#plane .handle-group").get_attribute("transform")
+    inside.locator("#joints").focus()
+    for _ in range(5):
+        page.keyboard.press("Shift+ArrowRight")
+    after = inside.locator("#plane .handle-group").get_attribute("transform")
+    assert after != before
+    inside.locator("#task-go").click()
+    inside.get_by_text("There. On the way you crossed").wait_for(timeout=20_000)

@@ -14,7 +14,7 @@ import pytest
 import quickjs
 from numpy.testing import assert_allclose
 
-from qbound import find_region, load_robot, paper_rule
+from qbound import find_region, load_robot, packaged_robots, paper_rule
 from qbound.boundary import clearance, position
 from qbound.cli import main
 from qbound.explorer import explorer_data, explorer_page
@@ -84,6 +84,14 @@ def two_joints(first, second, turn=SIDE):
 def three_joints():
     rows = [joint("revolute", str(i), str(i + 1), [0.5, 0.0, 0.1], SIDE) for i in range(3)]
     return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4, "q3": -0.2}, "3"))
+
+
+def out_of_plane():
+    rows = [
+        joint("revolute", "0", "1", ORIGINS[0], [0.0, 0.0, 1.0]),
+        joint("revolute", "1", "2", ORIGINS[1], SIDE),
+    ]
+    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2"))
 
 
 ROBOTS = {
@@ -342,6 +350,13 @@ def test_the_arcs_that_are_drawn_lie_on_their_boundaries():
         assert_allclose(form(np.array(arc["points"])), 0, atol=2e-6 * size)
 
 
+def test_a_tool_that_leaves_the_plane_is_told_apart():
+    robot = out_of_plane()
+    script = Script(explorer_data(robot, find_region(robot)))
+    assert not script("map.planar")
+    assert case("RR")[3]("map.planar")
+
+
 # --- the page ------------------------------------------------------------------------------------
 
 
@@ -370,6 +385,13 @@ def parts(page):
     parser = Parts()
     parser.feed(page)
     return parser
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", name, "-o", str(file)]) in (0, 1)
+    assert 10_000 < file.stat().st_size < 300_000
 
 
 @pytest.mark.parametrize("name", ROBOTS)

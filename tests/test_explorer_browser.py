@@ -10,7 +10,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browsers import refuse_remote, settle
 from numpy.testing import assert_allclose
-from test_explorer import ROBOTS
+from test_explorer import ROBOTS, out_of_plane
 
 from qbound import find_region, load_robot
 from qbound.explorer import explorer_page
@@ -36,7 +36,8 @@ def files(tmp_path_factory):
     """Write an explorer for every robot once."""
     folder = tmp_path_factory.mktemp("explorers")
     written = {}
-    for i, (name, make) in enumerate(ROBOTS.items()):
+    robots = ROBOTS | {"out of the plane": lambda: (out_of_plane(), {})}
+    for i, (name, make) in enumerate(robots.items()):
         robot, held = make()
         written[name] = folder / f"{i}.html"
         page = explorer_page(robot, find_region(robot, held), held=held)
@@ -111,6 +112,19 @@ def test_every_kind_of_robot_opens(open_explorer, name, width):
     assert page.locator("#joints .arc").count() > 0
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     assert page.locator("#plane .workspace").count() == 2
+
+
+def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
+    page = open_explorer("out of the plane")
+    assert "leaves the plane" in page.inner_text("#posture")
+    assert not page.locator("#plane .reach-me").is_visible()
+    before = pose(page)
+    page.click("#plane", position={"x": 60, "y": 60})
+    assert pose(page) == before
+    page.click("#joints", position={"x": 160, "y": 160})
+    assert pose(page) != before
+    page.check("#show-sample")
+    assert page.is_disabled("#flip")
 
 
 def test_dragging_the_dot_moves_the_arm(open_explorer):

@@ -61,6 +61,22 @@ window.addEventListener("beforeprint", () => {
 });
 window.addEventListener("afterprint", () => (root.dataset.theme = themeOnScreen));
 
+// An explorer in a frame tells its height; it is told whether the page is light or dark.
+function tellTheme() {
+  const theme = root.dataset.theme === "dark" ? "dark" : "light";
+  for (const frame of document.querySelectorAll("iframe.explorer"))
+    frame.contentWindow.postMessage({ theme }, "*");
+}
+
+window.addEventListener("message", ({ data, source }) => {
+  const frames = [...document.querySelectorAll("iframe.explorer")];
+  const frame = frames.find((one) => one.contentWindow === source);
+  if (!frame || !Number.isFinite(data?.explorerHeight)) return;
+  frame.height = Math.ceil(data.explorerHeight);
+  tellTheme();
+});
+new MutationObserver(tellTheme).observe(root, { attributeFilter: ["data-theme"] });
+
 window.addEventListener("load", () => {
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();

@@ -191,7 +191,7 @@ function redraw() {
     ["home", "safe, with home"],
     ["away", "safe, cut off", slice.cells.some((cell) => cell.piece !== slice.home)],
     ["singular", slice.arm.kind === "rr" ? "arm stretched or folded: det J = 0" : "singular curve: det J = 0", slice.lines.length > 0],
-    ["polygon", "polygon of the vertices", state.show.polygon && slice.exact],
+    ["polygon", `polygon of the vertices, at scale ${number(state.scale, 4)}`, state.show.polygon && slice.exact],
     ["dots", "random, safe", state.show.sample],
     ["crosses", "random, not safe", state.show.sample],
   ]));
@@ -200,6 +200,7 @@ function redraw() {
     ["workspace twice", "both postures safe", state.show.workspace && slice.lines.length > 0],
     ["beyond", "behind a wall", robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used)],
   ]));
+  if (robot.polygon) byId("show-polygon").disabled = !slice.exact;
   refresh();
 }
 
@@ -468,7 +469,7 @@ function restore() {
     const value = Number(read.get(name));
     return read.has(name) && value >= 0 && value <= high ? value : null;
   };
-  state.scale = bounded("scale", 1.05) ?? state.scale;
+  state.scale = bounded("scale", robot.polygon && robot.polygon.binds ? 1.05 : 1) ?? state.scale;
   state.progress = bounded("at", 1) ?? 0;
   const walk = bounded("walk", robot.polygon ? robot.polygon.walks.length - 1 : 0);
   state.walk = Number.isInteger(walk) ? walk : 0;
@@ -550,9 +551,11 @@ function buildMargins() {
 function buildScale() {
   byId("scaling").hidden = !robot.polygon;
   if (!robot.polygon) return;
-  const { largest, walks } = robot.polygon;
-  byId("largest").textContent = `Largest safe scale: ${number(largest, 4)}`;
-  byId("scale-mark").style.left = `${(100 * largest) / 1.05}%`;
+  const { largest, walks, binds } = robot.polygon;
+  const top = binds === null ? 1 : 1.05; // no larger scale was searched
+  byId("scale").max = top;
+  byId("largest").textContent = `Largest safe scale: ${number(largest, 4)}${binds === null ? " or more" : ""}`;
+  byId("scale-mark").style.left = `${(100 * largest) / top}%`;
   byId("largest").addEventListener("click", () => setScale(largest));
   byId("scale").addEventListener("input", () => setScale(Number(byId("scale").value)));
   byId("walk").replaceChildren(...walks.map((walk, i) => (

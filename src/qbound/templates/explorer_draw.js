@@ -161,11 +161,22 @@ function nameArcs(drawn, slice) {
   const group = layer(drawn, "arc-names", false);
   return [...longest.values()].map(({ arc, points }) => {
     const [[x, y], [nx, ny]] = middleOf(points);
-    const text = make("text", { class: "arc-name", x: x + 15 * nx, y: y + 15 * ny + 4, "text-anchor": "middle" }, arc.boundary);
+    const half = 4 * arc.boundary.length; // of the word's width, about
+    const { left, top, right, bottom } = drawn.box;
+    const text = make("text", {
+      class: "arc-name",
+      x: between(x + (half + 7) * nx, left + half, right - half),
+      y: between(y + 15 * ny + 4, top + 14, bottom - 5),
+      "text-anchor": "middle",
+    }, arc.boundary);
     text.dataset.boundary = arc.boundary;
     group.append(text);
     return text;
   });
+}
+
+function between(value, low, high) {
+  return Math.min(high, Math.max(low, value));
 }
 
 /** The middle of a polyline by length, and the unit normal to the right of its direction. */
@@ -300,6 +311,17 @@ function drawWalls(robot, drawn, state) {
     group.append(line);
     if (ends.length === 2) group.append(wallLabel(wall, ends, drawn));
     return line;
+  });
+  stack([...group.querySelectorAll("text")]);
+}
+
+/** Names at one place are written above each other. */
+function stack(names) {
+  const place = (name) => [Number(name.getAttribute("x")), Number(name.getAttribute("y"))];
+  names.forEach((name, i) => {
+    const taken = names.slice(0, i).filter((other) => (
+      Math.abs(place(other)[0] - place(name)[0]) < 40 && Math.abs(place(other)[1] - place(name)[1]) < 14));
+    if (taken.length > 0) name.setAttribute("y", place(name)[1] + (place(name)[1] < 40 ? 16 : -16) * taken.length);
   });
 }
 

@@ -354,14 +354,20 @@ function signature(intervals) {
   return intervals.map(({ low, high }) => `${low.by},${high.by}`).join(";");
 }
 
-/** Fibres over the first joint's range, closer and closer to where their ends change name. */
+/** Whether every interval of one fibre goes on into the like one of the next. */
+function goesOn(a, b) {
+  return signature(a.intervals) === signature(b.intervals)
+    && a.intervals.every((interval, k) => overlap(interval, b.intervals[k]) > 0);
+}
+
+/** Fibres over the first joint's range, closer and closer to where their intervals change. */
 function fibres(problem, count) {
   const { low, high } = problem.ranges[0];
   const inset = (high - low) * 1e-9; // the ends themselves may be walls
   const at = (t) => ({ t, intervals: fibre(problem, t) });
   const found = [at(low + inset)];
   const narrow = (a, b, depth) => {
-    if (depth > 0 && signature(a.intervals) !== signature(b.intervals)) {
+    if (depth > 0 && !goesOn(a, b)) {
       const middle = at((a.t + b.t) / 2);
       narrow(a, middle, depth - 1);
       narrow(middle, b, depth - 1);
@@ -387,8 +393,7 @@ function sliceCells(problem, count) {
   const joined = [];
   let before = [];
   columns.forEach(({ t, intervals }, i) => {
-    const same = i > 0 && signature(columns[i - 1].intervals) === signature(intervals)
-      && intervals.every((interval, k) => overlap(interval, columns[i - 1].intervals[k]) > 0);
+    const same = i > 0 && goesOn(columns[i - 1], columns[i]);
     const now = same ? before : intervals.map(({ low, high }) => ({ low: low.by, high: high.by, rows: [] }));
     if (!same) {
       now.forEach((cell, k) => {

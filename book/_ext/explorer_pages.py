@@ -1,0 +1,49 @@
+"""The directive ``{explorer} ROBOT``: a page of the library's own, made here, shown in a frame."""
+
+from __future__ import annotations
+
+import os
+from html import escape
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+from sphinx.util.typing import ExtensionMetadata
+
+from qbound import find_region, load_robot
+from qbound.explorer import explorer_page
+
+FOLDER = "_static/explorer"
+
+# Before the frame has told its height: enough for both pictures, so that little moves.
+FIRST_HEIGHT = 760
+
+FRAME = """<iframe class="explorer" src="{file}" title="{title}" height="{height}">
+<p><a href="{file}">{title}</a></p>
+</iframe>
+"""
+
+
+class Explorer(SphinxDirective):
+    """Write the explorer of a packaged robot beside the book and show it."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        name = self.arguments[0]
+        robot = load_robot(name)
+        file = Path(self.env.app.outdir, FOLDER, f"{name}.html")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(explorer_page(robot, find_region(robot)), encoding="utf-8")
+        here = Path(self.env.app.outdir, self.env.docname).parent
+        address = Path(os.path.relpath(file, here)).as_posix()
+        title = escape(f"Explorer of {robot.name}: its joint space beside the arm")
+        html = FRAME.format(file=escape(address), title=title, height=FIRST_HEIGHT)
+        return [nodes.raw("", html, format="html")]
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register the directive with Sphinx."""
+    app.add_directive("explorer", Explorer)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
