@@ -12,6 +12,7 @@ from importlib import resources
 import numpy as np
 import pytest
 import quickjs
+import shapely
 from numpy.testing import assert_allclose
 
 from qbound import find_region, load_robot, packaged_robots, paper_rule
@@ -288,6 +289,28 @@ def test_a_slider_shows_the_slice_that_the_library_finds(value):
         for piece in {cell["piece"] for cell in cells}
     ]
     assert_allclose(sorted(areas), sorted(expected), rtol=2e-3)
+
+
+@pytest.mark.parametrize("name", ["paper", "RR", "RP", "PR", "PP", "3R, third held"])
+def test_images_of_the_postures_have_the_area_that_the_determinant_gives(name):
+    robot, _, region, script = case(name)
+    images = script(
+        "(() => { const p = sliceProblem(robot, robot.q); const cells = sliceCells(p, 240);"
+        " const home = pieceAt(cells, robot.free.map((j) => robot.q[j]));"
+        " return postureImages(map, arm, cells.filter((c) => c.piece === home), p.ranges[1]); })()"
+    )
+    q = poses(script.data, 60_000)
+    at_home = np.all([clearance(robot, b)(q) > 0 for b in robot.boundaries if b.used], axis=0)
+    q = q[:, script.data["free"]]
+    if len(region.components) > 1:
+        outline = np.concatenate([arc.points for arc in region.home.loops[0]])
+        at_home &= shapely.contains_xy(shapely.Polygon(outline), *q.T)
+    det = np.array(script("all.map((p) => determinant(map, p))", all=q.tolist()))
+    size = np.prod([view["high"] - view["low"] for view in script.data["views"]])
+    for sign, side in ((1, "positive"), (-1, "negative")):
+        union = shapely.union_all([shapely.make_valid(shapely.Polygon(p)) for p in images[side]])
+        expected = size * (np.maximum(sign * det, 0) * at_home).mean()
+        assert union.area == pytest.approx(expected, rel=0.02, abs=1e-9)
 
 
 def test_a_path_is_the_librarys_traversal():

@@ -6,6 +6,7 @@ const byId = (id) => document.getElementById(id);
 const DEGREE = Math.PI / 180;
 const COLUMNS = 240; // fibres of a slice: one every pixel and a half
 const NEAR_SINGULAR = 0.02; // of the largest |det J|: here the arm looks stretched
+const reachable = planeBox(robot);
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 const state = {
@@ -186,7 +187,7 @@ function rebuild() {
 function redraw() {
   state.sample = state.show.sample ? judgeSample() : [];
   joints = drawJointSpace(robot, state, slice);
-  plane = drawPlane(robot, state, slice);
+  plane = drawPlane(robot, state, slice, reachable);
   byId("joints-legend").replaceChildren(...legend([
     ["home", "safe, with home"],
     ["away", "safe, cut off", slice.cells.some((cell) => cell.piece !== slice.home)],

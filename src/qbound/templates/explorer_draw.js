@@ -229,19 +229,31 @@ function handle(svg, mark) {
 
 /* --- the arm ----------------------------------------------------------------------------------- */
 
-/** The part of the plane that the arm can reach, its bodies included. */
-function planeBox(robot, q) {
+/** The part of the plane that the arm can reach, its bodies included, whatever joint moves. */
+function planeBox(robot) {
   const [xs, ys] = [[0], [0]];
   const note = ([x, y]) => { xs.push(x); ys.push(y); };
-  const steps = Array.from({ length: 25 }, (_, i) => i / 24);
-  for (const a of steps) {
-    for (const b of steps) {
-      const pose = withPair(robot, q, robot.views.map((v, k) => v.low + (k ? b : a) * (v.high - v.low)));
-      planePlaces(robot, pose).forEach(note);
+  const steps = Array.from({ length: 17 }, (_, i) => i / 16);
+  for (const q of posesOfHeld(robot)) {
+    for (const a of steps) {
+      for (const b of steps) {
+        const pair = robot.views.map((v, k) => v.low + (k ? b : a) * (v.high - v.low));
+        planePlaces(robot, withPair(robot, q, pair)).forEach(note);
+      }
     }
   }
   const pad = 0.04 * Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
   return [[Math.min(...xs) - pad, Math.max(...xs) + pad], [Math.min(...ys) - pad, Math.max(...ys) + pad]];
+}
+
+/** The pose that the page opens with, and each held joint on its own at places of its range. */
+function posesOfHeld(robot) {
+  const others = robot.joints.flatMap((joint, j) => {
+    if (robot.free.includes(j)) return [];
+    const [low, high] = joint.limits || [-Math.PI, Math.PI];
+    return [0, 0.25, 0.5, 0.75, 1].map((s) => robot.q.map((value, i) => (i === j ? low + s * (high - low) : value)));
+  });
+  return [robot.q, ...others];
 }
 
 /** Everything of the arm that takes room in the plane. */
@@ -258,9 +270,9 @@ function withPair(robot, q, pair) {
   return pose;
 }
 
-function drawPlane(robot, state, slice) {
+function drawPlane(robot, state, slice, box) {
   const svg = document.getElementById("plane");
-  const drawn = picture(svg, planeBox(robot, state.q), { left: 8, right: 8, top: 8, bottom: 26 }, true);
+  const drawn = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
   drawn.box = { left: 0, top: 0, right: drawn.width, bottom: drawn.height };
   clear(drawn);
   drawScaleBar(robot, drawn);
