@@ -19,6 +19,7 @@ from qbound import find_region, load_robot, packaged_robots, paper_rule
 from qbound.boundary import clearance, position
 from qbound.cli import main
 from qbound.explorer import explorer_data, explorer_page
+from qbound.planar import planar_arm, postures
 from qbound.region import solve, violated
 from qbound.robotfile import parse_robot
 from qbound.scaling import least_along_edges
@@ -200,6 +201,26 @@ def test_inverse_kinematics_finds_every_posture(name):
             script("all.map((s) => s.map((p) => determinant(map, p)))", all=found.tolist())
         )
         assert (np.sign(det[:, 0]) == -np.sign(det[:, 1])).all()
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_postures_of_a_place_are_the_librarys(name):
+    robot, held, _, script = case(name)
+    data = script.data
+    low, high = (np.array([v[end] for v in data["views"]]) for end in ("low", "high"))
+    circles = np.array([v["wraps"] for v in data["views"]])
+    ranges = [None if c else (x, y) for c, x, y in zip(circles, low, high, strict=True)]
+    pairs = poses(data, 100)[:, data["free"]]
+    seen = script("all.map((p) => toolAt(map, p))", all=pairs.tolist())
+    mine = script("all.map((t) => possible(robot, arm, t))", all=seen)
+    arm = planar_arm(robot, held)
+    for place, found in zip(arm.tool(pairs), mine, strict=True):
+        theirs = np.array([p.q for p in postures(arm, place, ranges)])
+        gap = np.array(found)[:, None] - theirs
+        gap -= np.where(circles, math.tau * np.round(gap / math.tau), 0)
+        same = np.abs(gap).max(axis=2) < 1e-6
+        assert same.any(axis=0).all()
+        assert same.any(axis=1).all()
 
 
 @pytest.mark.parametrize("name", ROBOTS)

@@ -26,10 +26,12 @@ from qbound.boundary import clearance, position, required_distance
 from qbound.curves import flatten
 from qbound.harmonic import HarmonicForm
 from qbound.outline import from_lowest
+from qbound.planar import planar_arm
 from qbound.region import Component, Region
 from qbound.robot import HalfSpace, Joint, Pair, Robot
 from qbound.scaling import largest_safe_scale
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
+from qbound.workspace import find_workspace
 
 Floats = NDArray[np.float64]
 Data = dict[str, Any]
@@ -146,6 +148,7 @@ def explorer_data(
         "views": views,
         "components": [_component(c, views) for c in region.components],
         "polygon": _polygon(region),
+        "workspace": _workspace(robot, region, held, q[free]),
         "sample": _sample(views),
     }
 
@@ -307,6 +310,15 @@ def _polygon(region: Region) -> Data | None:
         "binds": None if largest.form < 0 else region.problem.names[largest.form],
         "walks": _walks(len(vertices)),
     }
+
+
+def _workspace(robot: Robot, region: Region, held: Mapping[int, float], q: Floats) -> Data | None:
+    """Return the areas of the exact workspace; None where the tool has no planar one."""
+    try:
+        found = find_workspace(planar_arm(robot, held), region.problem, q)
+    except ValueError:  # no home component, or a tool that leaves the plane
+        return None
+    return {"area": found.area, "covered_twice": found.covered_twice}
 
 
 def _walks(m: int) -> list[list[int]]:

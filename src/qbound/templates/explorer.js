@@ -95,16 +95,10 @@ function moveTool(target) {
   if (!slice.regular) return;
   const now = pairOf(state.q);
   const side = determinant(slice.map, now) >= 0;
-  const found = postures(slice.arm, target).map(fitted).filter((pair) => pair !== null);
+  const found = possible(robot, slice.arm, target);
   const same = found.filter((pair) => (determinant(slice.map, pair) >= 0) === side);
   const best = nearest(same.length > 0 ? same : found, now);
   if (best) movePose(best);
-}
-
-/** Turn angles into the joints' limits; null where that cannot be. */
-function fitted(pair) {
-  const turned = pair.map((value, k) => turnsWithin(slice.map.kinds[k], value, robot.views[k])[0]);
-  return turned.every((value) => value !== undefined) ? turned : null;
 }
 
 function nearest(pairs, now) {
@@ -121,8 +115,8 @@ function otherPosture() {
   if (!slice.regular) return null;
   const now = pairOf(state.q);
   const side = determinant(slice.map, now) >= 0;
-  const found = postures(slice.arm, toolAt(slice.map, now)).map(fitted).filter(
-    (pair) => pair !== null && (determinant(slice.map, pair) >= 0) !== side);
+  const found = possible(robot, slice.arm, toolAt(slice.map, now)).filter(
+    (pair) => (determinant(slice.map, pair) >= 0) !== side);
   return nearest(found, now);
 }
 
@@ -175,6 +169,14 @@ function postureText() {
   return `Posture ${det > 0 ? "A (det J > 0)" : "B (det J < 0)"}. The other one at this place is ${there}.`;
 }
 
+/** The exact areas of the workspace, as the library found them for the slice it was given. */
+function areaText() {
+  if (!robot.workspace || !slice.exact || !state.show.workspace) return "";
+  const area = (value) => `${Number(value.toPrecision(6))} ${robot.length_unit}²`;
+  const { area: whole, covered_twice: twice } = robot.workspace;
+  return `Reached from home: ${area(whole)}${twice > 0 ? `, of it ${area(twice)} in both postures` : ""}.`;
+}
+
 /* --- showing ----------------------------------------------------------------------------------- */
 
 /** Everything anew: the window or a held joint has changed. */
@@ -201,6 +203,7 @@ function redraw() {
     ["workspace twice", "both postures safe", state.show.workspace && slice.lines.length > 0],
     ["beyond", "behind a wall", robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used)],
   ]));
+  byId("area").textContent = areaText();
   if (robot.polygon) byId("show-polygon").disabled = !slice.exact;
   refresh();
 }

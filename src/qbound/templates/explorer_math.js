@@ -284,6 +284,14 @@ function posturesPP({ d, e }, w) {
   return area === 0 ? [] : [[cross(w, e) / area, cross(d, w) / area]];
 }
 
+/** The postures that the joints' ranges allow, angles turned into them. */
+function possible(robot, arm, target) {
+  const kinds = freeKinds(robot);
+  const turned = postures(arm, target).map((pair) => (
+    pair.map((value, k) => turnsWithin(kinds[k], value, robot.views[k])[0])));
+  return turned.filter((pair) => pair.every((value) => value !== undefined));
+}
+
 /** The pose of an RR arm whose joints and tool are mirrored in the vertical through joint one. */
 function mirroredPose(arm, pair) {
   const { d, e, s1, s2 } = arm;
