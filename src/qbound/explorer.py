@@ -108,7 +108,7 @@ def explorer_data(
     -------
     dict
         Angles in radians, lengths in the robot's unit. A form is a list of terms: its coefficient
-        and, for each joint, which of (1, cos q, sin q) or (1, q, q^2) it multiplies.
+        and, for each joint, which of (1, cos q, sin q) or (1, q, q²) it multiplies.
 
     Raises
     ------
