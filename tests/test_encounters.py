@@ -67,7 +67,7 @@ def test_singular_crossings_are_where_the_links_are_in_line(order) -> None:
     """One on each leg whose ends lie on both sides of q2 = -60 degrees (the paper's arm)."""
     q = SMALL[order]
     walk = traverse(MINERVA, q, deviation=0.1)
-    found = singular_crossings(MINERVA, walk, (0, 2))
+    found = singular_crossings(MINERVA, walk)
     expected = [
         i + (SINGULAR - a) / (b - a)
         for i, (a, b) in enumerate(zip(q[:-1, 1], q[1:, 1], strict=True))
@@ -82,7 +82,7 @@ def test_an_arm_that_cannot_move_its_tool_two_ways_has_no_singular_curve() -> No
     row_of(table, "point", "3")["at"] = [0.0, 0.0, 0.0]
     robot = parse_robot(table)
     walk = traverse(robot, SMALL[:3], deviation=0.1)
-    assert singular_crossings(robot, walk, (0, 2)) is None
+    assert singular_crossings(robot, walk) is None
 
 
 @settings(max_examples=4, deadline=None)

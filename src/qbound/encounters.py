@@ -6,7 +6,7 @@ paper reads its paths off pictures (Section 5).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from qbound.boundary import clearance, pair_vector, position, required_distance
 from qbound.curves import meetings
+from qbound.planar import NoPlanarWorkspaceError, singular_form
 from qbound.region import Problem
 from qbound.robot import HalfSpace, Pair, Robot
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
@@ -113,24 +114,31 @@ def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> lis
 
 
 def singular_crossings(
-    robot: Robot, walk: Traversal, plane: tuple[int, int], joints: Sequence[int] = (0, 1)
+    robot: Robot, walk: Traversal, held: Mapping[int, float] | None = None
 ) -> list[Place] | None:
     """Find where a path crosses the singular curve: det J of two joints changes its sign there.
 
-    None if det J is zero all along. Signs are compared at the rows; two changes between
-    neighbouring rows are not seen.
+    None where the tool keeps to no plane, or to a curve of it. Signs are compared at the rows; two
+    changes between neighbouring rows are not seen.
+
+    Parameters
+    ----------
+    held : mapping of int to float, optional
+        Joints that do not move and their values, all but two.
     """
-    tool = position(robot, robot.tool)[list(plane)]
+    held = held or {}
+    try:
+        form = singular_form(robot, held)
+    except NoPlanarWorkspaceError:
+        return None
+    free = [j for j in range(len(robot.joints)) if j not in held]
 
     def det(q: Floats) -> Floats:
-        return np.asarray(np.linalg.det(tool.gradient(q)[..., list(joints)]))
+        return np.asarray(form(q[..., free]))
 
     grid = _grid(walk)
-    values = det(walk.at(grid))
-    rounding = ON_BOUNDARY * np.abs(tool.coefficients).max() ** 2
-    if (np.abs(values) <= rounding).all():
-        return None
-    return _sign_changes(walk, det, grid[np.abs(values) > rounding])
+    rounding = ON_BOUNDARY * np.abs(form.coefficients).max()
+    return _sign_changes(walk, det, grid[np.abs(det(walk.at(grid))) > rounding])
 
 
 def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:

@@ -142,8 +142,8 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         ax.set_aspect("equal")
     if chart.numbered is not None and chart.numbered.vertices:
         corners = np.array([vertex.q for vertex in chart.numbered.vertices])
-        for j, ends in enumerate(ranges):
-            if ends is None:  # shown where the region's copy within the turn has them
+        for j, turning in enumerate(ends is None for ends in ranges):
+            if turning:  # shown where the region's copy within the turn has them
                 corners[:, j] -= 2 * np.pi * np.ceil((corners[:, j] - np.pi) / (2 * np.pi))
         corners *= scales
         ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)

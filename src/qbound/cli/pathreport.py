@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from qbound import __version__
-from qbound.cli.chosen import free_joints
 from qbound.cli.route import Route
 from qbound.cli.values import joint_units
 from qbound.encounters import (
@@ -51,10 +50,8 @@ def report(robot: Robot, way: Route, rule: str) -> Report:
         bounds = boundaries(robot)
     else:
         bounds = stated_boundaries(robot, way.region.problem)
-    crossings = singular = None
-    if plane is not None:
-        crossings = tool_crossings(robot, walk, plane)
-        singular = singular_crossings(robot, walk, plane, free_joints(robot, way.held))
+    crossings = None if plane is None else tool_crossings(robot, walk, plane)
+    singular = singular_crossings(robot, walk, way.held)
     far = least_margin(walk, _short_of(robot))
     return Report(
         plane,
