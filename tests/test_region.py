@@ -6,6 +6,7 @@ By hand, for many more robots than the suite takes: `python tests/test_region.py
 import sys
 import warnings
 from dataclasses import replace
+from functools import partial
 from math import atan2, pi
 
 import numpy as np
@@ -71,12 +72,41 @@ def random_wall(rng, i: int, points: list[Point]) -> HalfSpace:
     return HalfSpace(f"W{i}", points[rng.integers(0, 8)].name, normal, rng.uniform(-3, 1))
 
 
+def drawn_robot(seed: int) -> Robot:
+    """A robot as an engineer draws it: small whole numbers, points in line, walls along the axes.
+
+    Here curves touch, coincide, are parallel and meet three at a time.
+    """
+    rng = np.random.default_rng(seed)
+    kinds, whole = (RR, RP, PR, PP)[seed % 4], partial(rng.integers, endpoint=True)
+    places = [np.array([whole(-2, 2), 0.0, whole(-2, 2) * rng.integers(0, 2)]) for _ in range(8)]
+    points = [Point(f"p{i}", str(rng.integers(0, 3)), place) for i, place in enumerate(places)]
+    joints = tuple(drawn_joint(rng, j, kind) for j, kind in enumerate(kinds))
+    pairs = [random_pair(rng, i, points) for i in range(rng.integers(0, 5))]
+    pairs = [replace(pair, clearance=whole(1, 4) / 2) for pair in pairs]
+    axes = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 0, 1], [0, 0, -1]])
+    walls = [
+        HalfSpace(f"W{i}", f"p{rng.integers(0, 8)}", axes[rng.integers(0, 4)], float(whole(-4, 0)))
+        for i in range(rng.integers(0, 4))
+    ]
+    home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
+    return Robot("d", joints, tuple(points), (*pairs, *walls), home, "p0", "m", "rad")
+
+
+def drawn_joint(rng, j: int, kind: str) -> Joint:
+    limits = (-pi / 2, pi / 2) if kind == "revolute" else (-2.0, 2.0)
+    if kind == "revolute" and rng.random() < 0.6:
+        limits = None
+    axis = [0.0, 1, 0] if kind == "revolute" else [[1.0, 0, 0], [0, 0, 1.0]][rng.integers(0, 2)]
+    origin = np.array([rng.integers(0, 3), 0.0, rng.integers(0, 2)])
+    return Joint(f"q{j + 1}", kind, str(j), str(j + 1), origin, np.eye(3), np.array(axis), limits)
+
+
 # --- what is checked of each ---------------------------------------------------------------------
 
 
-def check(seed: int) -> None:
-    """Everything that must hold of one random robot."""
-    robot = random_robot(seed)
+def check(robot: Robot) -> None:
+    """Everything that must hold of one robot."""
     region = find_region(robot)
     check_arcs(region)
     check_home(robot, region)
@@ -373,7 +403,12 @@ def turned(robot: Robot, j: int, angle: float) -> Robot:
 
 @pytest.mark.parametrize("seed", range(60))
 def test_random_robots(seed):
-    check(seed)
+    check(random_robot(seed))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_robots_drawn_in_whole_numbers(seed):
+    check(drawn_robot(seed))
 
 
 # --- the paper's robot ---------------------------------------------------------------------------
@@ -559,18 +594,18 @@ def test_a_hole_is_a_clockwise_loop():
     assert signs[0] < 0 < signs[1]
 
 
-def main(count: int) -> None:
-    """Check that many random robots; say the seeds and what failed."""
-    failed = []
+def main(kind: str, count: int) -> None:
+    """Check that many robots of one kind, random or drawn; say the seeds and what failed."""
+    make, failed = {"random": random_robot, "drawn": drawn_robot}[kind], []
     for seed in range(count):
         try:
-            check(seed)
+            check(make(seed))
         except Exception as error:
             failed.append(seed)
             sys.stdout.write(f"{seed}: {type(error).__name__} {str(error).strip()[:300]}\n")
-    sys.stdout.write(f"seeds 0 to {count - 1}: {count} robots, {len(failed)} wrong {failed}\n")
+    sys.stdout.write(f"{kind}, seeds 0 to {count - 1}: {len(failed)} of {count} wrong {failed}\n")
 
 
 if __name__ == "__main__":
     warnings.simplefilter("error", RuntimeWarning)
-    main(int(sys.argv[1]))
+    main(sys.argv[1], int(sys.argv[2]))

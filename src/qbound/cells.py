@@ -155,11 +155,9 @@ class Complex:
             if line.left[e] is not None and line.right[e] is not None
         ]
         where, low, high = np.array([(i, a, b) for i, _, a, b in shared]).reshape(-1, 3).T
-        probes = low[:, None] + (high - low)[:, None] * np.array([0.29, 0.5, 0.77])
-        t = np.repeat(self.abscissae[where.astype(np.int64)], 3)
-        free = self.plane.positive(t, probes.ravel(), POSITIVE).reshape(-1, 3)
-        for (i, e, *_), joined in zip(shared, free, strict=True):
-            lines[i].joined[e] = bool(joined.any())
+        free = self.plane.open(self.abscissae[where.astype(np.int64)], low, high, POSITIVE)
+        for (i, e, *_), joined in zip(shared, free.tolist(), strict=True):
+            lines[i].joined[e] = joined
 
     def n_elements(self, line: Line) -> int:
         """Elements between points; a circle closes, and without points is one element."""
@@ -231,7 +229,10 @@ class Complex:
     # --- boundaries -----------------------------------------------------------------------------
 
     def loops(self, cells: Collection[int]) -> list[list[Step]]:
-        """Return the closed walks that bound a component, the component on the left."""
+        """Return the closed walks that bound a component, the component on the left.
+
+        A hole shorter round than TOUCH is a point at which a form touches zero: it bounds nothing.
+        """
         steps = [Step(kind, k) for k in cells for kind in SIDES if not self.whole[k]]
         for i, line in enumerate(self.lines):
             for e, joined in enumerate(line.joined):
@@ -244,7 +245,24 @@ class Complex:
             if first in left_over:
                 loops.append(self._walk(first))
                 left_over -= set(loops[-1])
-        return loops
+        tiny = all(self._size(k) <= TOUCH for k in cells)
+        return [walk for walk in loops if tiny or sum(map(self._length, walk)) > TOUCH]
+
+    def _size(self, k: int) -> float:
+        """Width or height of a cell, whichever is more, in the units of base and lift."""
+        left, right = self.abscissae[self.cells[k].slab :][:2]
+        height = max(high - low for low, high in self.ends[k])
+        return float(max((right - left) / self.plane.base_unit, height / self.plane.lift_unit))
+
+    def _length(self, step: Step) -> float:
+        """Length of a step between its ends, in the units of base and lift together."""
+        if step.line >= 0:
+            low, high = self.bounds(self.lines[step.line], step.element)
+            return (high - low) / self.plane.lift_unit
+        slab, k = self.cells[step.cell].slab, SIDES.index(step.kind)
+        (left, right), ends = self.abscissae[slab : slab + 2], self.ends[step.cell]
+        along = (right - left) / self.plane.base_unit
+        return float(along + abs(ends[1][k] - ends[0][k]) / self.plane.lift_unit)
 
     def _walk(self, first: Step) -> list[Step]:
         walk = [first]

@@ -27,6 +27,7 @@ Complexes = NDArray[np.complex128]
 Range = tuple[float, float] | None
 
 TURN = math.tau
+PROBES = np.array([0.29, 0.5, 0.77])
 
 
 class Root(NamedTuple):
@@ -94,6 +95,8 @@ class Plane:
         table = table / np.where(largest > 0, largest, 1.0)
         self.scaled: Floats = np.where(np.abs(table) > NEGLIGIBLE, table, 0.0)
         self.table: Floats = self.scaled / powers
+        slides = self.lift_kind == "prismatic"
+        self.affine = [slides and not any(row) for row in self.table[:, :, 2].tolist()]
 
     def along_lift(self, t: Floats) -> Floats:
         """Return the coefficients of every form along the lift, shape (len(t), m, 3)."""
@@ -108,6 +111,15 @@ class Plane:
         for forms in np.split(self.table.reshape(-1, 9), range(16, len(self.table), 16)):
             left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
         return np.isin(np.arange(len(t)), left)
+
+    def open(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
+        """Tell whether forms that do not change sign there are positive between lift values, (k,).
+
+        One place may be where a form touches zero, so there are three, at uneven parts.
+        """
+        v = low[:, None] + (high - low)[:, None] * PROBES
+        found = self.positive(np.repeat(t, len(PROBES)), v.ravel(), least)
+        return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
 
     def roots(self, t: Floats) -> Floats:
         """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
@@ -136,8 +148,7 @@ class Plane:
             theta, alpha, _ = polar(c1, c2, -c0)
             values = theta + branch * alpha + TURN * turns
         else:
-            affine = ~table[form, :, 2].any(axis=-1)
-            lower, upper = _quadratic_roots(c0, c1, np.where(affine, 0.0, c2), folds=True)
+            lower, upper = _quadratic_roots(c0, c1, c2, folds=True)
             values = np.clip(np.where(branch < 0, lower, upper), *self.lift_ends)
         ends = np.array(self.lift_ends)[(form == HIGHEST.form).astype(int)]
         return np.asarray(np.where(form < 0, ends, values))
@@ -341,7 +352,7 @@ def _cells(plane: Plane, middles: Floats) -> list[Cell]:
         first, last = edges[:-1], edges[1:] - 1
         after[last], tops[last] = first, values[first] + TURN
     wide = np.flatnonzero(tops > values)
-    free = wide[plane.positive(middles[slab[wide]], (values + tops)[wide] / 2, NEGLIGIBLE)]
+    free = wide[plane.open(middles[slab[wide]], values[wide], tops[wide], NEGLIGIBLE)]
     cells = []
     for k in free.tolist():
         lower, upper = (Root(*map(int, roots[i])) for i in (k, after[k]))
@@ -361,6 +372,7 @@ def _walls(plane: Plane, t: Floats) -> tuple[Ints, Floats, Ints]:
     turns = np.zeros(len(values), dtype=np.int64)
     if plane.lift_kind == "revolute":
         first, end = (np.ceil((x - values) / TURN).astype(np.int64) for x in (low, high))
+        end = first + 1 if plane.lift_range is None else end  # by rounding a root could have none
         pick, turns = _ranges(first, end)
         values, slab, form, branch = (
             values[pick] + TURN * turns,
@@ -410,12 +422,20 @@ def _goes_on(plane: Plane, lines: Floats, at: Ints, pairs: Sequence[tuple[Root, 
     """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
     step = UNCHANGED * np.minimum(lines[at] - lines[at - 1], lines[at + 1] - lines[at])
     t = lines[at][:, None] + step[:, None] * np.array([-1, 0, 1])
-    lower = plane.follow([pair[0] for pair in pairs], t)
-    upper = plane.follow([pair[1] for pair in pairs], t)
+    bottoms, tops = [lower for lower, _ in pairs], [upper for _, upper in pairs]
+    lower, upper = plane.follow(bottoms, t), plane.follow(tops, t)
     smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * (upper - lower).min(axis=1)
     wide = (upper - lower).min(axis=1) > UNCHANGED
-    middle = (lower + upper)[:, 1] / 2
-    return np.asarray(smooth & wide & plane.positive(lines[at], middle, POSITIVE))
+    going = smooth & wide & plane.open(lines[at], lower[:, 1], upper[:, 1], POSITIVE)
+    return np.asarray(going & _simple(plane, bottoms, t) & _simple(plane, tops, t))
+
+
+def _simple(plane: Plane, roots: Sequence[Root], t: Floats) -> Bools:
+    """Tell whether roots keep away from the other root of their form: where both meet is a kink."""
+    gap = plane.follow(roots, t) - plane.follow([r._replace(branch=-r.branch) for r in roots], t)
+    gap = np.sin(gap / 2) if plane.lift_kind == "revolute" else gap
+    alone = np.array([r.form < 0 or plane.affine[r.form] for r in roots], dtype=np.bool_)
+    return np.asarray(alone | (np.abs(gap).min(axis=1) > UNCHANGED))
 
 
 def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False) -> Floats:
@@ -427,7 +447,7 @@ def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False)
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.sqrt(np.maximum(discriminant, 0) if folds else discriminant)
         half = -(c1 + np.copysign(root, c1)) / 2
-        pair = np.sort(np.stack([half / c2, c0 / half]), axis=0)
+        pair = np.sort(np.stack([half / c2, np.where(root == 0, half / c2, c0 / half)]), axis=0)
         single = -c0 / c1
     singles = np.stack([single, single if folds else np.full_like(single, np.nan)])
     roots = np.where(c2 == 0, singles, pair)

@@ -19,7 +19,7 @@ from qbound.cells import Complex
 from qbound.decomposition import TURN, Plane, Range, decompose
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import QUADRATURE, TOUCH
+from qbound.tolerances import QUADRATURE
 from qbound.walks import Layout, Sheets, Walk, behind
 
 Floats = NDArray[np.float64]
@@ -244,15 +244,8 @@ def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list
 def _component(found: _Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
     centroid = None if any(found.wraps) else _ordered(found.middle + found.shift, base)
     wraps = found.wraps[base], found.wraps[1 - base]
-    loops = [arcs for arcs in loops if found.area < TOUCH**2 or _extent(arcs) > TOUCH]
     corners = tuple(_vertices(loops))
     return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
-
-
-def _extent(loop: Sequence[Arc]) -> float:
-    """Return how far a loop's corners and folds lie apart in either joint."""
-    ends = np.concatenate([x for arc in loop for x in (arc.pieces.start, arc.pieces.end)])
-    return float(np.ptp(ends, axis=0).max())
 
 
 def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:

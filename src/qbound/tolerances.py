@@ -42,7 +42,7 @@ POSITIVE: Final = 1e-11
 """Value (coefficients scaled to 1) above which a form is positive on a critical line."""
 
 TRANSVERSAL: Final = 1e-6
-"""Sine of the angle, about, under which two curves are too nearly tangent for Newton's method."""
+"""Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
 
 SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line."""

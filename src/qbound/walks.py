@@ -194,15 +194,9 @@ def _newton(plane: Plane, pairs: NDArray[np.int64], q: Floats) -> Floats:
         t, v = q.T[:, :, None, None]
         base, steep = basis(plane.base_kind, t), basis_slope(plane.base_kind, t)
         lift, slope = basis(plane.lift_kind, v), basis_slope(plane.lift_kind, v)
-        over = base @ table
-        value = (over * lift).sum(axis=(2, 3))
-        along_lift = (over * slope).sum(axis=(2, 3))
-        along_base = ((steep @ table) * lift).sum(axis=(2, 3))
-        det = along_base[:, 0] * along_lift[:, 1] - along_base[:, 1] * along_lift[:, 0]
-        size = np.maximum(np.abs(along_base), np.abs(along_lift)).max(axis=1)
-        firm = np.abs(det) > TRANSVERSAL * size**2  # a tangency gives Newton nothing to hold on to
-        safe = np.where(firm, det, np.inf)
-        by_base = (value[:, 0] * along_lift[:, 1] - value[:, 1] * along_lift[:, 0]) / safe
-        by_lift = (along_base[:, 0] * value[:, 1] - along_base[:, 1] * value[:, 0]) / safe
-        q = q - np.stack([by_base, by_lift], axis=-1)
+        over, along_base = base @ table, ((steep @ table) * lift).sum(axis=(2, 3))
+        value, along_lift = (over * lift).sum(axis=(2, 3)), (over * slope).sum(axis=(2, 3))
+        slopes = np.stack([along_base, along_lift], axis=-1)
+        # At a tangency or a double root the least step towards both is all that is known.
+        q = q - (np.linalg.pinv(slopes, rcond=TRANSVERSAL) @ value[..., None])[..., 0]
     return np.asarray(q)
