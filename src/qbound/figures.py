@@ -139,6 +139,22 @@ def draw_robot(
     return artists
 
 
+def draw_spheres(
+    ax: Axes, robot: Robot, q: ArrayLike, plane: tuple[int, int] = (0, 2)
+) -> list[Artist]:
+    """Draw every point that has a radius as a disc: those of the base filled, the others open."""
+    from matplotlib.patches import Circle
+
+    frames = robot.frames(np.asarray(q, dtype=float))
+    artists: list[Artist] = []
+    for point in (point for point in robot.points if point.radius > 0):
+        place = frames.position(robot.base, point.name, robot.base)[list(plane)]
+        fixed = point.frame == robot.base
+        look: dict[str, Any] = {"fc": COLLIDING + "55" if fixed else "none", "ec": INK, "lw": 1}
+        artists.append(ax.add_patch(Circle(tuple(place), point.radius, zorder=2, **look)))
+    return artists
+
+
 def draw_bound(
     ax: Axes, q: ArrayLike, *, used: bool, label: str | None = None, **style: Any
 ) -> list[Artist]:
@@ -331,11 +347,14 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
     artists: list[Artist] = []
     scale = joint_scales(region)
     turns = [[0.0] if r else [-2 * np.pi, 0.0, 2 * np.pi] for r in region.problem.ranges]
+    rounds = np.array([len(shifts) > 1 for shifts in turns])
     for component in reversed(region.components):  # home's last, over the edges of the others
         colour = FEASIBLE if component.contains_home else "#777777"
         pieces, _ = polygons(component, DRAWN)
         rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
+        rings = [ring - _turns_off(rings[0], rounds) for ring in rings]
         walks = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
+        walks = [walk - _turns_off(walk, rounds) for walk in walks]
         for shift in (np.array(s) for s in product(*turns)):
             closed = ((np.append(ring, ring[:1], axis=0) + shift) * scale for ring in rings)
             inside = Path.make_compound_path(*(Path(ring, closed=True) for ring in closed))
@@ -343,6 +362,12 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
             for walk in walks:
                 artists += ax.plot(*((walk + shift) * scale).T, color=colour, lw=1.5)
     return artists
+
+
+def _turns_off(points: Floats, rounds: NDArray[np.bool_]) -> Floats:
+    """Return the full turns by which points are off the first one, on joints that turn round."""
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    return np.where(rounds, 2 * np.pi * np.round(middle / (2 * np.pi)), 0.0)
 
 
 def joint_scales(region: Region) -> Floats:

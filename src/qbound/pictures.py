@@ -71,6 +71,7 @@ def pose_picture(
             place = pose[list(chart.joints)] * figures.joint_scales(chart.region)
             axes[0].plot(*place, "P", color=INK, ms=9, mec="white", zorder=7)
         if plane is not None:
+            figures.draw_spheres(axes[-1], robot, pose, plane)
             figures.draw_robot(axes[-1], robot, pose, plane=plane)
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
