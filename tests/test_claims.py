@@ -268,6 +268,15 @@ def test_claims_computes_an_entry_again_and_says_where_it_differs(capsys, monkey
     assert VERDICT["E-34"] in text
 
 
+def test_without_the_extra_the_error_names_it(capsys, monkeypatch) -> None:
+    def missing(name: str) -> None:
+        raise ModuleNotFoundError("No module named 'sympy'", name="sympy")
+
+    monkeypatch.setattr("qbound.cli.claims.claim", missing)
+    assert main(["claims", "E-34", "--recompute"]) == 2
+    assert "pip install 'qbound[notebooks]'" in capsys.readouterr().err
+
+
 def test_an_unknown_entry_is_bad_input(capsys) -> None:
     assert main(["claims", "E-99"]) == 2
     assert main(["results", "no such thing"]) == 2

@@ -318,12 +318,14 @@ def one_root() -> Finding:
     wrong, left = (np.abs(a * np.cos(q) + b * np.sin(q) - c) > 1e-12 for q in (printed, mended))
     falls = (b * np.cos(mended) - a * np.sin(mended) < 0).all()
     share = 100 * wrong.mean()
+    behind = np.array_equal(wrong, (a < 0) & (np.abs(c) > 1e-12))
+    which = "those with a < 0 and c not 0" if behind else "others than those with a < 0 too"
     return Finding(
         judge(holds=not wrong.any(), under=not left.any() and bool(falls)),
         f"A root, but not with every a: of {wrong.size} equations with d = 1 all round the circle"
-        f" the arctangent misses {share:.1f} %, those with a < 0; with atan2 all are solved, always"
-        " at the root where a cos q + b sin q falls. The rising root θ - arccos(c / d) is not among"
-        " them (E-37).",
+        f" the arctangent misses {share:.1f} %, {which}; with atan2 all are solved, always at the"
+        " root where a cos q + b sin q falls. The rising root θ - arccos(c / d) is not among them"
+        " (E-37).",
     )
 
 

@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"no entry {unknown[0]!r} in the ledger; `qbound claims` lists all")
     chosen = [one for one in ledger.values() if _is_chosen(one, options)]
     if options.recompute:
-        chosen = [claim(one.id) for one in chosen]
+        chosen = [_again(one.id) for one in chosen]
     if options.json:
         content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
         print(json.dumps(content, indent=1, ensure_ascii=False))
@@ -52,6 +52,15 @@ def run(options: argparse.Namespace) -> int:
     if changed and not options.json and not options.bibtex:
         print(f"differs from what is recorded: {', '.join(changed)}")
     return 1 if changed else 0
+
+
+def _again(name: str) -> Claim:
+    try:
+        return claim(name)
+    except ModuleNotFoundError as error:
+        raise ImportError(
+            f"to compute {name} again takes {error.name}: pip install 'qbound[notebooks]'"
+        ) from error
 
 
 def _is_chosen(one: Claim, options: argparse.Namespace) -> bool:
