@@ -9,7 +9,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
@@ -165,6 +165,7 @@ def test_areas_are_those_of_drawn_places(seed):
 
 
 @settings(max_examples=12)
+@example(4456)  # the circle must be cut at an end of an interval, not at any place
 @given(seeds)
 def test_greens_theorem_and_the_integral_of_det_j_agree(seed):
     robot = random_arm(seed)
@@ -177,6 +178,7 @@ def test_greens_theorem_and_the_integral_of_det_j_agree(seed):
 
 
 @settings(max_examples=12)
+@example(1017)  # a whole circle has no end at which to cut it
 @given(seeds)
 def test_the_workspace_does_not_change_when_seen_otherwise(seed):
     robot = random_arm(seed)
@@ -442,26 +444,49 @@ def crosses(found, a: np.ndarray, b: np.ndarray, problem: Problem) -> bool:
     return all(LineString(walk).intersects(lines) for walk in walks)
 
 
-def test_a_hole_is_named_as_what_separates():
-    """A spot around which the region closes: two safe places, one of them inside."""
-    ring = Pair("ring", ("post", "tip"), 0.5)
-    robot = chain(
-        joint(1, "prismatic", (1.0, 0, 0), limits=(-3.0, 3.0)),
-        joint(2, "prismatic", (0.0, 0, 1), limits=(-3.0, 3.0)),
-        tool=(0.0, 0, 0),
-        points=(Point("post", "0", np.zeros(3)),),
-        walls=(ring,),
-    )
-    robot = replace(robot, home=np.array([2.0, 2.0]))
+def slides(*walls: Pair, points: tuple[Point, ...]) -> Robot:
+    """Two slides at right angles: joint space is the plane itself."""
+    limits = (-3.0, 3.0)
+    first = joint(1, "prismatic", (1.0, 0, 0), limits=limits)
+    second = joint(2, "prismatic", (0.0, 0, 1), limits=limits)
+    robot = chain(first, second, tool=(0.0, 0, 0), points=points, walls=walls)
+    return replace(robot, home=np.array([2.0, 2.0]))
+
+
+def radii_of(passage) -> np.ndarray:
+    (loop,) = passage.loops
+    return np.concatenate([np.hypot(*arc.points.T) for arc in loop])
+
+
+def test_a_ring_of_posts_is_named_as_what_separates():
+    """Posts around the middle: from outside the hole's loop is between, from inside the outer."""
+    turns = np.arange(8) * pi / 4
+    posts = tuple(Point(f"p{i}", "0", np.array([cos(t), 0, sin(t)])) for i, t in enumerate(turns))
+    walls = tuple(Pair(f"B{i}", (post.name, "tip"), 0.5) for i, post in enumerate(posts))
+    robot = slides(*walls, points=posts)
     problem = clearance_problem(robot)
-    # A second ring that keeps the inner disc: -(|r|^2 - 0.2^2) (|r|^2 - 1) is no form, a wall is.
     region = find_fibres(problem, robot.home)
+    assert len(region.components) == 2
+    inward = find_passage(region, (2.0, 2.0), (0.0, 0.1))
+    outward = find_passage(region, (0.0, 0.1), (2.0, 2.0))
+    for passage in (inward, outward):
+        assert not passage.possible
+        assert set(passage.boundaries) == {wall.name for wall in walls}
+    assert radii_of(inward).min() > 1 > radii_of(outward).max()
+    assert crosses(inward, np.array([2.0, 2.0]), np.array([0.0, 0.1]), problem)
+
+
+def test_a_way_round_is_found_where_the_straight_path_leaves():
+    post = Point("post", "0", np.zeros(3))
+    robot = slides(Pair("ring", ("post", "tip"), 0.5), points=(post,))
+    region = find_fibres(clearance_problem(robot), robot.home)
+    found = find_passage(region, (2.0, 2.0), (-2.0, -2.0))
+    assert found.possible
+    assert found.exit is not None
+    assert found.exit.boundary == "ring"
+    assert_allclose(hypot(*found.exit.q), 0.5, atol=1e-9)
     blocked = find_passage(region, (2.0, 2.0), (0.0, 0.1))
     assert (blocked.possible, blocked.goal, blocked.loops) == (False, None, ())
-    assert blocked.exit is not None
-    assert blocked.exit.boundary == "ring"
-    assert_allclose(hypot(*blocked.exit.q), 0.5, atol=1e-9)
-    assert find_passage(region, (2.0, 2.0), (-2.0, -2.0)).possible
 
 
 def test_the_mirrored_pose_needs_the_stretched_one():

@@ -9,15 +9,15 @@ one univariate polynomial of u a pair. Its degree is known, so that as many valu
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import NDArray
 
-from qbound.harmonic import basis
+from qbound.harmonic import HarmonicForm, basis
 from qbound.planar import PlanarArm
-from qbound.region import Problem
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -28,7 +28,9 @@ NODES: Final = 32
 revolute), or 12 in u (prismatic)."""
 
 
-def crossing_distances(arm: PlanarArm, problem: Problem, farthest: float) -> Floats:
+def crossing_distances(
+    arm: PlanarArm, forms: HarmonicForm, ends: Sequence[float], farthest: float
+) -> Floats:
     """Return every distance u from the fold at which boundaries of the two postures may cross.
 
     Some are spurious, which costs time. Boundaries that coincide for every u, as walls for the tool
@@ -36,13 +38,17 @@ def crossing_distances(arm: PlanarArm, problem: Problem, farthest: float) -> Flo
 
     Parameters
     ----------
+    forms : HarmonicForm, shape (m,)
+        Of the two joints.
+    ends : sequence of float
+        Ends of the first joint's range, boundaries too.
     farthest : float
         Largest u of interest; rad or length.
     """
     if arm.fold is None:
         return np.zeros(0)
     u = farthest * _nodes(arm) if arm.kinds[1] == "prismatic" else _nodes(arm)
-    table = _first_joint_forms(arm, problem)
+    table = _first_joint_forms(arm, forms, ends)
     one, other = (_along(arm, table, side, u) for side in (1, -1))
     # The pair (j, i) is the pair (i, j) at -u, which swaps the postures.
     i, j = np.triu_indices(len(table))
@@ -63,19 +69,18 @@ def _nodes(arm: PlanarArm) -> Floats:
     return chebyshev.chebpts1(NODES)
 
 
-def _first_joint_forms(arm: PlanarArm, problem: Problem) -> Floats:
+def _first_joint_forms(arm: PlanarArm, forms: HarmonicForm, ends: Sequence[float]) -> Floats:
     """Return the forms that depend on the first joint, and one for each end of its range.
 
     Shape (m, 3, 3): coefficients in the second joint, then in the first.
     """
-    table = np.swapaxes(np.asarray(problem.forms.coefficients, dtype=float), 1, 2)
+    table = np.swapaxes(np.asarray(forms.coefficients, dtype=float), 1, 2)
     table = table[table[:, :, 1:].any(axis=(1, 2))]
-    limits = problem.ranges[0] or ()
-    ends = np.zeros((len(limits), 3, 3))
-    for form, end in zip(ends, limits, strict=True):
+    limits = np.zeros((len(ends), 3, 3))
+    for form, end in zip(limits, ends, strict=True):
         # sin(q1 - end), which is zero half a turn away too, or q1 - end
         form[0] = (0, -math.sin(end), math.cos(end)) if arm.period else (-end, 1, 0)
-    return np.concatenate([table, ends])
+    return np.concatenate([table, limits])
 
 
 def _along(arm: PlanarArm, table: Floats, side: int, u: Floats) -> Complexes:

@@ -13,79 +13,27 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arcs import NODES, legendre
+from qbound.cover import UNSAFE, Cover, Interval, cover
 from qbound.fibres import Fibres
 from qbound.image_crossings import crossing_distances
 from qbound.planar import PlanarArm, Range, turns_within
-from qbound.tolerances import NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
+from qbound.tolerances import QUADRATURE, SAME_CRITICAL
 
 Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Ranges = tuple[Range, Range]
-CHORD = 0.04
-"""Angle between points of a circle in an outline: the chord leaves it by 2e-4 of the radius."""
-
 Slab = tuple[float, float]
-Interval = tuple[Floats, Floats]
-
-
-@dataclass(frozen=True, eq=False)
-class Cover:
-    """Pieces of a circle or line, for n values of u, and the intervals that hold them.
-
-    Attributes
-    ----------
-    ends : ndarray, shape (e + 1, n)
-        Ends of the pieces, ascending.
-    inside : ndarray of bool, shape (k, e, n)
-        Which of the k intervals hold each piece.
-    width : ndarray, shape (k, n)
-        Of each interval; more than a full turn where it overlaps itself.
-    side : ndarray of int, shape (k,)
-        Sign of det J of each interval.
-    safe : ndarray of bool, shape (k,)
-    """
-
-    ends: Floats
-    inside: Bools
-    width: Floats
-    side: NDArray[np.int64]
-    safe: Bools
-
-    def held(self, chosen: Bools) -> Bools:
-        """Tell which pieces any of some intervals holds, shape (e, n)."""
-        return np.asarray(self.inside[chosen].any(axis=0))
-
-    def reached(self) -> Bools:
-        """Tell which pieces are reached safely."""
-        return self.held(self.safe)
-
-    def on_side(self, side: int) -> Bools:
-        """Tell which pieces are reached safely with one sign of det J."""
-        return self.held(self.safe & (self.side == side))
-
-    def twice(self) -> Bools:
-        """Tell which pieces are reached safely in both postures."""
-        return self.on_side(1) & self.on_side(-1)
-
-    def mixed(self) -> Bools:
-        """Tell which pieces are reached both safely and not."""
-        return self.reached() & self.held(~self.safe)
-
-    def length(self, pieces: Bools) -> Floats:
-        """Add up the lengths of some pieces, shape (n,): angles on a circle."""
-        return np.asarray((np.diff(self.ends, axis=0) * pieces).sum(axis=0))
-
-    def swept(self) -> Floats:
-        """Add up the widths of the safe intervals, full turns included, shape (n,)."""
-        return np.asarray(self.width[self.safe].sum(axis=0))
 
 
 Measure = Callable[[Cover], Floats]
+
+CHORD: Final = 0.04
+"""Angle between points of a circle in an outline: the chord leaves it by 2e-4 of the radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +64,9 @@ class Layers:
         if self.arm.fold is not None:
             farthest = math.pi if self.arm.kinds[1] == "revolute" else float(u.max())
             problem = next(iter(self.sides.values())).problem
-            u = np.concatenate([u, crossing_distances(self.arm, problem, farthest), [0, farthest]])
+            ends = {*(problem.ranges[0] or ()), *(self.square[0] or ())}
+            crossing = crossing_distances(self.arm, problem.forms, sorted(ends), farthest)
+            u = np.concatenate([u, crossing, [0, farthest]])
         u = np.sort(u)
         return np.asarray(u[np.diff(u, prepend=-np.inf) > SAME_CRITICAL])
 
@@ -127,8 +77,8 @@ class Layers:
         """
 
         def density(u: Floats, slab: Slab) -> Floats:
-            cover = self.cover(u, slab)[1]
-            return np.asarray(self.arm.speed(u) * [measure(cover) for measure in measures])
+            laid = self.cover(u, slab)
+            return np.asarray(self.arm.speed(u) * [measure(laid) for measure in measures])
 
         slabs = list(pairwise(self.distances.tolist()))
         rough = np.array([_quadrature(density, slab, NODES[0]) for slab in slabs])
@@ -136,48 +86,9 @@ class Layers:
         fine = [_converged(density, *pair, smallest) for pair in zip(slabs, rough, strict=True)]
         return [float(value) for value in np.sum(fine, axis=0)]
 
-    def cover(self, u: Floats, slab: Slab) -> tuple[Floats, Cover]:
-        """Lay all intervals over each other, for values of u within a slab.
-
-        Returns
-        -------
-        start : ndarray, shape (n,)
-            Place along the circle or line from which the ends are counted: an end itself, so that
-            on a circle no piece is cut anywhere else.
-        cover : Cover
-        """
-        # What has no width has no end either: a fibre that is a whole circle leaves such a gap.
-        pieces = [p for p in self._intervals(u, sum(slab) / 2) if (p[3] - p[2]).max() > NEGLIGIBLE]
-        if not pieces:
-            return u, Cover(
-                u[None],
-                np.zeros((0, 0, len(u)), bool),
-                np.zeros((0, len(u))),
-                np.zeros(0, int),
-                np.zeros(0, bool),
-            )
-        side, safe = np.array([p[0] for p in pieces]), np.array([p[1] for p in pieces])
-        low, high = np.array([p[2] for p in pieces]), np.array([p[3] for p in pieces])
-        width, period = np.maximum(high - low, 0), self.arm.period
-        start, span = low[0], width
-        if period is not None:
-            whole = width[:, len(u) // 2] >= period - TOUCH
-            start = low[int(whole.argmin())]
-            low = np.where(whole[:, None], 0, _first_turn(low - start, period))
-            span = np.where(whole[:, None], period, width)
-        else:
-            low = low - start
-        high = low + span
-        ends = np.concatenate([low, high])
-        if period is not None:
-            around = np.array([np.zeros_like(u), np.full_like(u, period)])
-            ends = np.concatenate([low, _first_turn(high, period), around])
-        ends = np.sort(ends, axis=0)
-        middles = (ends[:-1] + ends[1:]) / 2
-        inside = (low[:, None] < middles) & (middles < high[:, None])
-        if period is not None:
-            inside |= middles + period < high[:, None]
-        return start, Cover(ends, inside, width, side, safe)
+    def cover(self, u: Floats, slab: Slab) -> Cover:
+        """Lay all intervals over each other, for values of u within a slab."""
+        return cover(list(self._intervals(u, sum(slab) / 2)), len(u), self.arm.period)
 
     def patches(self, n: int = 33) -> Iterator[tuple[int, Floats]]:
         """Yield pieces of the plane: safe postures, 1 or 2, and the outline, shape (m, 2).
@@ -188,9 +99,10 @@ class Layers:
         step = CHORD if self.arm.period else math.inf
         for near, far in pairwise(self.distances.tolist()):
             u = (near + far) / 2 + (far - near) / 2 * np.sin(angle)
-            start, cover = self.cover(u, (near, far))
-            postures = np.sum([cover.on_side(side) for side in self.sides], axis=0)[:, n // 2]
-            q2, along = self.arm.second(self.arm.sides[0], u), start + cover.ends
+            laid = self.cover(u, (near, far))
+            held = [laid.held(laid.by(side)) for side in self.sides]
+            postures = np.sum(held, axis=0)[:, n // 2]
+            q2, along = self.arm.second(self.arm.sides[0], u), laid.start + laid.ends
             for k in np.flatnonzero(postures):
                 low, high = along[k], along[k + 1]
                 far_side = np.arange(low[-1], high[-1], step)
@@ -200,18 +112,16 @@ class Layers:
                 at = np.concatenate([q2, at[: len(far_side)], q2[::-1], at[len(far_side) :]])
                 yield int(postures[k]), self.arm.place(at, np.concatenate(walk))
 
-    def _intervals(self, u: Floats, middle: float) -> Iterator[tuple[int, bool, Floats, Floats]]:
-        """Yield side, safety and both ends of every interval along the circle or line."""
+    def _intervals(self, u: Floats, middle: float) -> Iterator[Interval]:
+        """Yield every interval along the circle or line of u; `middle` is a u of the same slab."""
         for side, part in self.sides.items():
             q2 = self.arm.second(side, u)
             along = self.arm.phase(q2)
             for turned in self._turned(float(self.arm.second(side, middle)), part):
                 shift = turned - float(self.arm.second(side, middle))
                 fibre = self._fibre(side, q2 + shift, turned)
-                for low, high in fibre:
-                    yield side, True, low + along, high + along
-                for low, high in self._gaps(fibre, np.zeros_like(u)):
-                    yield side, False, low + along, high + along
+                for i in [*fibre, *self._gaps(side, fibre, np.zeros_like(u))]:
+                    yield i._replace(low=i.low + along, high=i.high + along)
 
     def _turned(self, q2: float, part: Fibres) -> list[float]:
         """Return q2 with all its full turns that are in the square."""
@@ -225,31 +135,22 @@ class Layers:
         part = self.sides[side]
         shift, cells = part.over(middle)
         kept = [k for k in cells if part.owner[k] in self.kept[side]]
-        return list(zip(*part.intervals(kept, q2 - shift), strict=True)) if kept else []
+        ends = zip(*part.intervals(kept, q2 - shift), strict=True) if kept else ()
+        return [Interval(side, part.owner[k], *pair) for k, pair in zip(kept, ends, strict=True)]
 
-    def _gaps(self, fibre: list[Interval], zero: Floats) -> Iterator[Interval]:
+    def _gaps(self, side: int, fibre: list[Interval], zero: Floats) -> Iterator[Interval]:
         """Yield what a fibre leaves of the first joint's square, around the circle if it turns."""
         limits = self.square[0]
         if limits is not None:
             first, last = zero + limits[0], zero + limits[1]
         elif fibre:
-            first, last = fibre[0][1], fibre[0][0] + math.tau
+            first, last = fibre[0].high, fibre[0].low + math.tau
             fibre = fibre[1:]
         else:
             first, last = zero, zero + math.tau
-        starts = [first, *(high for _, high in fibre)]
-        stops = [*(low for low, _ in fibre), last]
-        yield from zip(starts, stops, strict=True)
-
-
-def _first_turn(ends: Floats, period: float) -> Floats:
-    """Shift ends by full turns, continuous along u, to where their middle is in the first turn.
-
-    An end that coincides with the start stays beside it, on whichever side rounding puts it.
-    """
-    ends = np.unwrap(ends, axis=1, period=period)
-    middle = ends[:, [ends.shape[1] // 2]]
-    return np.asarray(ends - period * np.floor((middle + TOUCH) / period))
+        starts, stops = [first, *(i.high for i in fibre)], [*(i.low for i in fibre), last]
+        for start, stop in zip(starts, stops, strict=True):
+            yield Interval(side, UNSAFE, start, stop)
 
 
 def _quadrature(density: Callable[[Floats, Slab], Floats], slab: Slab, n: int) -> Floats:

@@ -10,16 +10,17 @@ samples (Figure 11).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc, integrate
+from qbound.cover import Cover
 from qbound.fibres import Fibres, find_fibres
 from qbound.harmonic import HarmonicForm
-from qbound.layers import Cover, Layers, Ranges
+from qbound.layers import Layers, Ranges
 from qbound.planar import PlanarArm, Posture, postures
 from qbound.region import Component, Problem
 
@@ -151,21 +152,51 @@ def find_workspace(
     if not chosen and not every:
         raise NoHomeError("the home pose is in no component of the region")
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
-    owned = {
-        side: {i: region.component(part.inside(i)) for i in range(len(part.components))}
-        for side, part in sides.items()
-    }
-    kept = {s: frozenset(i for i, c in own.items() if c in chosen) for s, own in owned.items()}
+    owned = {side: _owned(region, part, chosen) for side, part in sides.items()}
+    kept = {side: frozenset(own) for side, own in owned.items()}
     covers = Layers(arm, sides, kept, problem.ranges)
-    area, twice, *images = covers.areas(
-        lambda cover: cover.length(cover.reached()),
-        lambda cover: cover.length(cover.twice()),
-        *(partial(_on_side, side) for side in sides),
+    keys = [(side, i) for side in sides for i in sorted(kept[side])]
+    area, twice, *rest = covers.areas(
+        _reached,
+        _twice,
+        *(partial(_image, side=side) for side in sides),
+        *(partial(_image, side=side, aspect=i) for side, i in keys),
+        *(partial(_swept, side=side, aspect=i) for side, i in keys),
     )
-    found = [_aspect(covers, side, i, owned[side][i]) for side in sides for i in kept[side]]
-    aspects = tuple(sorted(found, key=lambda aspect: -aspect.image))
-    by_side = dict(zip(sides, images, strict=True))
-    return Workspace(arm, region, chosen, aspects, area, twice, by_side, covers)
+    images, swept = rest[len(sides) : len(sides) + len(keys)], rest[len(sides) + len(keys) :]
+    aspects = [
+        Aspect(sides[side].components[i], owned[side][i], side, *areas)
+        for (side, i), *areas in zip(keys, images, swept, strict=True)
+    ]
+    aspects.sort(key=lambda aspect: -aspect.image)
+    by_side = dict(zip(sides, rest, strict=False))
+    return Workspace(arm, region, chosen, tuple(aspects), area, twice, by_side, covers)
+
+
+def _owned(region: Fibres, part: Fibres, chosen: frozenset[int]) -> dict[int, int]:
+    """Return the aspects inside chosen components, each with its component."""
+    holders = {i: region.component(part.inside(i)) for i in range(len(part.components))}
+    return {i: k for i, k in holders.items() if k is not None and k in chosen}
+
+
+def _reached(laid: Cover) -> Floats:
+    return laid.reached(laid.safe)
+
+
+def _twice(laid: Cover) -> Floats:
+    return laid.length(laid.held(laid.by(1)) & laid.held(laid.by(-1)))
+
+
+def _image(laid: Cover, side: int, aspect: int | None = None) -> Floats:
+    return laid.reached(laid.by(side, aspect))
+
+
+def _swept(laid: Cover, side: int, aspect: int) -> Floats:
+    return laid.swept(laid.by(side, aspect))
+
+
+def _mixed(laid: Cover) -> Floats:
+    return laid.length(laid.held(laid.safe) & laid.held(~laid.safe))
 
 
 def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
@@ -179,7 +210,7 @@ def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -
     """
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
     kept = {side: frozenset(range(len(part.components))) for side, part in sides.items()}
-    (area,) = Layers(arm, sides, kept, square).areas(lambda cover: cover.length(cover.mixed()))
+    (area,) = Layers(arm, sides, kept, square).areas(_mixed)
     return area
 
 
@@ -204,16 +235,3 @@ def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> F
     stacked = HarmonicForm(np.array(forms), problem.forms.kinds)
     names = (*problem.names, SINGULAR)
     return find_fibres(Problem(stacked, names, problem.ranges, problem.limits), home)
-
-
-def _on_side(side: int, cover: Cover) -> Floats:
-    return cover.length(cover.on_side(side))
-
-
-def _aspect(covers: Layers, side: int, i: int, component: int | None) -> Aspect:
-    assert component is not None
-    kept = {s: frozenset([i] if s == side else []) for s in covers.sides}
-    image, swept = replace(covers, kept=kept).areas(
-        lambda cover: cover.length(cover.reached()), Cover.swept
-    )
-    return Aspect(covers.sides[side].components[i], component, side, image, swept)
