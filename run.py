@@ -3,6 +3,8 @@
 
     python3 run.py book     execute the notebooks and build the book
     python3 run.py test     run the tests (further arguments go to pytest)
+    python3 run.py serve    show the book in a browser and follow what an author changes
+    python3 run.py pdf      print the book to one PDF (needs Chromium)
     python3 run.py lint     check style, types and the direction of imports
     python3 run.py lock     pin every dependency again, by hash
     python3 run.py clean    remove what the other commands made
@@ -40,6 +42,8 @@ SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cf
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
 BUILT = ["build", "dist", "src/qbound.egg-info"]
+
+PORT = 8000  # of the author's local page
 
 Command = list[str | Path]
 
@@ -173,30 +177,39 @@ def pip(venv: Path) -> Command:
 def make_book() -> None:
     """Execute the notebooks, once, and build the pages from the executed copies."""
     made_from = fingerprint(ROOT)
-    remove(BUILD)
-    remove(GENERATED)
-    chapters = copy_notebooks()
-    nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
-    pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
-    must(f"Executing {len(chapters)} notebooks", [*pytest, *nbmake, CHAPTERS])
-    for chapter in chapters:
-        if unrun_cells(chapter):
-            raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
-    strict = ["-W", "-n", "--keep-going", "-q", "-d", BUILD / "doctrees"]
-    sphinx = [in_venv("python"), "-m", "sphinx", *strict, ROOT / "book", BUILD / "html"]
-    must("Building the pages", sphinx, quiet=True)
+    for made in [BUILD, GENERATED, CHAPTERS]:
+        remove(made)
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    if not notebooks:
+        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
+    execute(notebooks)
+    build_pages()
     if fingerprint(ROOT) != made_from:
         raise Failed("The sources changed while the book was made: make it again.")
     BOOK_STAMP.write_text(made_from)
 
 
-def copy_notebooks() -> list[Path]:
-    """Copy the notebooks to where they are executed; the committed ones stay without outputs."""
-    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
-    if not notebooks:
-        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
-    remove(CHAPTERS)
-    CHAPTERS.mkdir(parents=True)
+def execute(notebooks: list[Path]) -> None:
+    """Execute copies of the notebooks."""
+    chapters = copy_notebooks(notebooks)
+    nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
+    pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
+    must(f"Executing {len(chapters)} notebooks", [*pytest, *nbmake, *chapters])
+    for chapter in chapters:
+        if unrun_cells(chapter):
+            raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
+
+
+def build_pages(builder: str = "html") -> None:
+    strict = ["-W", "-n", "--keep-going", "-q", "-b", builder]
+    doctrees = ["-d", BUILD / f"doctrees-{builder}"]
+    sphinx = [in_venv("python"), "-m", "sphinx", *strict, *doctrees, ROOT / "book"]
+    must("Building the pages", [*sphinx, BUILD / builder], quiet=True)
+
+
+def copy_notebooks(notebooks: list[Path]) -> list[Path]:
+    """Copy notebooks to where they are executed; the committed ones stay without outputs."""
+    CHAPTERS.mkdir(parents=True, exist_ok=True)
     return [Path(shutil.copy(notebook, CHAPTERS)) for notebook in notebooks]
 
 
@@ -214,11 +227,16 @@ def unrun_cells(notebook: Path) -> list[int]:
 
 def fingerprint(root: Path) -> str:
     """Return one hash of everything that the book is made from."""
+    hashes = source_hashes(root)
+    return digest(*map(Path.as_posix, hashes), *hashes.values())
+
+
+def source_hashes(root: Path) -> dict[Path, str]:
+    """Return the hash of each source, by its path in the repository."""
     found = [path for name in SOURCES for path in [root / name, *(root / name).rglob("*")]]
     names = sorted(path.relative_to(root) for path in found if path.is_file())
     sources = [name for name in names if not is_product(name)]
-    hashes = [hashlib.sha256((root / name).read_bytes()).hexdigest() for name in sources]
-    return digest(*map(Path.as_posix, sources), *hashes)
+    return {name: hashlib.sha256((root / name).read_bytes()).hexdigest() for name in sources}
 
 
 def is_product(name: Path) -> bool:
@@ -228,6 +246,32 @@ def is_product(name: Path) -> bool:
 def book_is_fresh() -> bool:
     made = FRONT_PAGE.exists() and BOOK_STAMP.exists()
     return made and BOOK_STAMP.read_text() == fingerprint(ROOT)
+
+
+# --- the author's loop and the PDF ----------------------------------------------------------------
+
+
+def remake(changed: set[Path]) -> None:
+    """Make again what hangs on the changed sources: pages, these notebooks, or everything."""
+    if any(name.parts[0] not in {"book", "notebooks"} for name in changed):
+        make_book()
+        return
+    texts = [ROOT / name for name in sorted(changed) if name.parts[0] == "notebooks"]
+    stems = sorted({text.stem for text in texts if text.suffix in {".md", ".ipynb"}})
+    for text in (text for text in texts if text.suffix == ".md" and text.exists()):
+        must(f"Pairing {text.name}", [in_venv("jupytext"), "--quiet", "--to", "ipynb", text])
+    notebooks = [ROOT / "notebooks" / f"{stem}.ipynb" for stem in stems]
+    if notebooks:
+        execute([notebook for notebook in notebooks if notebook.exists()])
+    build_pages()
+
+
+def find_browser() -> str:
+    names = ["chromium", "chromium-browser", "google-chrome", "chrome", "msedge"]
+    found = [path for path in map(shutil.which, names) if path]
+    if not found:
+        raise Failed("The PDF is printed by Chromium, and there is none: install it first.")
+    return found[0]
 
 
 # --- the commands ---------------------------------------------------------------------------------
@@ -251,6 +295,54 @@ def test(*arguments: str) -> int:
     # Nothing is said after pytest: its summary is the last line.
     command = [in_venv("python"), "-m", "pytest", "-n", "2", *arguments]
     return subprocess.call(command, cwd=ROOT, env=environment())
+
+
+def serve() -> int:
+    """Show the book at a local address and make it again when a source changes; Ctrl-C ends it."""
+    prepare()
+    if not book_is_fresh():
+        make_book()
+    server = [in_venv("python"), "-m", "http.server", "--bind", "127.0.0.1", str(PORT)]
+    with subprocess.Popen(
+        [*server, "--directory", FRONT_PAGE.parent], env=environment()
+    ) as process:
+        try:
+            say(f"The book: http://127.0.0.1:{PORT}/ (Ctrl-C ends it)")
+            watch()
+        finally:
+            process.terminate()
+    return 0
+
+
+def watch() -> None:
+    known = source_hashes(ROOT)
+    while True:
+        time.sleep(1)
+        now = source_hashes(ROOT)
+        changed = {name for name in known.keys() | now.keys() if known.get(name) != now.get(name)}
+        if changed:
+            try:
+                remake(changed)
+            except Failed as failure:
+                say(str(failure))
+            known = source_hashes(ROOT)  # pairing writes notebooks
+
+
+def pdf() -> int:
+    """Print the whole book to one PDF, beside its pages."""
+    browser = find_browser()
+    prepare()
+    if not book_is_fresh():
+        make_book()
+    build_pages("singlehtml")
+    target, page = BUILD / "qbound.pdf", BUILD / "singlehtml" / "index.html"
+    options = ["--headless", "--disable-gpu", "--no-pdf-header-footer"]
+    options += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # as in CI
+    patience = ["--virtual-time-budget=600000", "--generate-pdf-document-outline"]
+    command = [browser, *options, *patience, f"--print-to-pdf={target}", page.as_uri()]
+    must("Printing", command, quiet=True)
+    say(f"The PDF: {target.as_uri()}")
+    return 0
 
 
 def lint() -> int:
@@ -301,7 +393,7 @@ def clean() -> int:
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser = argparse.ArgumentParser(prog="run.py", description=(__doc__ or "").split("\n")[0])
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for function in [book, test, lint, lock, clean]:
+    for function in [book, test, serve, pdf, lint, lock, clean]:
         text = function.__doc__
         commands.add_parser(
             function.__name__, help=text, description=text, allow_abbrev=False
