@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
 from oracles import packaged_table, point_seen_from
+from test_region import random_robot
 
-from qbound import figures, load_robot
+from qbound import figures, find_region, load_robot
 from qbound.paper_rule import vertices
 from qbound.traversal import traverse
 
@@ -178,7 +179,7 @@ DRAW = """
 import sys
 from matplotlib.figure import Figure
 import matplotlib as mpl
-from qbound import figures, load_robot
+from qbound import figures, find_region, load_robot
 from qbound.paper_rule import bound_curves, vertices
 robot = load_robot("minervabot-v2")
 with mpl.rc_context(figures.STYLE):
@@ -210,3 +211,30 @@ def test_svg_has_the_same_bytes_in_two_processes() -> None:
     assert one == two
     assert b"<svg" in one
     assert b"<dc:date>" not in one
+
+
+@pytest.mark.parametrize("seed", [None, *range(12)])
+def test_every_arc_is_drawn_wherever_it_passes_the_window(ax, seed) -> None:
+    """Each point of each arc, brought into the window, lies on one of the drawn lines."""
+    region = find_region(load_robot("pr-gantry-arm") if seed is None else random_robot(seed))
+    figures.draw_components(ax, region)
+    scale = figures.joint_scales(region)
+    drawn = np.concatenate([line.get_xydata() for line in ax.lines] or [np.zeros((0, 2))]) / scale
+    rounds = [side is None for side in region.problem.ranges]
+    for component in region.components:
+        for arc in (arc for loop in component.loops for arc in loop):
+            q = np.where(rounds, (arc.points + np.pi) % (2 * np.pi) - np.pi, arc.points)
+            gap = np.abs(drawn[:, None] - q[::7]).max(axis=-1).min(axis=0)
+            assert gap.max() < 1e-9
+
+
+def test_spheres_are_drawn_where_forward_kinematics_puts_them(ax) -> None:
+    robot = load_robot("two-joint-arm-with-walls")
+    discs = figures.draw_spheres(ax, robot, robot.home)
+    frames = robot.frames(robot.home)
+    named = [p for p in robot.points if p.radius > 0]
+    assert len(discs) == len(named) == 5
+    for disc, point in zip(discs, named, strict=True):
+        x, _, z = frames.position("base", point.name, "base")
+        assert_allclose([*disc.center, disc.radius], [x, z, point.radius])
+        assert disc.get_fill() == (point.frame == "base") or disc.get_facecolor()[3] == 0
