@@ -6,6 +6,7 @@ import ast
 import json
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from importlib import resources
@@ -149,6 +150,24 @@ def test_every_bound_of_table_6_has_an_entry() -> None:
 def test_every_row_of_a_table_has_an_entry(table: int, rows: int) -> None:
     names = [f"T-{table}", *(f"T-{table}.{row}" for row in range(1, rows + 1))]
     assert [n for n in identifiers() if re.match(rf"T-{table}(\.|$)", n)] == names
+
+
+def test_every_figure_and_theorem_has_an_entry_and_the_text_many() -> None:
+    kinds = Counter(KIND[name] for name in identifiers())
+    figures = {int(re.match(r"F-(\d+)", n)[1]) for n in identifiers() if n.startswith("F-")}
+    assert figures == set(range(1, 12))
+    assert {"TH-1", "TH-2"} <= set(identifiers())
+    assert kinds["sentence"] >= 25
+
+
+def test_a_verdict_of_the_prose_is_that_of_the_entry_named_beside_it() -> None:
+    """Such as {verdict}`refuted` (E-9): chapters and ledger cannot drift apart."""
+    name = r"(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*"
+    beside = re.compile(rf"\{{verdict\}}`([^`]+)`[^`.;:()]*[(,] ?({name}(?:(?:, | and ){name})*)")
+    text = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "notebooks").glob("*.md"))
+    found = beside.findall(text)
+    assert len(found) > 5
+    assert [(v, n) for v, names in found for n in re.findall(name, names) if VERDICT[n] != v] == []
 
 
 # --- as recorded ----------------------------------------------------------------------------------
