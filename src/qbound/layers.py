@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from qbound.cover import UNSAFE, Cover, Interval, cover
 from qbound.fibres import Fibres
 from qbound.image_crossings import crossing_distances
 from qbound.planar import PlanarArm, Range, turns_within
-from qbound.tolerances import QUADRATURE, SAME_CRITICAL
+from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
 
 Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]
@@ -31,9 +30,6 @@ Slab = tuple[float, float]
 
 
 Measure = Callable[[Cover], Floats]
-
-CHORD: Final = 0.04
-"""Angle between points of a circle in an outline: the chord leaves it by 2e-4 of the radius."""
 
 
 @dataclass(frozen=True, eq=False)

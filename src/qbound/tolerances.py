@@ -80,3 +80,7 @@ PROVED_SCALE: Final = 1e-9
 
 A bound of second order needs triangles as small as the square root of what it is to resolve: 1e-9
 takes triangles of 1e-5 rad beside the place of contact, and only there."""
+
+CHORD: Final = 0.04
+"""Angle between points of a circle in a drawn outline: a chord leaves the circle by 2e-4 of the
+radius, less than a line is wide."""
