@@ -1,6 +1,6 @@
 """Proved regions: areas at 30 digits by other means, and proposals that are wrong in one thing."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import mpmath
 import numpy as np
@@ -125,13 +125,16 @@ def changed(**fields) -> Region:
     return replace(REGION, components=(replace(home, **fields), *others))
 
 
-def shifted(arc, by: float):
-    moved = replace(arc)
-    object.__setattr__(moved, "points", arc.points + by)
-    return moved
+@dataclass(frozen=True)
+class Proposed:
+    """As much of an arc as a proof reads."""
+
+    boundary: str
+    points: np.ndarray
 
 
 HOME = REGION.components[0]
+ARCS = tuple(Proposed(arc.boundary, arc.points) for arc in HOME.loops[0])
 FAULTS = {
     "a component is missing": (replace(REGION, components=REGION.components[:-1]), "proved"),
     "home is missing": (replace(REGION, components=REGION.components[1:]), "proved"),
@@ -141,13 +144,13 @@ FAULTS = {
     ),
     "nothing is proposed": (replace(REGION, components=()), "proved|without a boundary"),
     "a loop is missing": (changed(loops=()), "vertices are proposed|positive"),
-    "an arc is missing": (changed(loops=(HOME.loops[0][1:],)), "no crossing|graph|short|run"),
+    "an arc is missing": (changed(loops=(ARCS[1:],)), "no crossing|graph|short|run"),
     "the arcs run backwards": (
-        changed(loops=(tuple(replace(a, points=a.points[::-1]) for a in HOME.loops[0][::-1]),)),
+        changed(loops=(tuple(replace(a, points=a.points[::-1]) for a in ARCS[::-1]),)),
         "left",
     ),
     "a boundary has another's name": (
-        changed(loops=((replace(HOME.loops[0][0], boundary="B3"), *HOME.loops[0][1:]),)),
+        changed(loops=((replace(ARCS[0], boundary="B3"), *ARCS[1:]),)),
         "no crossing|no point|run",
     ),
 }

@@ -72,11 +72,14 @@ class ProvedComponent:
     vertices : tuple of Crossing
         In the order of the loops.
     contains_home : bool
+    loops : tuple of tuple of Run
+        The boundary, the component on its left.
     """
 
     area: arb | None
     vertices: tuple[Crossing, ...]
     contains_home: bool
+    loops: tuple[tuple[Run, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +168,8 @@ class _Prover:
         if area is not None and not area > 0:
             raise Unproved("the area of a component is not proved to be positive")
         vertices = tuple(self.points.found[k] for k in corners)
-        return ProvedComponent(area, vertices, component.contains_home)
+        boundary = tuple(map(tuple, loops))
+        return ProvedComponent(area, vertices, component.contains_home, boundary)
 
     def _area(self, loops: Sequence[Sequence[Run]], wraps: tuple[bool, bool]) -> arb | None:
         """Return the area that loops enclose (Green).

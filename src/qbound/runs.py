@@ -17,6 +17,7 @@ import numpy as np
 from qbound.balls import along, ball, derivative, factor, interval, turns, values
 from qbound.crossings import Balls, line_roots, sides
 from qbound.exact import ExactProblem
+from qbound.harmonic import Kind
 
 if TYPE_CHECKING:
     from flint import arb
@@ -118,28 +119,50 @@ class Curve:
         v = -2 * c0 / (c1 + w) if self.adds_up else (w - c1) / (2 * c2)
         return [1, v, v * v]
 
-    def slope_at(self, t: Any, analytic: bool) -> Any:
-        """Return the derivative of the graph at a complex ball; not finite where not analytic."""
+    def lifted(self, t: Any, analytic: bool) -> tuple[Any, list[Any]]:
+        """Return slope and factors of the graph at a complex ball; not finite if not analytic."""
         c = self.along(t)
         w = self.run.sign * self.square(c).sqrt(analytic=analytic)
-        pairs = zip(self.slopes(t), self.factors(c, w), strict=True)
-        return -sum(x * y for x, y in pairs) / w
+        factors = self.factors(c, w)
+        pairs = zip(self.slopes(t), factors, strict=True)
+        return -sum(x * y for x, y in pairs) / w, factors
 
 
-def area_under(problem: ExactProblem, run: Run) -> arb:
-    """Return the integral of q1 dq2 along a run (Green), as a ball."""
+def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] = (1, 0, 0)) -> arb:
+    """Return the integral of q1 D(q2) dq2 along a run (Green), as a ball.
+
+    Parameters
+    ----------
+    weight : sequence of three
+        Coefficients of D along the second joint; (1, 0, 0) gives areas.
+    """
     from flint import acb
 
-    (p1, p2), (q1, q2) = run.start, run.end
+    kind, ends = problem.kinds[1], (run.start, run.end)
+    p, q = (q1 * _antiderivative(kind, weight, q2) for q1, q2 in ends)
     if run.curve >= len(problem.names):  # an end of a range: one joint stands still
-        return p1 * (q2 - p2) if run.joint == 1 else ball(0)
+        return q - p if run.joint == 1 else ball(0)
     curve = Curve(problem, run)
 
-    def integrand(t: Any, analytic: bool) -> Any:
-        return t * curve.slope_at(t, analytic)
+    def over_first(t: Any, analytic: bool) -> Any:
+        lifted = curve.lifted(t, analytic)
+        density = sum(w * f for w, f in zip(weight, lifted[1], strict=True))
+        return t * density * lifted[0]
 
+    def over_second(t: Any, analytic: bool) -> Any:
+        return _antiderivative(kind, weight, t) * curve.lifted(t, analytic)[0]
+
+    integrand = over_first if run.joint == 0 else over_second
     total: arb = acb.integral(integrand, run.start[run.joint], run.end[run.joint]).real
-    return total if run.joint == 0 else q1 * q2 - p1 * p2 - total
+    return total if run.joint == 0 else q - p - total
+
+
+def _antiderivative(kind: Kind, weight: Sequence[Any], v: Any) -> Any:
+    """Return the antiderivative of w0 + w1 cos v + w2 sin v, or of w0 + w1 v + w2 v^2."""
+    w0, w1, w2 = weight
+    if kind == "revolute":
+        return w0 * v + w1 * v.sin() - w2 * v.cos()
+    return w0 * v + w1 * v**2 / 2 + w2 * v**3 / 3
 
 
 def on_the_left(problem: ExactProblem, run: Run) -> bool:
