@@ -33,7 +33,7 @@ UNUSED: Final = "#CC79A7"
 SECOND: Final = "#E69F00"
 INK: Final = "#222222"
 DRAWN: Final = 1e-3
-"""Largest deviation of a drawn polygon from its arcs, joint units: a tenth of a line's width."""
+"""Largest deviation of a drawn polygon from its arcs, joint units; a tenth of a line's width."""
 LINKS: Final = ("#8C8C8C", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 
 STYLE: Final[dict[str, Any]] = {

@@ -22,10 +22,10 @@ Floats = NDArray[np.float64]
 
 ONCE: Final = "#CDE3F0"
 TWICE: Final = "#7FB8D8"
-"""Tints of FEASIBLE: places reached in one posture, and in two."""
+"""Tints of FEASIBLE for places reached in one posture, and in two."""
 
 SIDES: Final = {1: "#CDE3F0", -1: "#F8E2BF"}
-"""Tints of FEASIBLE and SECOND: the two signs of det J."""
+"""Tints of FEASIBLE and SECOND for the two signs of det J."""
 
 COLOURS: Final = (USED, UNUSED, FEASIBLE, SECOND, "#56B4E9", "#8C8C8C")
 DASHES: Final = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (9, 2, 2, 2)))

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 NODES: Final = 32
-"""Values of u that determine a resultant: its degree is 8 in cos u and sin u (second joint
+"""Values of u that determine a resultant; its degree is 8 in cos u and sin u (second joint
 revolute), or 12 in u (prismatic)."""
 
 

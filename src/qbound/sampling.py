@@ -51,7 +51,7 @@ class Sample:
 
 
 BATCH = 50_000
-"""Configurations that are judged at once: enough to be fast, few enough for any memory."""
+"""Configurations that are judged at once, enough to be fast, few enough for any memory."""
 
 
 def sample(

@@ -72,7 +72,7 @@ class Claim:
     Attributes
     ----------
     id : str
-        ``E-34``, ``B-2.1.2`` (the bound beta_{2,1,2}), ``T-4.2`` (a row), ``F-4``, ``S-12``.
+        ``E-34``, ``B-2.1.2`` (the bound ``beta_{2,1,2}``), ``T-4.2`` (a row), ``F-4``, ``S-12``.
     kind : str
         One of `KINDS`.
     where : str
@@ -99,7 +99,7 @@ class Claim:
 
     @property
     def anchor(self) -> str:
-        """Anchor on the page What holds: ``e-34``, ``b-2-1-2``."""
+        """Anchor on the page What holds, such as ``e-34`` or ``b-2-1-2``."""
         return self.id.lower().replace(".", "-")
 
     def content(self) -> dict[str, Any]:

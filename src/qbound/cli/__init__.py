@@ -41,7 +41,7 @@ COMMANDS = (
 """In the order of the help."""
 
 STOPPED, NO_READER = 130, 141
-"""Exit status after Ctrl-C, and where nobody reads the output any more: as shells have it."""
+"""Exit status after Ctrl-C, and where nobody reads the output any more, as shells have it."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
