@@ -80,7 +80,7 @@ def exact_robot(source: str | Path | Robot) -> Robot:
 
     Raises
     ------
-    RobotFileError
+    ValueError
         As `load_robot`.
     ValueError
         If a number has an exponent that no double could hold.
