@@ -37,7 +37,7 @@ def by_id(page: str) -> dict[str, Any]:
 
 def flat(text: str) -> str:
     """Text as the page shows it: letters with subscripts for β_{1,1} and q_1, minus signs."""
-    text = re.sub(r"(?<=[\s(\[])-(?=[\s\dπθαq(])", "\N{MINUS SIGN}", text)
+    text = re.sub(r"(?<=[\s(\[])-(?=[\s\w(])", "\N{MINUS SIGN}", text)
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"\1\2", text)
 
 

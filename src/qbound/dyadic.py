@@ -1,6 +1,6 @@
 """Dyadic cells of joint space, and bounds of forms over thousands of them that no rounding spoils.
 
-At a cell's centre m, for any displacement d within it,
+At a cell's centre m, for any displacement d within it::
 
     |beta(m + d) - beta(m) - grad beta(m) . d| <= 1/2 sum_jk M_jk |d_j| |d_k|
 

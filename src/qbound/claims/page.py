@@ -52,7 +52,7 @@ def link_to_chapter(one: Claim) -> str:
 
 def typeset(text: str) -> str:
     """Return plain text as HTML: β_{1,1} and q_1 with subscripts, a minus sign for a hyphen."""
-    text = re.sub(r"(?<=[\s(\[])-(?=[\s\dπθαq(])", "\N{MINUS SIGN}", text)
+    text = re.sub(r"(?<=[\s(\[])-(?=[\s\w(])", "\N{MINUS SIGN}", text)
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"<sub>\1\2</sub>", escape(text))
 
 
