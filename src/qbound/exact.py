@@ -81,9 +81,7 @@ def exact_robot(source: str | Path | Robot) -> Robot:
     Raises
     ------
     ValueError
-        As `load_robot`.
-    ValueError
-        If a number has an exponent that no double could hold.
+        As `load_robot`, and if a number has an exponent that no double could hold.
     """
     with precision(BITS):
         if isinstance(source, Robot):
