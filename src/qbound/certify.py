@@ -1,0 +1,377 @@
+"""Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
+
+The search here is floating point and is trusted by nobody: what it finds is written down, and the
+checkers (`check`, `check_arb`) decide. See `minorant` for the bound, `statements` for the sets.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound import check
+from qbound.boundary import clearance, required_distance
+from qbound.minorant import Bound, Waves, longest_edges, second_order, to_waves
+from qbound.robot import Pair, Robot
+from qbound.robotfile import parse_robot
+from qbound.statements import Statement, asked_for_more, home_polygon, units
+from qbound.tolerances import NEGLIGIBLE
+
+Floats = NDArray[np.float64]
+
+MOST_CELLS = 200_000
+"""Cells that a search opens for one boundary before it gives up."""
+
+DEEPEST = 60
+"""Cuts on top of each other before a search gives up; the checkers follow 120."""
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What a search for one boundary found.
+
+    Attributes
+    ----------
+    trees : tuple of str
+        For each cell its cuts in preorder: "." a leaf, a letter the edge that is cut.
+    leaves : int
+        Cells on which the bound is positive.
+    left : int
+        Cells that are undecided.
+    part_left : float
+        Their part of the whole set.
+    cell, q : int, ndarray, or None
+        The cell and the configuration where the form is negative.
+    """
+
+    trees: tuple[str, ...]
+    leaves: int
+    left: int
+    part_left: float
+    cell: int | None = None
+    q: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """The answer about a statement.
+
+    Attributes
+    ----------
+    verdict : {"proved", "refuted", "undecided"}
+        The first two are confirmed in exact arithmetic by `check.check`.
+    text : str
+        The file, JSON; empty where undecided.
+    said : str
+        What the checker says of the file; where undecided, what is left.
+    searches : dict of str to Search
+        By the name of the boundary.
+    """
+
+    verdict: str
+    text: str
+    said: str
+    searches: dict[str, Search] = field(default_factory=dict)
+
+    @property
+    def leaves(self) -> int:
+        """Number of simplices of the proof."""
+        return sum(search.leaves for search in self.searches.values())
+
+
+def certify(
+    text: str, statement: Statement, *, most: int = MOST_CELLS, bound: Bound = second_order
+) -> Certificate:
+    """Prove or refute that every boundary in use holds all over a set.
+
+    Parameters
+    ----------
+    text : str
+        The robot file, see `robotfile.robot_text`.
+    statement : dict
+        From `statements`.
+    most : int
+        Cells that are opened for one boundary before the answer is "undecided".
+    bound : callable
+        The lower bound on a cell; the checkers only follow `minorant.second_order`.
+    """
+    robot = parse_robot(tomllib.loads(text))
+    cells = check.read_cells(statement)
+    beyond = _beyond_limits(text, cells)
+    if beyond is not None:
+        return _confirmed(_content(text, statement, "refuted", **beyond), {})
+    searches = search_all(robot, statement, cells, most, bound)
+    refuted = {name: found for name, found in searches.items() if found.q is not None}
+    if refuted:
+        witness = _deepest(robot, statement, cells, refuted)
+        return _confirmed(_content(text, statement, "refuted", **witness), searches)
+    if any(found.left for found in searches.values()):
+        return Certificate("undecided", "", _left(searches), searches)
+    proof = {name: list(found.trees) for name, found in searches.items()}
+    return _confirmed(_content(text, statement, "proved", proof=proof), searches)
+
+
+def search_all(
+    robot: Robot, statement: Statement, cells: Sequence[Any], most: int, bound: Bound = second_order
+) -> dict[str, Search]:
+    """Search every boundary in use that can be violated at all."""
+    corners = np.array(cells, dtype=float) * units(robot)
+    walls = _walls(robot, statement)
+    return {name: search(waves, corners, most, bound) for name, waves in walls.items()}
+
+
+def search(waves: Waves, cells: Floats, most: int, bound: Bound = second_order) -> Search:
+    """Cut cells across the edge that bends most until the bound is positive on each.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (N, k, n)
+        Corners of simplices, rad or length.
+    """
+    slack = NEGLIGIBLE * np.abs(waves.amplitudes).sum()
+    forest = _Forest(len(cells))
+    numbers, roots, parts = np.arange(len(cells)), np.arange(len(cells)), np.ones(len(cells))
+    leaves, opened = 0, 0
+    for _ in range(DEEPEST):
+        centres = second_order(waves, cells.mean(axis=1, keepdims=True))
+        if len(cells) and centres.min() < -slack:
+            worst, left = int(centres.argmin()), float(parts.sum() / forest.size)
+            q = cells[worst].mean(axis=0)
+            return Search((), leaves, len(cells), left, int(roots[worst]), q)
+        proved = bound(waves, cells) > slack
+        forest.close(numbers[proved])
+        leaves, opened = leaves + int(proved.sum()), opened + len(cells)
+        cells, numbers, roots, parts = (x[~proved] for x in (cells, numbers, roots, parts))
+        if not len(cells) or opened > most:
+            break
+        edges = longest_edges(waves, cells)
+        cells, numbers = halved(cells, edges), forest.cut(numbers, edges)
+        roots, parts = np.repeat(roots, 2), np.repeat(parts / 2, 2)
+    return Search(forest.trees(), leaves, len(cells), float(parts.sum() / max(forest.size, 1)))
+
+
+class _Forest:
+    """The cuts of all cells, as they are made level by level; written down in preorder."""
+
+    def __init__(self, size: int) -> None:
+        self.size, self.letters = size, ["?"] * size
+        self.children: dict[int, int] = {}
+
+    def close(self, numbers: Sequence[int] | NDArray[Any]) -> None:
+        for number in numbers:
+            self.letters[number] = "."
+
+    def cut(self, numbers: Sequence[int] | NDArray[Any], edges: NDArray[Any]) -> NDArray[Any]:
+        """Note the cuts and return the numbers of the halves."""
+        first = len(self.letters)
+        for k, (number, edge) in enumerate(zip(numbers, edges, strict=True)):
+            self.letters[number] = chr(ord("a") + int(edge))
+            self.children[int(number)] = first + 2 * k
+        self.letters += ["?"] * (2 * len(numbers))
+        return np.arange(first, len(self.letters))
+
+    def trees(self) -> tuple[str, ...]:
+        return tuple(self._tree(root) for root in range(self.size))
+
+    def _tree(self, root: int) -> str:
+        written, todo = [], [root]
+        while todo:
+            number = todo.pop()
+            written.append(self.letters[number])
+            if number in self.children:
+                todo += [self.children[number] + 1, self.children[number]]
+        return "".join(written)
+
+
+def halved(cells: Floats, edges: NDArray[Any]) -> Floats:
+    """Cut each cell at the middle of an edge (i, k): the half with corner i, then that with k."""
+    i, k = (ends[edges] for ends in np.triu_indices(cells.shape[1], 1))
+    rows = np.arange(len(cells))
+    middle = (cells[rows, i] + cells[rows, k]) / 2
+    halves = np.repeat(cells, 2, axis=0)
+    halves[2 * rows, k] = middle
+    halves[2 * rows + 1, i] = middle
+    return halves
+
+
+# --- what is asked for ----------------------------------------------------------------------------
+
+
+def _walls(robot: Robot, statement: Statement) -> dict[str, Waves]:
+    """Waves of the boundaries in use, by name; without those that nothing can violate."""
+    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
+    return {
+        wall.name: to_waves(clearance(wider, wall))
+        for wall in wider.boundaries
+        if wall.used and not (isinstance(wall, Pair) and required_distance(wider, wall) == 0)
+    }
+
+
+def _beyond_limits(text: str, cells: Sequence[Any]) -> dict[str, Any] | None:
+    """Return the corner that is farthest beyond a limit of a joint, if any, as a witness."""
+    joints = check.Robot(text).joints
+    worst = None
+    for j, joint in enumerate(joints):
+        for side, sign, end in zip(
+            ("lower", "upper"), (1, -1), joint.get("limits", ()), strict=False
+        ):
+            for i, cell in enumerate(cells):
+                for k, q in enumerate(cell):
+                    depth = sign * (check.number(end) - q[j])
+                    if depth > 0 and (worst is None or depth > worst[0]):
+                        worst = depth, f"{joint['name']}.{side}", i, k, len(cell)
+    if worst is None:
+        return None
+    _, name, i, k, corners = worst
+    return {"boundary": name, "cell": i, "weights": ["1" if c == k else "0" for c in range(corners)]}
+
+
+# --- a witness ------------------------------------------------------------------------------------
+
+
+def _deepest(
+    robot: Robot, statement: Statement, cells: Sequence[Any], refuted: dict[str, Search]
+) -> dict[str, Any]:
+    """Follow each violated boundary to where it is violated most; return the deepest as witness."""
+    corners = np.array(cells, dtype=float) * units(robot)
+    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
+    found = []
+    for name, result in refuted.items():
+        assert result.cell is not None
+        assert result.q is not None
+        form = clearance(wider, wider.boundary(name))
+        weights = _lowest(form, corners[result.cell], result.q)
+        value = float(form(weights @ corners[result.cell]))
+        found.append((_depth(wider, name, value), name, result.cell, weights))
+    _, name, cell, weights = max(found, key=lambda item: item[0])
+    return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
+
+
+def _depth(robot: Robot, name: str, value: float) -> float:
+    """How far a boundary is violated, length."""
+    wall = robot.boundary(name)
+    if not isinstance(wall, Pair):
+        return -value
+    distance = required_distance(robot, wall)
+    return distance - max(0.0, distance**2 + value) ** 0.5
+
+
+def _lowest(form: Callable[[Floats], Floats], cell: Floats, start: Floats) -> Floats:
+    """Return the weights of a configuration in a cell at which a form is low, from `start` down.
+
+    A copy of the cell shrinks around the lowest of its corners, middles and centre so far.
+    """
+    k = len(cell)
+    i, j = np.triu_indices(k, 1)
+    tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
+    lowest = _weights(cell, start)
+    for size in 0.75 ** np.arange(80):
+        around = np.vstack([lowest, (1 - size) * lowest + size * tries])
+        lowest = around[form(around @ cell).argmin()]
+    return np.asarray(lowest)
+
+
+def _weights(cell: Floats, q: Floats) -> Floats:
+    """Write a configuration of a cell as a mean of its corners."""
+    system = np.vstack([cell.T, np.ones(len(cell))])
+    weights = np.linalg.lstsq(system, np.append(q, 1), rcond=None)[0]
+    weights = np.maximum(weights, 0)
+    return np.asarray(weights / weights.sum())
+
+
+def _decimals(weights: Floats) -> list[str]:
+    """Round weights to decimals whose sum is 1."""
+    whole = [round(float(w) * 10**9) for w in weights]
+    whole[int(np.argmax(weights))] += 10**9 - sum(whole)
+    return [f"{w // 10**9}.{w % 10**9:09}" for w in whole]
+
+
+# --- the file -------------------------------------------------------------------------------------
+
+
+def _content(text: str, statement: Statement, verdict: str, **evidence: Any) -> dict[str, Any]:
+    return {
+        "schema": "qbound/certificate/1",
+        "verdict": verdict,
+        "statement": statement,
+        "robot": text,
+        "sha256": hashlib.sha256(text.encode()).hexdigest(),
+        **evidence,
+    }
+
+
+def _confirmed(content: dict[str, Any], searches: dict[str, Search]) -> Certificate:
+    """Hand the file to the checker: what it does not confirm is not answered."""
+    text = json.dumps(content, indent=1, ensure_ascii=True) + "\n"
+    try:
+        _, said = check.check(text)
+    except ValueError as error:
+        return Certificate("undecided", "", f"not confirmed in exact arithmetic: {error}", searches)
+    return Certificate(content["verdict"], text, said, searches)
+
+
+def _left(searches: dict[str, Search]) -> str:
+    lines = [
+        f"{name}: {found.left} cells, {100 * found.part_left:.3g} % of the set"
+        for name, found in searches.items()
+        if found.left
+    ]
+    return "undecided: " + "; ".join(lines)
+
+
+# --- the largest safe scale -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Bracket:
+    """Two scales of the polygon of home's vertices: one proved safe, one refuted.
+
+    Attributes
+    ----------
+    safe, unsafe : str
+        Decimals, `unsafe` the larger; empty where the search did not reach one.
+    proof, refutation : Certificate or None
+    """
+
+    safe: str
+    unsafe: str
+    proof: Certificate | None
+    refutation: Certificate | None
+
+
+def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Bracket:
+    """Enclose the largest safe scale about the centroid of the area between a proof and a witness.
+
+    Parameters
+    ----------
+    width : float
+        Halving stops here, or where the answer is undecided.
+    highest : float
+        Scales above it are not tried.
+    """
+    robot = parse_robot(tomllib.loads(text))
+    low, high, proof, refutation = 0.0, highest, None, None
+    scale = highest
+    while proof is None or refutation is None or high - low > width:
+        answer = certify(text, home_polygon(robot, round(scale, 12)))
+        if answer.verdict == "proved":
+            low, proof = scale, answer
+        elif answer.verdict == "refuted":
+            high, refutation = scale, answer
+        else:
+            break
+        if low == highest or high < width:
+            break
+        scale = round((low + high) / 2, 12)
+    return Bracket(
+        f"{low:.12g}" if proof else "", f"{high:.12g}" if refutation else "", proof, refutation
+    )

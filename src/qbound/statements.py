@@ -1,0 +1,239 @@
+"""What a certificate is about: sets of configurations, in the exact decimals that are written out.
+
+A statement is the JSON of `qbound/certificate/1`: lists of points, every joint value a decimal in
+the robot file's own unit of angle or length, the inside of a polygon on the left of its loops.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound import polygon
+from qbound.region import Component, find_region
+from qbound.robot import HalfSpace, Pair, Robot
+from qbound.triangulation import triangulate
+
+Floats = NDArray[np.float64]
+Statement = dict[str, Any]
+Point = list[str]
+
+DIGITS = 12
+"""Decimals that are written: a hundred times finer than a double resolves a turn in degrees."""
+
+
+def units(robot: Robot) -> Floats:
+    """Return the library's units (rad, length) in one unit of the file, for each joint."""
+    angle = np.radians(1.0) if robot.angle_unit == "deg" else 1.0
+    return np.array([angle if kind == "revolute" else 1.0 for kind in robot.kinds])
+
+
+def decimal(value: float) -> str:
+    """Write a number as a decimal without exponent, `DIGITS` places at most."""
+    text = f"{value:.{DIGITS}f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def points_of(robot: Robot, q: ArrayLike) -> list[Point]:
+    """Round configurations, shape (m, n), rad or length, to decimals in the file's units."""
+    values = np.asarray(q, dtype=float)
+    if values.ndim != 2 or values.shape[1] != len(robot.joints) or not np.isfinite(values).all():
+        raise ValueError(f"wanted: finite values of {len(robot.joints)} joints a point")
+    return [[decimal(x) for x in row] for row in values / units(robot)]
+
+
+def box(low: Sequence[str], high: Sequence[str], margin: str = "0") -> Statement:
+    """State that a box is safe: each joint between two values.
+
+    Parameters
+    ----------
+    low, high : sequence of str
+        Decimals in the file's units; a joint with equal ends is held.
+    margin : str
+        Length by which every boundary is to be kept beyond its own distance.
+    """
+    if any(Fraction(a) > Fraction(b) for a, b in zip(low, high, strict=True)):
+        raise ValueError("a box needs its low end first")
+    return {"set": "box", "margin": margin, "points": [[list(low), list(high)]]}
+
+
+def path(points: Sequence[Sequence[str]], margin: str = "0") -> Statement:
+    """State that a path of straight segments through points is safe."""
+    if len(points) < 2:
+        raise ValueError(f"a path needs two points or more; found {len(points)}")
+    return {"set": "path", "margin": margin, "points": [[list(point) for point in points]]}
+
+
+def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> Statement:
+    """State that a polygon in the plane of two joints is safe; it is cut into triangles exactly.
+
+    Parameters
+    ----------
+    loops : sequence of sequence of point
+        All joints of each corner, those that are held with one value; the inside on the left.
+
+    Raises
+    ------
+    ValueError
+        If not exactly two joints change, or the polygon crosses itself.
+    """
+    rows = [[tuple(map(Fraction, point)) for point in loop] for loop in loops]
+    columns = list(zip(*(point for loop in rows for point in loop), strict=True))
+    free = [j for j, column in enumerate(columns) if len(set(column)) > 1]
+    if len(free) != 2:
+        raise ValueError(f"a polygon lies in the plane of two joints; here {len(free)} change")
+    i, j = free
+    triangles = triangulate([[(p[i], p[j]) for p in loop] for loop in rows])
+    points = [[list(point) for point in loop] for loop in loops]
+    return {
+        "set": "polygon",
+        "margin": margin,
+        "points": points,
+        "triangles": [list(t) for t in triangles],
+    }
+
+
+def outline(robot: Robot, corners: ArrayLike, margin: str = "0") -> Statement:
+    """State that the polygon of some corners, shape (m, n), in either sense, is safe."""
+    q = np.asarray(corners, dtype=float)
+    free = np.ptp(q, axis=0) > 0
+    if free.sum() == 2 and polygon.area(q[:, free]) < 0:
+        q = q[::-1]
+    return filled([points_of(robot, q)], margin)
+
+
+def home_polygon(
+    robot: Robot, scale: float = 1, margin: str = "0", held: Mapping[int, float] | None = None
+) -> Statement:
+    """State that the polygon of the home component's vertices, scaled, is safe (Figures 5 and 6).
+
+    Parameters
+    ----------
+    scale : float
+        About the centroid of the polygon's area.
+    held : mapping of int to float, optional
+        Joints that are held, all but two; rad or length.
+
+    Raises
+    ------
+    ValueError
+        If the home pose is in no component, or its component has no polygon of vertices.
+    """
+    component = _home(robot, held)
+    loops = [_corners(loop) for loop in component.loops]
+    corners = max(loops, key=lambda loop: polygon.area(loop) if len(loop) > 2 else 0)
+    if len(corners) < 3:
+        raise ValueError(f"the home component has {len(corners)} vertices: no polygon")
+    scaled = polygon.scaled(corners, scale, polygon.centroid(corners))
+    return filled([points_of(robot, _with_held(robot, scaled, held))], margin)
+
+
+def inner_polygon(
+    robot: Robot,
+    inset: float,
+    per_arc: int = 12,
+    margin: str = "0",
+    held: Mapping[int, float] | None = None,
+) -> Statement:
+    """State that the home component, but for a strip along its arcs, is safe.
+
+    Every boundary is asked for `inset` more; the component of home that this leaves is bounded by
+    arcs again, and a polygon is drawn through points of them.
+
+    Parameters
+    ----------
+    inset : float
+        Length, more than 0.
+    per_arc : int
+        Points on each arc.
+
+    Raises
+    ------
+    ValueError
+        As `home_polygon`; also if the component goes all the way round a joint.
+    """
+    if not inset > 0:
+        raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
+    component = _home(asked_for_more(robot, inset), held)
+    loops = [_thinned(loop, per_arc) for loop in component.loops]
+    return filled(
+        [_distinct(_within_limits(robot, _with_held(robot, loop, held))) for loop in loops], margin
+    )
+
+
+def asked_for_more(robot: Robot, length: float) -> Robot:
+    """Return a robot whose every boundary asks for some more distance."""
+    return replace(robot, boundaries=tuple(_more(wall, length) for wall in robot.boundaries))
+
+
+def _more(wall: Pair | HalfSpace, length: float) -> Pair | HalfSpace:
+    if isinstance(wall, Pair):
+        return replace(wall, clearance=wall.clearance + length)
+    return replace(wall, offset=wall.offset + length)
+
+
+def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
+    component = find_region(robot, held).home
+    if component is None:
+        raise ValueError("the home pose is in no component: there is no region to certify")
+    if any(component.wraps):
+        raise ValueError("the home component goes all the way round a joint: state a box instead")
+    return component
+
+
+def _corners(loop: Sequence[Any]) -> Floats:
+    """Points of a loop where one boundary gives way to another."""
+    pairs = zip([loop[-1], *loop[:-1]], loop, strict=True)
+    found = [arc.points[0] for before, arc in pairs if before.boundary != arc.boundary]
+    return np.array(found).reshape(-1, 2)
+
+
+def _thinned(loop: Sequence[Any], per_arc: int) -> Floats:
+    rows = [np.unique(np.linspace(0, len(arc.points) - 1, per_arc).round()) for arc in loop]
+    return np.concatenate(
+        [arc.points[row[:-1].astype(int)] for arc, row in zip(loop, rows, strict=True)]
+    )
+
+
+def _with_held(robot: Robot, q: Floats, held: Mapping[int, float] | None) -> Floats:
+    """Put the held joints' values back between the two free ones."""
+    full = np.empty((len(q), len(robot.joints)))
+    free = [j for j in range(len(robot.joints)) if j not in (held or {})]
+    full[:, free] = q
+    for j, value in (held or {}).items():
+        full[:, j] = value
+    return full
+
+
+def _within_limits(robot: Robot, q: Floats) -> list[Point]:
+    """Round to decimals, and what leaves a limit by that back onto it."""
+    ends = [joint.limits for joint in robot.joints]
+    return [
+        [_clamped(x, end, unit) for x, end, unit in zip(row, ends, units(robot), strict=True)]
+        for row in q
+    ]
+
+
+def _clamped(x: float, limits: tuple[float, float] | None, unit: float) -> str:
+    text = decimal(x / unit)
+    for end, side in zip(limits or (), (1, -1), strict=False):
+        if abs(x - end) <= 1e-9:  # on the limit: the decimal of the file
+            return decimal(float(f"{end / unit:.14g}"))
+        if side * (Fraction(text) - Fraction(end / unit)) < 0:
+            return decimal(end / unit)
+    return text
+
+
+def _distinct(points: Sequence[Point]) -> list[Point]:
+    """Leave out a point that rounding made equal to the one before it."""
+    return [p for p, before in zip(points, _before(points), strict=True) if p != before]
+
+
+def _before(points: Sequence[Point]) -> Iterator[Point]:
+    yield points[-1]
+    yield from points[:-1]
