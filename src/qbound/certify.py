@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import comb
 from typing import Any
 
 import numpy as np
@@ -23,13 +23,23 @@ from qbound.boundary import clearance, required_distance
 from qbound.minorant import Bound, Waves, longest_edges, second_order, to_waves
 from qbound.robot import Pair, Robot
 from qbound.robotfile import parse_robot
-from qbound.statements import Statement, asked_for_more, home_polygon, units
+from qbound.statements import (
+    Statement,
+    asked_for_more,
+    decimal,
+    home_vertices,
+    scaled_polygon,
+    units,
+)
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
 
 MOST_CELLS = 200_000
 """Cells that a search opens for one boundary before it gives up."""
+
+FIRST_LOOK = 1000
+"""Cells opened for one boundary at first: enough to see that most sets are not safe."""
 
 DEEPEST = 60
 """Cuts on top of each other before a search gives up; the checkers follow 120."""
@@ -106,11 +116,15 @@ def certify(
     """
     robot = parse_robot(tomllib.loads(text))
     cells = check.read_cells(statement)
+    _check_margin(statement["margin"])
     beyond = _beyond_limits(text, cells)
     if beyond is not None:
         return _confirmed(_content(text, statement, "refuted", **beyond), {})
-    searches = search_all(robot, statement, cells, most, bound)
+    searches = search_all(robot, statement, cells, min(most, FIRST_LOOK), bound)
     refuted = {name: found for name, found in searches.items() if found.q is not None}
+    if not refuted and any(found.left for found in searches.values()):
+        searches = search_all(robot, statement, cells, most, bound)
+        refuted = {name: found for name, found in searches.items() if found.q is not None}
     if refuted:
         witness = _deepest(robot, statement, cells, refuted)
         return _confirmed(_content(text, statement, "refuted", **witness), searches)
@@ -232,7 +246,16 @@ def _beyond_limits(text: str, cells: Sequence[Any]) -> dict[str, Any] | None:
     if worst is None:
         return None
     _, name, i, k, corners = worst
-    return {"boundary": name, "cell": i, "weights": ["1" if c == k else "0" for c in range(corners)]}
+    return {
+        "boundary": name,
+        "cell": i,
+        "weights": ["1" if c == k else "0" for c in range(corners)],
+    }
+
+
+def _check_margin(margin: str) -> None:
+    if check.number(margin) < 0:
+        raise ValueError(f"a margin of {margin}: wanted a length of 0 or more")
 
 
 # --- a witness ------------------------------------------------------------------------------------
@@ -262,7 +285,7 @@ def _depth(robot: Robot, name: str, value: float) -> float:
     if not isinstance(wall, Pair):
         return -value
     distance = required_distance(robot, wall)
-    return distance - max(0.0, distance**2 + value) ** 0.5
+    return distance - math.sqrt(max(0.0, distance**2 + value))
 
 
 def _lowest(form: Callable[[Floats], Floats], cell: Floats, start: Floats) -> Floats:
@@ -333,19 +356,16 @@ def _left(searches: dict[str, Search]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Bracket:
-    """Two scales of the polygon of home's vertices: one proved safe, one refuted.
+    """Two scales of the polygon of home's vertices, the lower proved safe, the upper refuted.
 
     Attributes
     ----------
-    safe, unsafe : str
-        Decimals, `unsafe` the larger; empty where the search did not reach one.
-    proof, refutation : Certificate or None
+    safe, unsafe : tuple of str and Certificate
+        The scale as a decimal, and its answer; ("", None) where no such scale was found.
     """
 
-    safe: str
-    unsafe: str
-    proof: Certificate | None
-    refutation: Certificate | None
+    safe: tuple[str, Certificate | None]
+    unsafe: tuple[str, Certificate | None]
 
 
 def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Bracket:
@@ -359,19 +379,29 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
         Scales above it are not tried.
     """
     robot = parse_robot(tomllib.loads(text))
-    low, high, proof, refutation = 0.0, highest, None, None
-    scale = highest
-    while proof is None or refutation is None or high - low > width:
-        answer = certify(text, home_polygon(robot, round(scale, 12)))
-        if answer.verdict == "proved":
-            low, proof = scale, answer
-        elif answer.verdict == "refuted":
-            high, refutation = scale, answer
-        else:
+    corners = home_vertices(robot)
+    low, high, tries = 0.0, 0.0, highest
+    while low < highest and (not low or not high or high - low > width) and tries > width:
+        answer = _tried(robot, scaled_polygon(robot, corners, tries))
+        if answer == "undecided":
             break
-        if low == highest or high < width:
-            break
-        scale = round((low + high) / 2, 12)
-    return Bracket(
-        f"{low:.12g}" if proof else "", f"{high:.12g}" if refutation else "", proof, refutation
-    )
+        low, high = (tries, high) if answer == "proved" else (low, tries)
+        tries = round((low + high) / 2, 12)
+    return Bracket(*(_at_scale(text, robot, corners, scale) for scale in (low, high)))
+
+
+def _tried(robot: Robot, statement: Statement) -> str:
+    """Return the answer of the search alone, which nothing has confirmed."""
+    cells = check.read_cells(statement)
+    searches = search_all(robot, statement, cells, 20 * FIRST_LOOK).values()
+    if any(found.q is not None for found in searches):
+        return "refuted"
+    return "undecided" if any(found.left for found in searches) else "proved"
+
+
+def _at_scale(
+    text: str, robot: Robot, corners: Floats, scale: float
+) -> tuple[str, Certificate | None]:
+    if not scale:
+        return "", None
+    return decimal(scale), certify(text, scaled_polygon(robot, corners, scale))

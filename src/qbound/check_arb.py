@@ -76,10 +76,10 @@ def _precision(context: Any) -> Iterator[None]:
 
 
 def _prove(robot: Table, content: Table, cells: Sequence[Any]) -> None:
-    for cell, corner in ((cell, corner) for cell in cells for corner in cell):
+    for corner in itertools.chain.from_iterable(cells):
         for name, distance in _limits(robot, corner):
             if distance < 0:
-                raise ValueError(f"cell {cell} is beyond {name}")
+                raise ValueError(f"{corner} is beyond {name}")
     for wall in robot.get("boundary", []):
         if wall.get("used", True) and _gap(robot, wall, content) != (0, True):
             waves = _waves(robot, wall, content)
@@ -114,8 +114,9 @@ def _exact(decimal: Any) -> Any:
     digits, _, exponent = str(decimal).lower().replace("_", "").partition("e")
     whole, _, decimals = digits.partition(".")
     power = int(exponent or 0) - len(decimals)
-    number = fmpq(int(whole + decimals))
-    return number * fmpq(10) ** power if abs(power) < 200 else fmpq(1) / 0
+    if abs(power) > 200:
+        raise ValueError(f"{decimal}: too large or too small")
+    return fmpq(int(whole + decimals)) * fmpq(10) ** power
 
 
 def _units(robot: Table) -> list[Any]:
@@ -195,8 +196,8 @@ def _joint(joint: Table, q: Any, unit: str) -> Any:
 
     radian = arb.pi() / 180 if unit == "deg" else arb(1)
     matrix = _translation([_exact(x) for x in joint["origin"]])
-    for axis, angle in zip("zyx", reversed(joint.get("rpy", [0, 0, 0])), strict=True):
-        fixed = [arb(int(axis == letter)) for letter in "xyz"]
+    for letter, angle in zip("zyx", reversed(joint.get("rpy", [0, 0, 0])), strict=True):
+        fixed = [arb(int(other == letter)) for other in "xyz"]
         matrix = matrix * _rotation(fixed, _exact(angle) * radian)
     axis = _direction(joint["axis"])
     if joint["type"] == "revolute":
@@ -224,7 +225,7 @@ def _waves(robot: Table, wall: Table, content: Table) -> list[Wave]:
     for j, turning in enumerate(kinds):
         weights = fourier if turning else powers
         values = {
-            k: sum(weights[k[j]][i] * values[(*k[:j], i, *k[j + 1 :])] for i in range(3))
+            k: sum((weights[k[j]][i] * values[(*k[:j], i, *k[j + 1 :])] for i in range(3)), acb(0))
             for k in values
         }
     waves = []
@@ -321,9 +322,7 @@ def _wave_bounds(
     z = wave.amplitude * (acb(0, 1) * angle).exp()
     size, turned = abs(wave.amplitude), [_dot(wave.turns, step) for step in steps]
     if j is None:
-        return [
-            z.real - z.imag * u - size * u * u / 2 for u in turned
-        ]
+        return [z.real - z.imag * u - size * u * u / 2 for u in turned]
     u = _largest(turned)
     value, slopes = z.real, [-z.imag * t for t in turned]
     series = (arb(1), u, u * u)

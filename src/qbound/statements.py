@@ -98,13 +98,18 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     }
 
 
-def outline(robot: Robot, corners: ArrayLike, margin: str = "0") -> Statement:
-    """State that the polygon of some corners, shape (m, n), in either sense, is safe."""
-    q = np.asarray(corners, dtype=float)
-    free = np.ptp(q, axis=0) > 0
-    if free.sum() == 2 and polygon.area(q[:, free]) < 0:
-        q = q[::-1]
-    return filled([points_of(robot, q)], margin)
+def anticlockwise(points: Sequence[Sequence[str]]) -> list[list[str]]:
+    """Turn a loop of two changing joints so that its inside lies on the left."""
+    q = np.array(points, dtype=float)
+    free = np.ptp(q, axis=0) > 0 if len(q) else np.zeros(0)
+    turn = free.sum() == 2 and polygon.area(q[:, free]) < 0
+    return [list(point) for point in (points[::-1] if turn else points)]
+
+
+def usual_inset(robot: Robot) -> float:
+    """Return a hundredth of the robot's reach, the sum of all its offsets: length."""
+    offsets = [np.linalg.norm(joint.origin) for joint in robot.joints]
+    return float(sum(offsets) + np.linalg.norm(robot.point(robot.tool).at)) / 100
 
 
 def home_polygon(
@@ -124,11 +129,28 @@ def home_polygon(
     ValueError
         If the home pose is in no component, or its component has no polygon of vertices.
     """
-    component = _home(robot, held)
-    loops = [_corners(loop) for loop in component.loops]
+    return scaled_polygon(robot, home_vertices(robot, held), scale, margin, held)
+
+
+def home_vertices(robot: Robot, held: Mapping[int, float] | None = None) -> Floats:
+    """Return the vertices of the home component's outline, shape (m, 2)."""
+    loops = [_corners(loop) for loop in _home(robot, held).loops]
     corners = max(loops, key=lambda loop: polygon.area(loop) if len(loop) > 2 else 0)
     if len(corners) < 3:
-        raise ValueError(f"the home component has {len(corners)} vertices: no polygon")
+        raise ValueError(f"the home component has {len(corners)} vertices, which make no polygon")
+    return corners
+
+
+def scaled_polygon(
+    robot: Robot,
+    corners: Floats,
+    scale: float,
+    margin: str = "0",
+    held: Mapping[int, float] | None = None,
+) -> Statement:
+    """State that a polygon of two joints, scaled about the centroid of its area, is safe."""
+    if not scale > 0:
+        raise ValueError(f"a scale of {scale}: wanted a number of more than 0")
     scaled = polygon.scaled(corners, scale, polygon.centroid(corners))
     return filled([points_of(robot, _with_held(robot, scaled, held))], margin)
 

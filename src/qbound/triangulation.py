@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 Place = tuple[Fraction, Fraction]
 Triangle = tuple[int, int, int]
@@ -29,7 +30,9 @@ def triangulate(loops: Sequence[Sequence[Place]]) -> list[Triangle]:
     """
     places = [place for loop in loops for place in loop]
     starts = [sum(map(len, loops[:i])) for i in range(len(loops))]
-    rings = [list(range(start, start + len(loop))) for start, loop in zip(starts, loops, strict=True)]
+    rings = [
+        list(range(start, start + len(loop))) for start, loop in zip(starts, loops, strict=True)
+    ]
     outline, *holes = sorted(rings, key=lambda ring: -_area([places[i] for i in ring]))
     for hole in sorted(holes, key=lambda ring: -max(places[i][0] for i in ring)):
         outline = _bridged(places, outline, hole, [ring for ring in rings if ring != outline])
@@ -43,8 +46,7 @@ def cross(a: Place, b: Place, c: Place) -> Fraction:
 
 def _area(places: Sequence[Place]) -> Fraction:
     origin = places[0]
-    pairs = zip(places[1:], places[2:], strict=False)
-    return sum((cross(origin, b, c) for b, c in pairs), Fraction(0))
+    return sum((cross(origin, b, c) for b, c in pairwise(places)), Fraction(0))
 
 
 def _ears(places: Sequence[Place], ring: list[int]) -> list[Triangle]:
@@ -97,5 +99,5 @@ def _meet(a: Place, b: Place, c: Place, d: Place) -> bool:
     return (
         cross(a, b, c) * cross(a, b, d) <= 0
         and cross(c, d, a) * cross(c, d, b) <= 0
-        and (cross(a, b, c), cross(a, b, d)) != (0, 0)
+        and any((cross(a, b, c), cross(a, b, d)))
     )

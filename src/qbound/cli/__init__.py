@@ -10,6 +10,8 @@ from collections.abc import Sequence
 
 from qbound import __version__
 from qbound.cli import (
+    certify,
+    check,
     claims,
     connected,
     contains,
@@ -32,6 +34,8 @@ COMMANDS = (
     traverse,
     sample,
     pave,
+    certify,
+    check,
     draw,
     explore,
     robots,
