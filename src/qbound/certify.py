@@ -11,7 +11,7 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -72,6 +72,18 @@ class Search:
 
 
 @dataclass(frozen=True, eq=False)
+class Witness:
+    """A configuration of the set, in the file's units, and what it violates by how much.
+
+    The depth is a length for a boundary, in the joint's unit of the file for a limit.
+    """
+
+    boundary: str
+    q: tuple[float, ...]
+    depth: float
+
+
+@dataclass(frozen=True, eq=False)
 class Certificate:
     """The answer about a statement.
 
@@ -85,12 +97,14 @@ class Certificate:
         What the checker says of the file; where undecided, what is left.
     searches : dict of str to Search
         By the name of the boundary.
+    witness : Witness or None
     """
 
     verdict: str
     text: str
     said: str
     searches: dict[str, Search] = field(default_factory=dict)
+    witness: Witness | None = None
 
     @property
     def leaves(self) -> int:
@@ -119,15 +133,17 @@ def certify(
     _check_margin(statement["margin"])
     beyond = _beyond_limits(text, cells)
     if beyond is not None:
-        return _confirmed(_content(text, statement, "refuted", **beyond), {})
+        answer = _confirmed(_content(text, statement, "refuted", **beyond), {})
+        return replace(answer, witness=_witness(robot, statement, cells, beyond))
     searches = search_all(robot, statement, cells, min(most, FIRST_LOOK), bound)
     refuted = {name: found for name, found in searches.items() if found.q is not None}
     if not refuted and any(found.left for found in searches.values()):
         searches = search_all(robot, statement, cells, most, bound)
         refuted = {name: found for name, found in searches.items() if found.q is not None}
     if refuted:
-        witness = _deepest(robot, statement, cells, refuted)
-        return _confirmed(_content(text, statement, "refuted", **witness), searches)
+        deepest = _deepest(robot, statement, cells, refuted)
+        answer = _confirmed(_content(text, statement, "refuted", **deepest), searches)
+        return replace(answer, witness=_witness(robot, statement, cells, deepest))
     if any(found.left for found in searches.values()):
         return Certificate("undecided", "", _left(searches), searches)
     proof = {name: list(found.trees) for name, found in searches.items()}
@@ -277,6 +293,23 @@ def _deepest(
         found.append((_depth(wider, name, value), name, result.cell, weights))
     _, name, cell, weights = max(found, key=lambda item: item[0])
     return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
+
+
+def _witness(
+    robot: Robot, statement: Statement, cells: Sequence[Any], evidence: dict[str, Any]
+) -> Witness:
+    """Read the configuration and its depth out of what the file says."""
+    corners = np.array(cells[evidence["cell"]], dtype=float)
+    q = np.array(evidence["weights"], dtype=float) @ corners
+    name, wider = evidence["boundary"], asked_for_more(robot, float(Fraction(statement["margin"])))
+    if any(wall.name == name for wall in wider.boundaries):
+        form = clearance(wider, wider.boundary(name))
+        return Witness(name, tuple(q), _depth(wider, name, float(form(q * units(robot)))))
+    joint, _, side = name.rpartition(".")
+    j = [other.name for other in robot.joints].index(joint)
+    limits = robot.joints[j].limits or (q[j], q[j])
+    end = limits[side == "upper"] / units(robot)[j]
+    return Witness(name, tuple(q), abs(float(q[j] - end)))
 
 
 def _depth(robot: Robot, name: str, value: float) -> float:

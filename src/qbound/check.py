@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import combinations, pairwise, permutations, product
 from operator import add, mul, sub
 
-BITS, MAX_FILE, MAX_WORK, MAX_JOINTS, MAX_DEPTH = 128, 2_000_000, 20_000_000, 6, 120
+BITS, MAX_FILE, MAX_WORK, MAX_JOINTS, MAX_DEPTH = 128, 2_000_000, 1_000_000, 6, 120
 DECIMAL = r"[+-]?\d[\d_]{0,40}(\.\d[\d_]{0,40})?([eE][+-]?\d{1,2})?"
 
 def demand(condition, text):
@@ -188,7 +188,7 @@ def check(text: str | bytes, pin: str | None = None) -> tuple[bool, str]:
 
 def main(arguments: list[str]) -> int:
     try:
-        text = pathlib.Path(arguments[0]).open("rb").read(MAX_FILE + 1)
+        with pathlib.Path(arguments[0]).open("rb") as file: text = file.read(MAX_FILE + 1)
         demand(len(text) <= MAX_FILE, f"more than {MAX_FILE} bytes")
         pin = arguments[2:] if "--sha256" in arguments else [
             digest(pathlib.Path(file).read_text("utf-8-sig")) for file in arguments[1:]]

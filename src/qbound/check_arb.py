@@ -57,11 +57,17 @@ def verify(text: str) -> str:
         robot = tomllib.loads(content["robot"], parse_float=str)
         if hashlib.sha256(content["robot"].encode()).hexdigest() != content["sha256"]:
             raise ValueError("the hash is not of this robot")
+        if content["schema"] != "qbound/certificate/1":
+            raise ValueError(f"{content['schema']}: an unknown schema")
+        if _exact(content["statement"]["margin"]) < 0:
+            raise ValueError("a negative margin")
         cells = _cells(content["statement"])
         if content["verdict"] == "refuted":
             _refute(robot, content, cells)
-        else:
+        elif content["verdict"] == "proved" and cells:
             _prove(robot, content, cells)
+        else:
+            raise ValueError("it says nothing")
     return str(content["verdict"])
 
 
@@ -111,6 +117,8 @@ def _exact(decimal: Any) -> Any:
     """Read a decimal as a fraction."""
     from flint import fmpq
 
+    if not isinstance(decimal, str | int):
+        raise ValueError(f"{decimal}: wanted a decimal as text")
     digits, _, exponent = str(decimal).lower().replace("_", "").partition("e")
     whole, _, decimals = digits.partition(".")
     power = int(exponent or 0) - len(decimals)

@@ -13,9 +13,10 @@ from qbound import statements
 from qbound.certify import Bracket, Certificate, bracket_scale, certify
 from qbound.check import number
 from qbound.cli.values import check_targets, held, joint_value, write_text
-from qbound.robot import Robot
+from qbound.robot import Joint, Robot
 from qbound.robotfile import parse_robot, robot_text
 
+SIDES = ("lower", "upper")
 STATUS = {"proved": 0, "refuted": 1, "undecided": 3}
 
 
@@ -57,12 +58,12 @@ def run(options: argparse.Namespace) -> int:
     robot = parse_robot(tomllib.loads(text))
     _check_length(options.margin)
     if options.largest_scale:
-        return _say_bracket(bracket_scale(text), options.output)
+        return _say_bracket(robot, bracket_scale(text), options.output)
     answer = certify(text, statement(robot, options))
     if options.output and answer.text:
         write_text(options.output, answer.text)
     if options.output != "-" or not answer.text:
-        print(f"{answer.said}\n{count(answer)}")
+        print(f"{answer.said}\n{in_words(robot, answer)}".rstrip())
     return STATUS[answer.verdict]
 
 
@@ -142,7 +143,7 @@ def _ends(robot: Robot, j: int, texts: Sequence[str]) -> Iterator[str]:
     """Keep decimals in the file's unit as they are written; convert the others."""
     if len(texts) != 2:
         raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
-    own = robot.angle_unit if robot.joints[j].kind == "revolute" else robot.length_unit
+    own = unit(robot, robot.joints[j])
     for text in texts:
         value = joint_value(robot, j, text)  # refuses what is no value
         plain = text.strip().removesuffix(own)
@@ -150,21 +151,32 @@ def _ends(robot: Robot, j: int, texts: Sequence[str]) -> Iterator[str]:
         yield plain if exact else statements.decimal(value / statements.units(robot)[j])
 
 
-def count(answer: Certificate) -> str:
-    """Say how large a proof is."""
+def in_words(robot: Robot, answer: Certificate) -> str:
+    """Say how large a proof is, or how deep a witness lies."""
+    if answer.witness is not None:
+        found = answer.witness
+        q = zip(robot.joints, found.q, strict=True)
+        places = ", ".join(f"{j.name} = {x:.9g} {unit(robot, j)}" for j, x in q)
+        limit = {f"{j.name}.{side}": unit(robot, j) for j in robot.joints for side in SIDES}
+        return f"depth {found.depth:.9g} {limit.get(found.boundary, robot.length_unit)} at {places}"
     cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
     return f"cells: {answer.leaves} ({cells})" if answer.verdict == "proved" else ""
 
 
-def _say_bracket(found: Bracket, output: str | None) -> int:
+def unit(robot: Robot, joint: Joint) -> str:
+    """Return the file's unit of a joint's values."""
+    return robot.angle_unit if joint.kind == "revolute" else robot.length_unit
+
+
+def _say_bracket(robot: Robot, found: Bracket, output: str | None) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
     unsafe, refutation = found.unsafe
     if proof is not None and proof.verdict == "proved":
-        print(f"scale {safe}: proved\n{count(proof)}")
+        print(f"scale {safe}: proved\n{in_words(robot, proof)}")
         if output:
             write_text(output, proof.text)
     if refutation is not None and refutation.verdict == "refuted":
-        print(f"scale {unsafe}: {refutation.said.splitlines()[-1]}")
+        print(f"scale {unsafe}: refuted\n{in_words(robot, refutation)}")
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

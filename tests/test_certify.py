@@ -1,0 +1,442 @@
+# ruff: noqa: E501  (tables of faults and corruptions, one a line)
+"""The prover: no false proof, every refutation confirmed, faults seen by the checkers."""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from fractions import Fraction
+from functools import cache
+from itertools import product
+
+import numpy as np
+import pytest
+from robots_at_random import box_of, robot_file
+from scipy.optimize import minimize
+
+from qbound import certify as prover
+from qbound import check, check_arb, cli, minorant, polygon, statements
+from qbound.boundary import required_distance
+from qbound.certify import bracket_scale, certify
+from qbound.region import find_region
+from qbound.robot import Pair
+from qbound.robotfile import parse_robot, robot_text
+from qbound.triangulation import triangulate
+
+ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
+"""Random robots; a longer run is written down in docs/decisions/0233."""
+
+
+@cache
+def paper_robot():
+    text, _ = robot_text("minervabot-v2")
+    return text, parse_robot(tomllib.loads(text))
+
+
+def robot_of(text):
+    return parse_robot(tomllib.loads(text))
+
+
+def margins(robot, q):
+    """Distance kept of each boundary, in length, by its definition."""
+    places = robot.frames(q)
+    found = []
+    for wall in robot.boundaries:
+        if isinstance(wall, Pair):
+            a, b = (places.position(robot.base, name, robot.base) for name in wall.points)
+            found.append(np.linalg.norm(a - b, axis=-1) - required_distance(robot, wall))
+        else:
+            height = places.position(robot.base, wall.point, robot.base) @ wall.normal
+            found.append(height - wall.offset - robot.point(wall.point).radius)
+    return np.stack(np.broadcast_arrays(*found), axis=-1)
+
+
+def smallest_margin(robot, low, high, seed):
+    """Search a box for its smallest margin: at random, then downhill from the lowest places."""
+    rng = np.random.default_rng(seed)
+    low, high = np.array(low, float), np.array(high, float)
+    units = statements.units(robot)
+    starts = low + (high - low) * rng.random((300, len(low)))
+    starts = np.vstack([starts, list(product(*zip(low, high, strict=True)))])
+
+    def value(q):
+        return margins(robot, np.asarray(q) * units).min(axis=-1)
+
+    start = starts[np.argsort(value(starts))[0]]
+    bounds = list(zip(low, high, strict=True))
+    options = {"xatol": 1e-9, "fatol": 1e-12, "maxiter": 200}
+    return float(minimize(value, start, method="Nelder-Mead", bounds=bounds, options=options).fun)
+
+
+# --- the paper's polygon --------------------------------------------------------------------------
+
+
+def test_the_scaled_polygon_is_proved_and_the_larger_one_refuted_with_its_depth():
+    text, robot = paper_robot()
+    proved = certify(text, statements.home_polygon(robot, 0.96))
+    assert proved.verdict == "proved"
+    assert proved.leaves < 400
+    refuted = certify(text, statements.home_polygon(robot, 0.97))
+    assert refuted.verdict == "refuted"
+    assert refuted.witness.boundary == "B7"
+    depth = -margins(robot, np.radians(refuted.witness.q))[[0, 1, 2, 3, 6]].min()
+    assert refuted.witness.depth == pytest.approx(depth, abs=1e-9)
+    assert 0.4 < depth < 0.41
+
+
+def test_a_certificate_is_the_same_bytes_each_time():
+    text, robot = paper_robot()
+    statement = statements.home_polygon(robot, 0.9)
+    assert certify(text, statement).text == certify(text, statement).text
+
+
+def test_the_largest_scale_is_enclosed():
+    text, robot = paper_robot()
+    found = bracket_scale(text, width=1e-5)
+    (safe, proof), (unsafe, refutation) = found.safe, found.unsafe
+    assert proof.verdict == "proved"
+    assert refutation.verdict == "refuted"
+    assert 0 < float(unsafe) - float(safe) <= 1e-5
+    vertices = statements.home_vertices(robot)
+    edges = polygon.along_edges(
+        polygon.scaled(vertices, float(safe), polygon.centroid(vertices)), np.linspace(0, 1, 200)
+    )
+    assert min(margins(robot, q)[[0, 1, 2, 3, 6]].min() for q in edges.reshape(-1, 2)) >= 0
+    assert check_arb.verify(proof.text) == "proved"
+    assert check_arb.verify(refutation.text) == "refuted"
+
+
+def test_the_region_is_proved_but_for_a_strip():
+    text, robot = paper_robot()
+    statement = statements.inner_polygon(robot, 0.5, per_arc=10)
+    answer = certify(text, statement)
+    assert answer.verdict == "proved"
+    assert check_arb.verify(answer.text) == "proved"
+    corners = np.radians(np.array(statement["points"][0], dtype=float))
+    exact = find_region(robot).home.area
+    assert 0.9 * exact < polygon.area(corners) < exact
+
+
+# --- random robots --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(ROBOTS))
+def test_no_false_answer_on_random_robots(seed):
+    """Boxes whose smallest margin is known from a search: asked for less and for a hair more."""
+    joints = 1 + seed % 3
+    text = robot_file(seed, joints)
+    robot = robot_of(text)
+    low, high = box_of(seed, joints)
+    least = smallest_margin(robot, low, high, seed)
+    for more in (-0.01, 1e-6, 0.3):
+        if least + more < 0:
+            continue
+        answer = certify(
+            text, statements.box(low, high, statements.decimal(least + more)), most=3000
+        )
+        if answer.verdict == "proved":
+            assert more < 0
+            assert check_arb.verify(answer.text) == "proved"
+        if answer.verdict == "refuted":
+            assert more > 0
+            assert check_arb.verify(answer.text) == "refuted"
+    if least < -1e-3:
+        answer = certify(text, statements.box(low, high), most=3000)
+        assert answer.verdict != "proved"
+        if answer.verdict == "refuted":
+            assert check_arb.verify(answer.text) == "refuted"
+
+
+def test_random_robots_are_proved_and_refuted_both():
+    """Or the test above could not fail."""
+    verdicts = []
+    for seed in range(12):
+        text = robot_file(seed, 1 + seed % 3)
+        low, high = box_of(seed, 1 + seed % 3)
+        verdicts.append(certify(text, statements.box(low, high), most=3000).verdict)
+    assert verdicts.count("proved") >= 2
+    assert verdicts.count("refuted") >= 2
+
+
+def test_a_path_is_proved_and_refuted():
+    text, _ = paper_robot()
+    safe = statements.path([["0", "0"], ["20", "-45"], ["-60", "-100"]])
+    assert certify(text, safe).verdict == "proved"
+    through_the_floor = statements.path([["0", "0"], ["60", "20"], ["0", "0"]])
+    answer = certify(text, through_the_floor)
+    assert answer.verdict == "refuted"
+    assert answer.witness.boundary == "B7"
+
+
+def test_a_limit_is_kept_and_a_witness_beyond_it_named():
+    text = robot_file(3, 2, "prismatic")
+    answer = certify(text, statements.box(["0", "-4.5"], ["1", "0"]))
+    assert answer.verdict == "refuted"
+    assert answer.witness.boundary == "q2.lower"
+    assert answer.witness.depth == pytest.approx(0.5)
+    assert check_arb.verify(answer.text) == "refuted"
+
+
+def test_what_is_left_is_said():
+    text, robot = paper_robot()
+    answer = certify(text, statements.home_polygon(robot, 0.96), most=3)
+    assert answer.verdict == "undecided"
+    assert "B7" in answer.said
+    assert "cells" in answer.said
+    assert not answer.text
+
+
+# --- polygons -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_polygon_with_a_hole_is_cut_into_triangles_that_tile_it(seed):
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.random(12) * 2 * np.pi)
+    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    outer = [[f"{x:.3f}", f"{y:.3f}"] for x, y in rays * rng.uniform(4, 9, (12, 1))]
+    hole = [["0.1", "0"], ["0", "-0.1"], ["-0.1", "0"], ["0", "0.1"]]
+    loops = [outer, hole] if np.diff(angles).max() < 2 else [outer]
+    statement = statements.filled(loops)
+    cells = check.read_cells(statement)
+    doubled = [(b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells]
+    wanted = sum(polygon.area(np.array(loop, float)) for loop in loops)
+    assert float(sum(doubled)) / 2 == pytest.approx(wanted)
+    assert len(cells) == sum(map(len, loops)) + 2 * (len(loops) - 1) - 2
+
+
+def test_a_polygon_that_crosses_itself_is_refused():
+    bow = [(Fraction(x), Fraction(y)) for x, y in ((0, 0), (2, 2), (2, 0), (0, 2))]
+    with pytest.raises(ValueError, match="crosses itself"):
+        triangulate([bow])
+
+
+# --- faults in the prover -------------------------------------------------------------------------
+
+
+def unconfirmed(text, statement):
+    """The file that the search alone would write; None if even the search does not believe it."""
+    robot, cells = robot_of(text), check.read_cells(statement)
+    searches = prover.search_all(robot, statement, cells, 20_000)
+    if any(found.left or found.q is not None for found in searches.values()):
+        return None
+    proof = {name: list(found.trees) for name, found in searches.items()}
+    return json.dumps(
+        {
+            "schema": "qbound/certificate/1",
+            "verdict": "proved",
+            "statement": statement,
+            "robot": text,
+            "sha256": hashlib.sha256(text.encode()).hexdigest(),
+            "proof": proof,
+        }
+    )
+
+
+BOUND, WAVES, FOREST = minorant.second_order, minorant.to_waves, prover._Forest
+
+
+def bound_with(**faults):
+    """The bound with other parts."""
+
+    def bound(waves, cells):
+        centre, steps, angles = minorant._about_centres(waves, cells)
+        value, slope = minorant._along(waves, centre, steps, angles)
+        bend = minorant._bend(waves, cells, steps, angles)
+        value, slope, bend = (
+            faults.get(name, lambda x: x)(x)
+            for name, x in (("value", value), ("slope", slope), ("bend", bend))
+        )
+        low = value[:, None] + slope - bend / 2
+        return faults.get("least", lambda x: x.min(axis=1))(low)
+
+    return bound
+
+
+def waves_with(change):
+    def to_waves(form):
+        w = WAVES(form)
+        return minorant.Waves(*change(w.amplitudes.copy(), w.turns.copy(), w.powers.copy()))
+
+    return to_waves
+
+
+def forest_with(**methods):
+    return type("Forest", (FOREST,), methods)
+
+
+def shuffled_halves(cells, edges):
+    halves = HALVED(cells, edges)
+    return halves.reshape(-1, 2, *cells.shape[1:])[:, ::-1].reshape(halves.shape)
+
+
+def third(cells, edges):
+    """Cut at a third of the edge instead of its middle."""
+    i, k = (ends[edges] for ends in np.triu_indices(cells.shape[1], 1))
+    rows, halves = np.arange(len(cells)), np.repeat(cells, 2, axis=0)
+    place = (2 * cells[rows, i] + cells[rows, k]) / 3
+    halves[2 * rows, k], halves[2 * rows + 1, i] = place, place
+    return halves
+
+
+HALVED, UNITS, WALLS, MORE = prover.halved, prover.units, prover._walls, prover.asked_for_more
+CUT, CLOSE, TREE = FOREST.cut, FOREST.close, FOREST._tree
+
+FAULTS = {
+    "half the curvature": ("bound", bound_with(bend=lambda x: x / 2)),
+    "no curvature": ("bound", bound_with(bend=lambda x: 0 * x)),
+    "the curvature's sign": ("bound", bound_with(bend=lambda x: -x)),
+    "no slope": ("bound", bound_with(slope=lambda x: 0 * x)),
+    "half the slope": ("bound", bound_with(slope=lambda x: x / 2)),
+    "the slope's sign, no curvature": ("bound", bound_with(slope=lambda x: -x, bend=lambda x: 0 * x)),
+    "a value too large": ("bound", bound_with(value=lambda x: x + 5)),
+    "the best corner": ("bound", bound_with(least=lambda x: x.max(axis=1))),
+    "the mean of the corners": ("bound", bound_with(least=lambda x: x.mean(axis=1))),
+    "the first corner only": ("bound", bound_with(least=lambda x: x[:, 0])),
+    "everything proved": ("bound", lambda waves, cells: np.ones(len(cells))),
+    "half the amplitudes": ("to_waves", waves_with(lambda a, w, e: (np.where(w.any(1), a / 2, a), w, e))),
+    "a dropped wave": ("to_waves", waves_with(lambda a, w, e: (a[:-1], w[:-1], e[:-1]))),
+    "halves exchanged": ("halved", shuffled_halves),
+    "cut at a third": ("halved", third),
+    "the next edge's letter": ("_Forest", forest_with(cut=lambda self, n, e: CUT(self, n, (e + 1) % 3))),
+    "a leaf left out": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[:-1])),
+    "a leaf too many": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root) + ".")),
+    "trees in postorder": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[::-1])),
+    "one tree for all cells": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, 0))),
+    "a root off by one": (
+        "_Forest",
+        forest_with(_tree=lambda self, root: TREE(self, (root + 1) % self.size)),
+    ),
+    "degrees off": ("units", lambda robot: UNITS(robot) * 0.97),
+    "the margin ignored": ("asked_for_more", lambda robot, length: MORE(robot, 0)),
+    "a boundary forgotten": (
+        "_walls",
+        lambda *x: {name: w for name, w in WALLS(*x).items() if name != "B7"},
+    ),
+}  # fmt: skip
+
+
+def test_there_are_twenty_faults_and_more():
+    assert len(FAULTS) >= 20
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_checkers_see_a_fault_of_the_prover(monkeypatch, name):
+    """Several statements, some true and some false: the fault must show in one at least."""
+    text, robot = paper_robot()
+    place, fault = FAULTS[name]
+    if place == "bound":
+        monkeypatch.setattr(prover, "second_order", fault)
+        monkeypatch.setattr(prover.search, "__defaults__", (fault,))
+        monkeypatch.setattr(prover.search_all, "__defaults__", (fault,))
+    else:
+        monkeypatch.setattr(prover, place, fault)
+    seen = 0
+    for scale, margin in ((0.96, "0"), (0.9, "2.4"), (0.9, "2.7"), (0.97, "0"), (1, "0")):
+        text_of_proof = unconfirmed(text, statements.home_polygon(robot, scale, margin))
+        if text_of_proof is None:
+            continue
+        try:
+            check.check(text_of_proof)
+        except (ValueError, LookupError):
+            seen += 1
+            with pytest.raises((ValueError, LookupError)):
+                check_arb.verify(text_of_proof)
+        else:
+            assert check_arb.verify(text_of_proof) == "proved"  # lucky, but right
+    assert seen
+
+
+def test_without_a_fault_the_checkers_agree_with_the_search():
+    text, robot = paper_robot()
+    assert unconfirmed(text, statements.home_polygon(robot, 0.97)) is None
+    check.check(unconfirmed(text, statements.home_polygon(robot, 0.96)))
+
+
+# --- floating point -------------------------------------------------------------------------------
+
+VERDICTS = """
+import ctypes
+from qbound import statements
+from qbound.certify import certify
+from qbound.robotfile import robot_text
+text, _ = robot_text("minervabot-v2")
+boxes = [(["-20", "-80"], ["30", "-40"], "0"), (["-60", "-140"], ["40", "20"], "0")]
+for mode in (0x000, 0x400, 0x800, 0xC00):
+    ctypes.CDLL("libm.so.6").fesetround(mode)
+    print([certify(text, statements.box(*box)).verdict for box in boxes])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the modes have other numbers elsewhere")
+def test_the_verdict_is_the_same_in_all_rounding_modes_and_with_two_threads():
+    if os.uname().machine != "x86_64":
+        pytest.skip("the modes have other numbers elsewhere")
+    found = []
+    for threads in ("1", "2"):
+        env = os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads}
+        command = [sys.executable, "-c", VERDICTS]
+        done = subprocess.run(command, env=env, check=True, capture_output=True, text=True)
+        found += done.stdout.splitlines()
+    assert found == ["['proved', 'refuted']"] * 8
+
+
+# --- z3 -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_z3_agrees_on_rational_boxes(seed):
+    """Two slides along the axes: the clearances are polynomials, which z3 decides by itself."""
+    z3 = pytest.importorskip("z3")
+    rng = np.random.default_rng(seed)
+    x, z, r = (str(v / 10) for v in rng.integers([-30, -30, 5], [30, 30, 25]))
+    text = f"""
+schema = 1
+name = "slides"
+length_unit = "cm"
+angle_unit = "deg"
+home = {{ q1 = 0, q2 = 0 }}
+tool = "t"
+joint = [
+  {{ name = "q1", type = "prismatic", parent = "0", frame = "1", origin = [0, 0, 0], axis = [1, 0, 0], limits = [-9, 9] }},
+  {{ name = "q2", type = "prismatic", parent = "1", frame = "2", origin = [0.5, 0, 0], axis = [0, 0, 1], limits = [-9, 9] }},
+]
+point = [ {{ name = "t", frame = "2", at = [0, 0, 0] }}, {{ name = "o", frame = "0", at = [{x}, 0, {z}] }} ]
+boundary = [ {{ name = "B", type = "pair", points = ["t", "o"], clearance = {r} }} ]
+"""
+    low, high = box_of(seed, 2, 20)
+    q1, q2 = z3.Reals("q1 q2")
+    square = (q1 + z3.Q(1, 2) - z3.RealVal(x)) ** 2 + (q2 - z3.RealVal(z)) ** 2
+    solver = z3.Solver()
+    for q, a, b in zip((q1, q2), low, high, strict=True):
+        solver.add(q >= z3.RealVal(a), q <= z3.RealVal(b))
+    solver.add(square < z3.RealVal(r) ** 2)
+    answer = certify(text, statements.box(low, high)).verdict
+    assert answer == {"unsat": "proved", "sat": "refuted"}[str(solver.check())]
+
+
+# --- the commands ---------------------------------------------------------------------------------
+
+
+def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
+    file = str(tmp_path / "cert.json")
+    assert cli.main(["certify", "minervabot-v2", "--scale", "0.96", "-o", file]) == 0
+    assert cli.main(["check", file, "minervabot-v2", "--arb"]) == 0
+    assert cli.main(["check", file, "minervabot-v2-mended"]) == 2
+    assert cli.main(["certify", "minervabot-v2", "--scale", "0.97", "-o", file]) == 1
+    assert "cm" in capsys.readouterr().out
+    assert cli.main(["check", file]) == 1
+    assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30", "q2=-80deg:-40deg"]) == 0
+    assert cli.main(["certify", "minervabot-v2", "--margin", "-1"]) == 2
+    assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30"]) == 2
+    assert cli.main(["certify", "minervabot-v2", "--scale", "nan"]) == 2
+    path = tmp_path / "path.csv"
+    path.write_text("q1,q2\n0,0\n20,-45\n")
+    assert cli.main(["certify", "minervabot-v2", "--path", str(path)]) == 0
+    path.write_text("q1,q2\n0,0\n20,here\n")
+    assert cli.main(["certify", "minervabot-v2", "--path", str(path)]) == 2
+    assert "line 3" in capsys.readouterr().err
+    path.write_text("0,0\n-20,-45\n20,-45\n")
+    assert cli.main(["certify", "minervabot-v2", "--polygon", str(path)]) == 0

@@ -1,0 +1,354 @@
+"""The checkers: what they enclose, what they accept, and that nothing else gets through."""
+
+import ast
+import copy
+import hashlib
+import json
+import math
+import resource
+import subprocess
+import sys
+import tomllib
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+from jsonschema import ValidationError, validate
+from robots_at_random import robot_file
+
+import qbound
+from qbound import check, check_arb, statements
+from qbound.boundary import clearance
+from qbound.certify import certify
+from qbound.robotfile import parse_robot, robot_text
+
+FILE = Path(check.__file__)
+ONE = 2**check.BITS
+
+
+@cache
+def paper_robot():
+    text, _ = robot_text("minervabot-v2")
+    return text, parse_robot(tomllib.loads(text))
+
+
+@cache
+def certificate(scale):
+    text, robot = paper_robot()
+    return certify(text, statements.home_polygon(robot, scale))
+
+
+def content(scale=0.96):
+    return json.loads(certificate(scale).text)
+
+
+def status(tmp_path, text, *options):
+    file = tmp_path / "certificate.json"
+    file.write_text(text if isinstance(text, str) else json.dumps(text), encoding="utf-8")
+    return check.main([str(file), *options])
+
+
+# --- a stranger's file ----------------------------------------------------------------------------
+
+
+def test_the_checker_is_one_page_of_the_standard_library():
+    text = FILE.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 200
+    tree = ast.walk(ast.parse(text))
+    nodes = [node for node in tree if isinstance(node, ast.Import | ast.ImportFrom)]
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+    assert {name.split(".")[0] for name in names} <= set(sys.stdlib_module_names)
+    numbers = [n.value for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Constant)]
+    assert not [number for number in numbers if isinstance(number, float)]
+
+
+def test_the_checker_runs_alone_and_knows_the_robot(tmp_path):
+    (tmp_path / "check.py").write_bytes(FILE.read_bytes())
+    (tmp_path / "cert.json").write_text(certificate(0.96).text)
+    text, _ = paper_robot()
+    (tmp_path / "robot.toml").write_text(text)
+    (tmp_path / "other.toml").write_text(text.replace("22.5", "22.6"))
+    digest = hashlib.sha256(text.encode()).hexdigest()
+
+    def run(*options):
+        command = [sys.executable, "-I", "check.py", "cert.json", *options]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+
+    done = run()
+    assert done.returncode == 0
+    assert "MinervaBotV2" in done.stdout
+    assert digest in done.stdout
+    assert "proved" in done.stdout
+    assert run("robot.toml").returncode == 0
+    assert run("--sha256", digest).returncode == 0
+    assert run("other.toml").returncode == 2
+    assert run("--sha256", "0" * 64).returncode == 2
+
+
+def test_both_checkers_accept_and_the_schema_knows_every_answer():
+    schema = json.loads((FILE.parent / "schemas/certificate.schema.json").read_text())
+    for scale, verdict in ((0.9, "proved"), (0.96, "proved"), (0.97, "refuted"), (1, "refuted")):
+        text = certificate(scale).text
+        validate(json.loads(text), schema)
+        assert check_arb.verify(text) == certificate(scale).verdict == verdict
+        assert check.check(text)[0] == (verdict == "refuted")
+    with pytest.raises(ValidationError):
+        validate(content() | {"verdict": "refuted"}, schema)
+
+
+# --- what is enclosed -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "angle", ["0", "1e-20", "0.7", "-1.5707963267948966", "3.2", "-9.9", "31.9"]
+)
+def test_a_wave_is_enclosed(angle):
+    ball = check.exp_i(check.ball(Fraction(angle)))
+    with mpmath.workprec(300):
+        x = mpmath.mpf(Fraction(angle).numerator) / Fraction(angle).denominator
+        error = mpmath.hypot(ball.x - ONE * mpmath.cos(x), ball.y - ONE * mpmath.sin(x))
+        assert error <= ball.r
+    assert ball.r <= 2**57
+
+
+def test_pi_is_enclosed():
+    with mpmath.workprec(400):
+        assert abs(mpmath.mpf(check.PI.numerator) / check.PI.denominator - mpmath.pi) < 1e-80
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_boundary_functions_of_a_robot_are_those_of_the_library_and_of_arb(seed):
+    text = robot_file(seed, joints=1 + seed % 4)
+    robot, ours = parse_robot(tomllib.loads(text)), check.Robot(text)
+    table = tomllib.loads(text, parse_float=str)
+    rng = np.random.default_rng(seed)
+    q = [Fraction(int(x), 10) for x in rng.integers(-40, 40, len(robot.joints))]
+    values = np.array(q, dtype=float) * statements.units(robot)
+    for wall in table["boundary"]:
+        [ball] = ours.bounds(ours.waves(ours.walls[wall["name"]], Fraction("0.25"))[1], [q])
+        wider = statements.asked_for_more(robot, 0.25)
+        wanted = float(clearance(wider, wider.boundary(wall["name"]))(values))
+        assert ball.x / ONE == pytest.approx(wanted, abs=1e-9)
+        assert ball.r < 2**80
+        beta = check_arb._value(table, wall, {"statement": {"margin": "0.25"}})
+        units = check_arb._units(table)
+        from flint import arb, fmpq
+
+        exact = [arb(fmpq(x.numerator, x.denominator)) * u for x, u in zip(q, units, strict=True)]
+        assert float(beta(exact)) == pytest.approx(wanted, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_bound_is_below_the_boundary_function(seed):
+    """At random points of random simplices; at the corners it is close for small ones."""
+    joints = 1 + seed % 3
+    text = robot_file(seed, joints)
+    robot, ours = parse_robot(tomllib.loads(text)), check.Robot(text)
+    rng = np.random.default_rng(seed)
+    for size in (0.1, 2, 20):
+        middle = rng.integers(-30, 30, joints)
+        corners = [
+            tuple(Fraction(int(x * 10), 10) for x in middle + size * rng.normal(size=joints))
+            for _ in range(joints + 1)
+        ]
+        weights = rng.dirichlet(np.ones(joints + 1), 200)
+        q = weights @ np.array(corners, dtype=float) * statements.units(robot)
+        for wall in robot.boundaries:
+            low = ours.bounds(ours.waves(ours.walls[wall.name], Fraction(0))[1], corners)
+            least = min(ball.x for ball in low) / ONE
+            assert least <= clearance(robot, wall)(q).min() + 1e-9
+
+
+# --- corrupted certificates -----------------------------------------------------------------------
+
+
+def put(place, value):
+    def change(data):
+        *steps, last = place
+        for step in steps:
+            data = data[step]
+        data[last] = value(data[last]) if callable(value) else value
+
+    return change
+
+
+def drop(*place):
+    def change(data):
+        *steps, last = place
+        for step in steps:
+            data = data[step]
+        del data[last]
+
+    return change
+
+
+def rehashed(change):
+    """A change of the robot, with the hash made to fit."""
+
+    def both(data):
+        data["robot"] = change(data["robot"])
+        data["sha256"] = hashlib.sha256(data["robot"].encode()).hexdigest()
+
+    return both
+
+
+LOOP = ("statement", "points", 0)
+CORRUPTED = {
+    "a corner moved outwards": put((*LOOP, 1, 1), "-165"),
+    "a corner that is a number": put((*LOOP, 1, 1), -159.6),
+    "a corner that is NaN": put((*LOOP, 1, 1), "NaN"),
+    "a corner that is infinite": put((*LOOP, 1, 1), "1e999"),
+    "a corner with a huge exponent": put((*LOOP, 1, 1), "1e-99999999"),
+    "a corner of one value": put((*LOOP, 1), ["1"]),
+    "a corner left out": drop(*LOOP, 2),
+    "a loop walked backwards": put(LOOP, lambda loop: loop[::-1]),
+    "no corners": put(LOOP, []),
+    "a triangle left out": drop("statement", "triangles", 0),
+    "a triangle twice": put(("statement", "triangles"), lambda t: [*t, t[0]]),
+    "triangles that overlap": put(("statement", "triangles", 1), [5, 0, 2]),
+    "a triangle turned over": put(("statement", "triangles", 0), lambda t: t[::-1]),
+    "a triangle of a corner that is not there": put(("statement", "triangles", 0, 0), 99),
+    "another kind of set": put(("statement", "set"), "disc"),
+    "a larger margin": put(("statement", "margin"), "2.5"),
+    "a negative margin": put(("statement", "margin"), "-1"),
+    "a leaf left out": put(("proof", "B7", 1), lambda tree: tree[:-1]),
+    "a leaf too many": put(("proof", "B7", 1), lambda tree: tree + "."),
+    "a tree cut short": put(("proof", "B1", 1), "."),
+    "another edge": put(("proof", "B7", 1), lambda tree: "bca"["abc".index(tree[0])] + tree[1:]),
+    "an edge that a triangle has not": put(("proof", "B7", 1), lambda tree: "d" + tree[1:]),
+    "two trees exchanged": put(("proof", "B7"), lambda trees: trees[::-1]),
+    "a tree left out": drop("proof", "B7", 0),
+    "a boundary left out": drop("proof", "B7"),
+    "no proof": drop("proof"),
+    "another hash": put(("sha256",), "0" * 64),
+    "another robot": put(("robot",), lambda text: text.replace("22.5", "22.4")),
+    "a wall moved": rehashed(lambda text: text.replace("offset = 11.32", "offset = 13.32")),
+    "a longer arm": rehashed(lambda text: text.replace("[25.0, 0.0", "[27.0, 0.0")),
+    "more clearance": rehashed(lambda text: text.replace("clearance = 0.1", "clearance = 3.1")),
+    "a robot of NaN": rehashed(lambda text: text.replace("11.32", "nan")),
+    "a limit within": rehashed(
+        lambda text: text.replace('name = "q1"', 'name = "q1"\nlimits = [-90, 90]')
+    ),
+    "two boundaries of a name": rehashed(lambda text: text.replace('"B2"', '"B1"')),
+    "another schema": put(("schema",), "qbound/certificate/2"),
+    "the other verdict": put(("verdict",), "refuted"),
+    "no verdict": put(("verdict",), "maybe"),
+}
+
+
+def test_there_are_twenty_corruptions_and_more():
+    assert len(CORRUPTED) >= 20
+
+
+@pytest.mark.parametrize("name", CORRUPTED)
+def test_a_corrupted_certificate_proves_nothing(tmp_path, name):
+    data = copy.deepcopy(content())
+    CORRUPTED[name](data)
+    assert data != content()
+    assert status(tmp_path, data) == 2
+    with pytest.raises((ValueError, LookupError, TypeError, ArithmeticError)):
+        check_arb.verify(json.dumps(data))
+
+
+REFUTED = {
+    "a place that is safe": put(("weights",), ["0.4", "0.3", "0.3"]),
+    "weights that sum to 2": put(("weights",), lambda w: [w[0], w[1], str(Fraction(w[2]) + 1)]),
+    "a negative weight": put(("weights",), ["2", "-1", "0"]),
+    "another boundary": put(("boundary",), "B1"),
+    "a boundary that is not used": put(("boundary",), "B5"),
+    "a cell that is not there": put(("cell",), 9),
+}
+
+
+@pytest.mark.parametrize("name", REFUTED)
+def test_a_corrupted_witness_refutes_nothing(tmp_path, name):
+    data = copy.deepcopy(content(0.97))
+    REFUTED[name](data)
+    assert status(tmp_path, data) == 2
+    with pytest.raises((ValueError, LookupError)):
+        check_arb.verify(json.dumps(data))
+
+
+def test_a_lone_point_is_no_path(tmp_path):
+    text, _ = paper_robot()
+    data = json.loads(certify(text, statements.path([["0", "0"], ["1", "1"]])).text)
+    data["statement"]["points"].append([["0", "-170"]])
+    assert status(tmp_path, data) == 2
+
+
+# --- hostile files --------------------------------------------------------------------------------
+
+
+def deep_tree():
+    data = copy.deepcopy(content())
+    data["proof"]["B7"] = ["a" * 500_000] * 4
+    return json.dumps(data)
+
+
+def many_walls():
+    """Six joints and thousands of boundaries that turn with all of them."""
+    text = robot_file(1, 6, "revolute")
+    wall = '[[boundary]]\nname = "w{}"\ntype = "pair"\npoints = ["tip", "base"]\nclearance = 1\n'
+    text += "".join(wall.format(i) for i in range(10_000))
+    statement = statements.box(["0"] * 6, ["1"] * 6)
+    proof = {name: ["."] * 720 for name in ("gap", "floor", "other")}
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return json.dumps({"schema": "qbound/certificate/1", "verdict": "proved", "robot": text,
+                       "sha256": digest, "statement": statement, "proof": proof})  # fmt: skip
+
+
+HOSTILE = {
+    "not JSON": lambda: "hello",
+    "an empty file": lambda: "",
+    "a list": lambda: "[]",
+    "no text at all": lambda: "\x00" * 1000,
+    "deep lists": lambda: "[" * 1_000_000,
+    "deep tables": lambda: '{"a":' * 300_000,
+    "deep TOML": lambda: json.dumps(content() | {"robot": "a = " + "[" * 100_000}),
+    "a huge file": lambda: " " * 30_000_000,
+    "a long integer": lambda: (
+        json.dumps(content())
+        .replace('"cell"', "0")
+        .replace("[5, 0, 1]", "[" + "9" * 100_000 + ", 0, 1]")
+    ),
+    "a long decimal": lambda: json.dumps(content()).replace("-159.", "-159." + "1" * 100_000),
+    "a huge exponent in the robot": lambda: json.dumps(
+        content() | {"robot": content()["robot"].replace("22.5", "1e999999999")}
+    ),
+    "NaN": lambda: json.dumps(content()).replace('"margin": "0"', '"margin": NaN'),
+    "a key twice": lambda: json.dumps(content())[:-1] + ', "verdict": "proved"}',
+    "deep trees": deep_tree,
+    "many walls": many_walls,
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_is_refused_in_bounded_time_and_memory(tmp_path, name):
+    file = tmp_path / "hostile.json"
+    file.write_text(HOSTILE[name](), encoding="utf-8")
+
+    def limits():
+        resource.setrlimit(resource.RLIMIT_AS, (1_000_000_000, 1_000_000_000))
+        resource.setrlimit(resource.RLIMIT_CPU, (120, 120))
+
+    command = [sys.executable, str(FILE), str(file)]
+    done = subprocess.run(command, preexec_fn=limits, capture_output=True, text=True, check=False)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "not proved" in done.stdout
+    assert not done.stderr
+
+
+def test_what_a_file_says_cannot_steer_the_terminal(tmp_path, capsys):
+    text = paper_robot()[0].replace('"MinervaBotV2"', '"\\u001b[2J proved"')
+    statement = statements.path([["0", "0"], ["1", "1"]])
+    assert status(tmp_path, certify(text, statement).text) == 0
+    assert "\x1b" not in capsys.readouterr().out
+
+
+def test_versions_of_the_package_and_of_the_file_do_not_mix():
+    assert qbound.__version__ not in certificate(0.96).text
+    assert math.isclose(float(content()["statement"]["margin"]), 0)
