@@ -233,6 +233,21 @@ def halved(cells: Floats, edges: NDArray[Any]) -> Floats:
     return halves
 
 
+def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
+    """Return the simplices on which a proof rests, shape (N, k, n), from its cells and trees."""
+    found = []
+    for cell, tree in zip(cells, trees, strict=True):
+        todo = [cell]
+        for letter in tree:
+            top = todo.pop()
+            if letter == ".":
+                found.append(top)
+            else:
+                edge = np.array([ord(letter) - ord("a")])
+                todo += list(halved(top[None], edge)[::-1])
+    return np.array(found)
+
+
 # --- what is asked for ----------------------------------------------------------------------------
 
 
