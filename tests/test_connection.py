@@ -111,6 +111,18 @@ def test_poses_outside_the_limits_are_refused():
         connection(held, [-3.2, 0], [1.5, 0])
 
 
+@pytest.mark.parametrize("pose", [[0.0, np.nan], [np.inf, 0.0], [0.0], [0.0, 0.0, 0.0]])
+def test_what_is_no_configuration_is_refused(pose):
+    with pytest.raises(ValueError, match="no configuration of 2 joints"):
+        connection(PAPER, [0.0, 0.0], pose)
+
+
+def test_an_angle_of_astronomical_size_is_never_decided_wrongly():
+    assert connection(PAPER, [0.0, 0.0], [1e300, 0.0], most=500).answer == "undecided"
+    turns = 2 * np.pi * 1000  # as a double: 1000 turns and a hair
+    assert connection(PAPER, [0.0, 0.0], [turns, 0.0]).answer == "connected"
+
+
 def test_the_wall_alone_separates_by_an_independent_flood_fill():
     found = connection(PAPER, CENTRES[0], CENTRES[1])
     n = 1024

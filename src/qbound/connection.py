@@ -92,8 +92,12 @@ def connection(
     Raises
     ------
     ValueError
-        If a configuration lies outside the limits.
+        If a configuration is none, or lies outside the limits.
     """
+    for q in (one, other):
+        values = np.asarray(q, dtype=float)
+        if values.shape != (len(problem.kinds),) or not np.isfinite(values).all():
+            raise ValueError(f"{q} is no configuration of {len(problem.kinds)} joints")
     paving = start(problem)
     while True:
         bad = tuple(k for k, q in enumerate((one, other)) if _words(paving, q) == {"infeasible"})

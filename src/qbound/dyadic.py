@@ -1,13 +1,17 @@
-"""Dyadic cells of joint space, and bounds of forms over thousands of them that no rounding spoils.
+r"""Dyadic cells of joint space, and bounds of forms over thousands of them that no rounding spoils.
 
 At a cell's centre m, for any displacement d within it::
 
-    |beta(m + d) - beta(m) - grad beta(m) . d| <= 1/2 sum_jk M_jk |d_j| |d_k|
+.. math::
 
-with M_jk a bound of the second derivative over the whole range. The sums are NumPy's doubles.
-Cosines and sines are not: NumPy promises nothing about their last digits, so each is computed as a
-ball, once for each of the few coordinates that the centres have, and rounded. What is left are
-products and sums of doubles; their rounding is bounded beforehand (`Room.slack`) and taken off.
+   |\beta(m + d) - \beta(m) - \nabla\beta(m) \cdot d|
+   \le \tfrac12 \sum_{jk} M_{jk} |d_j| |d_k|,
+
+with :math:`M_{jk}` a bound of the second derivative over the whole range. The sums are NumPy's
+doubles. Cosines and sines are not: NumPy promises nothing about their last digits, so each is
+computed as a ball, once for each of the few coordinates that the centres have, and rounded. What is
+left are products and sums of doubles; their rounding is bounded beforehand (`Room.slack`) and taken
+off.
 """
 
 from __future__ import annotations

@@ -117,7 +117,8 @@ class Paving:
             low, high = self._places(j, value, int(cells.bits[j]))
             index, size = cells.index[:, j], 2 ** int(cells.bits[j])
             if self.problem.ranges[j] is None:
-                inside &= np.isin(index, np.arange(low, high + 1) % size)
+                near = range(low, min(high, low + size) + 1)  # a huge angle may lie anywhere
+                inside &= np.isin(index, [k % size for k in near])
             else:
                 inside &= (index >= low) & (index <= high)
         return inside
@@ -129,8 +130,10 @@ class Paving:
         with precision(BITS):
             low, high = self.room.ends[joint]
             place = (arb(value) - low) / (high - low) * 2**bits
-            first, last = place.lower().ceil() - 1, place.upper().floor()
-            return int(first.unique_fmpz()), int(last.unique_fmpz())
+            ends = place.lower().ceil().unique_fmpz(), place.upper().floor().unique_fmpz()
+        if None in ends:  # so large that rounding spans whole turns: it may lie anywhere
+            return 0, 2**bits - 1
+        return int(ends[0]) - 1, int(ends[1])
 
 
 def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Paving:
