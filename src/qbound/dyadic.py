@@ -1,6 +1,6 @@
 r"""Dyadic cells of joint space, and bounds of forms over thousands of them that no rounding spoils.
 
-At a cell's centre m, for any displacement d within it::
+At a cell's centre m, for any displacement d within it,
 
 .. math::
 
