@@ -26,9 +26,11 @@ from qbound.claims.walks import (
     other_posture,
     scaled,
     simple,
+    stretched,
     symmetric,
     tool_form,
     walk,
+    workspace,
 )
 from qbound.region import solve, state
 from qbound.robot import Robot, joint_symbols
@@ -452,6 +454,34 @@ def asymmetry_from_nonlinearity() -> Finding:
         " arm and"
         f" {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {MEETS:g}"
         f" cm.",
+    )
+
+
+@entry(
+    "F-10.4", "figure", "Figure 10, caption and text",
+    "The paths of Figures 8 and 9 bound the feasible geometric regions.",
+    test="test_statements.py::test_the_image_of_the_boundary_encloses_a_part_of_the_workspace",
+    chapter=f"{SPACE}#what-the-path-does-not-enclose",
+    mended="They and the image of the singular line together bound the geometric workspace.",
+)  # fmt: skip
+def paths_bound_the_workspace() -> Finding:
+    import shapely
+
+    areas, lines = workspace(), [walk(order).tool[:, PLANE] for order in (RIGHT, LEFT)]
+    closed = shapely.node(shapely.MultiLineString([[*line, line[0]] for line in lines]))
+    within = shapely.union_all(shapely.polygonize([closed]))
+    pose = np.array([polygon.centroid(vertices())[0], stretched()])
+    out = float(within.distance(shapely.Point(tool_form()(pose)[PLANE])))
+    rest = areas["enclosed"] + areas["twice"] - areas["union"]
+    require(abs(rest) < 1e-3, "what the path round the region leaves out both postures reach")
+    require(bool(paper_rule.feasible(robot(), pose)), "the witness is feasible")
+    return Finding(
+        judge(holds=out == 0),
+        f"The feasible pose q1 = {np.degrees(pose[0]):.4f}°, q2 = {np.degrees(pose[1]):.4f}° puts"
+        " the"
+        f" tool {out:.2f} cm outside of all that the two paths, closed, enclose. The path round the"
+        f" whole region encloses {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are"
+        f" reached.",
     )
 
 
