@@ -45,6 +45,7 @@ extensions = [
     "book_pages",
     "ledger_links",
     "explorer_pages",
+    "recorded_numbers",
 ]
 exclude_patterns = ["_build", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]
