@@ -1,5 +1,6 @@
 """The built pages, read as text: complete, self-contained, and well formed."""
 
+import json
 import os
 import re
 import shutil
@@ -260,3 +261,64 @@ def test_the_page_of_the_command_is_its_own_help(tmp_path):
 def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
     with pytest.raises(AssertionError, match="unknown verdict 'plausible'"):
         build_trial(tmp_path, "", TRIAL_INDEX.replace("misprint", "plausible"))
+
+
+# --- numbers on pages that are no chapters ---------------------------------------------------------
+
+
+def trial_with_result(folder: Path, wanted: str) -> str:
+    """Build a page that asks for a recorded number; return its text."""
+    recorded = {"id": "vertex.1", "value": [-94.0734, 3.0], "unit": "deg"}
+    pure = {"id": "largest_scale", "value": 0.96403, "unit": "1"}
+    (folder / "results").mkdir()
+    content = json.dumps({"results": [recorded, pure]})
+    (folder / "results" / "region.json").write_text(content, encoding="utf-8")
+    html = build_trial(folder, "", TRIAL_INDEX + f"\nIt is {{result}}`{wanted}`.\n")
+    return BeautifulSoup((html / "index.html").read_text("utf-8"), "html.parser").get_text()
+
+
+def test_a_page_writes_a_recorded_number_rounded_and_with_its_unit(tmp_path):
+    assert "It is −94.1°." in trial_with_result(tmp_path, "region:vertex.1[0] | .1f")
+
+
+def test_a_pure_number_has_no_unit(tmp_path):
+    assert "It is 0.964." in trial_with_result(tmp_path, "region:largest_scale | .3f")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "complaint"),
+    [
+        ("region:smallest_scale | .3f", "region.json has no smallest_scale"),
+        ("regions:largest_scale | .3f", "No such file"),
+        ("largest_scale", "write FILE:ID"),
+        ("region:vertex.1 | .3f", "unsupported format"),
+        ("region:vertex.1[2] | .3f", "index out of range"),
+    ],
+)
+def test_a_number_that_is_not_recorded_stops_the_build(tmp_path, wanted, complaint):
+    with pytest.raises(AssertionError, match=complaint):
+        trial_with_result(tmp_path, wanted)
+
+
+@pytest.mark.parametrize("page", ["index.md"])
+def test_the_front_page_types_no_number_by_hand(page):
+    """What it states of the paper is a recorded result; what is left names versions and objects."""
+    text = (BOOK / page).read_text(encoding="utf-8")
+    text = re.sub(
+        r"(?s)```\{toctree\}.*?```|```.*?```|`[^`]*`|\]\([^)]*\)|^:.*$|(?m:^:.*$)", " ", text
+    )
+    text = re.sub(r"\b(?:Theorem|Tables?|Python)\s+[\d.]+|\bN\d", " ", text)
+    assert re.findall(r"\d+(?:\.\d+)?", text) == []
+
+
+def test_the_picture_of_the_front_page_is_what_its_script_draws(tmp_path, monkeypatch):
+    """Each number of the drawing, to a tenth of a point: other systems round differently."""
+    monkeypatch.syspath_prepend(str(BOOK))
+    import cover
+
+    cover.main(tmp_path / "cover.svg")
+    drawn, committed = (f.read_text("utf-8") for f in (tmp_path / "cover.svg", cover.TARGET))
+    number = r"-?\d+\.\d+"
+    assert re.sub(number, "#", drawn) == re.sub(number, "#", committed)
+    mine, theirs = ([float(x) for x in re.findall(number, t)] for t in (drawn, committed))
+    assert mine == pytest.approx(theirs, abs=0.1)

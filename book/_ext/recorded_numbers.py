@@ -1,8 +1,9 @@
-"""The role ``{result}`FILE:ID | FORMAT```: a number that a chapter has recorded, in a page of text.
+"""The role ``{result}``: a number that a chapter has recorded, in a page of text.
 
-``{result}`region:largest_scale.area | .3f``` is 0.964, ``{result}`region:vertex.1[0] | .1f``` the first
-entry of a vector, with its unit: -94.1°. The chapters have written results/ when pages are built;
-a name that is not there, or a format that does not fit the value, stops the build.
+``{result}`region:largest_scale.area | .3f``` writes that entry of results/region.json as 0.964, and
+``{result}`region:vertex.1[0] | .1f``` the first entry of a vector with its unit, −94.1°. The
+chapters have written results/ when pages are built; a name that is not there, or a format that does
+not fit its value, stops the build.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxRole
 from sphinx.util.typing import ExtensionMetadata
 
-WANTED = re.compile(r"(?P<file>\w+):(?P<id>[^\[|]+?)(?:\[(?P<index>\d+)\])?(?:\s*\|\s*(?P<format>\S+))?")
+WANTED = re.compile(
+    r"(?P<file>\w+):(?P<id>[^\[|]+?)(?:\[(?P<index>\d+)\])?(?:\s*\|\s*(?P<format>\S+))?"
+)
 UNITS = {"1": "", "deg": "°", "rad^2": "\u00a0rad²", "deg^2": "\u00a0deg²", "cm^2": "\u00a0cm²"}
 
 
@@ -28,7 +31,7 @@ class ResultRole(SphinxRole):
         folder = Path(self.env.app.confdir).parent / "results"
         try:
             text = recorded(self.text, folder)
-        except (LookupError, OSError, ValueError) as error:
+        except (LookupError, OSError, TypeError, ValueError) as error:
             problem = f"no result {self.text!r}: {error}"
             return [], [self.inliner.reporter.error(problem, line=self.lineno)]
         self.env.note_dependency(str(folder / f"{self.text.partition(':')[0]}.json"))
