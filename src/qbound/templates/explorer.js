@@ -139,9 +139,10 @@ function jointText(j, value) {
   return joint.kind === "revolute" ? `${number(value / DEGREE, 1)}°` : length(value);
 }
 
-function betweenText(name) {
-  const wall = robot.boundaries.find((one) => one.name === name);
-  if (!wall) return `limit of ${robot.joints[robot.limits.find((one) => one.name === name).joint].name}`;
+function betweenText(row) {
+  const limit = robot.limits[row - robot.boundaries.length]; // they follow the boundaries
+  if (limit) return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
+  const wall = robot.boundaries[row];
   const points = wall.points.map((i) => robot.points[i].name);
   return wall.kind === "pair" ? `points ${points[0]} and ${points[1]}` : `point ${points[0]} and a wall`;
 }
@@ -338,7 +339,8 @@ function showTask() {
   const det = determinant(slice.map, now);
   if (Math.sign(det) !== state.sides) state.crossed = true;
   const gap = Math.max(...now.map((value, k) => Math.abs(shortWay(k, state.mirror[k] - value))));
-  for (const line of joints.singular) line.classList.toggle("lit", Math.abs(det) <= NEAR_SINGULAR * slice.largest);
+  const bent = (i) => Math.abs(shortWay(1, now[1] - slice.lines[i])) > 45 * DEGREE;
+  joints.singular.forEach((line, i) => line.classList.toggle("lit", Math.abs(det) <= NEAR_SINGULAR * slice.largest && !bent(i)));
   const text = taskText(det, gap < 6 * DEGREE);
   if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
 }
@@ -364,6 +366,7 @@ function walkStops() {
 
 function play(stops, from, each) {
   stop();
+  byId("plane").scrollIntoView({ block: "nearest", behavior: calm.matches ? "auto" : "smooth" });
   state.path = stops;
   byId("play").setAttribute("aria-pressed", "true");
   byId("play").textContent = "Pause";
@@ -454,10 +457,10 @@ function hashOf() {
 }
 
 function remember() {
+  byId("link").value = window.location.href.split("#")[0] + hashOf();
+  byId("full-page").href = byId("link").value;
   window.clearTimeout(remember.timer);
   remember.timer = window.setTimeout(() => {
-    byId("link").value = window.location.href.split("#")[0] + hashOf();
-    byId("full-page").href = byId("link").value;
     if (window.location.hash !== hashOf()) window.history.replaceState(null, "", hashOf());
   }, 250);
 }
@@ -540,9 +543,9 @@ function setJoint(j, value) {
 }
 
 function buildMargins() {
-  const rows = margins(robot, state.q).map((one) => {
+  const rows = margins(robot, state.q).map((one, i) => {
     const name = element("th", { scope: "row" }, one.name);
-    const row = element("tr", {}, name, element("td", {}, betweenText(one.name) + (one.used ? "" : ", not used")),
+    const row = element("tr", {}, name, element("td", {}, betweenText(i) + (one.used ? "" : ", not used")),
       element("td", { className: "number" }));
     row.classList.toggle("unused", !one.used);
     row.addEventListener("pointerenter", () => { state.hover = one.name; refresh(); });
