@@ -10,7 +10,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browsers import refuse_remote, settle
 from numpy.testing import assert_allclose
-from test_explorer import ROBOTS, out_of_plane
+from test_explorer import ROBOTS, SPATIAL
 
 from qbound import find_region, load_robot
 from qbound.explorer import explorer_page
@@ -36,8 +36,7 @@ def files(tmp_path_factory):
     """Write an explorer for every robot once."""
     folder = tmp_path_factory.mktemp("explorers")
     written = {}
-    robots = ROBOTS | {"out of the plane": lambda: (out_of_plane(), {})}
-    for i, (name, make) in enumerate(robots.items()):
+    for i, (name, make) in enumerate((ROBOTS | SPATIAL).items()):
         robot, held = make()
         written[name] = folder / f"{i}.html"
         page = explorer_page(robot, find_region(robot, held), held=held)
