@@ -16,6 +16,7 @@ from qbound import find_region, load_robot
 from qbound.explorer import explorer_page
 from qbound.region import violated
 
+WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
@@ -36,7 +37,7 @@ def files(tmp_path_factory):
     """Write an explorer for every robot once."""
     folder = tmp_path_factory.mktemp("explorers")
     written = {}
-    for i, (name, make) in enumerate((ROBOTS | SPATIAL).items()):
+    for i, (name, make) in enumerate((ROBOTS | SPATIAL | WALLS).items()):
         robot, held = make()
         written[name] = folder / f"{i}.html"
         page = explorer_page(robot, find_region(robot, held), held=held)
@@ -401,21 +402,27 @@ def test_words_in_the_pictures_stand_out_from_their_ground(open_explorer, theme)
     assert min(ratios) >= 4.5
 
 
+@pytest.mark.parametrize("name", ["paper", "many walls"])
 @pytest.mark.parametrize("width", WIDTHS)
-def test_names_of_arcs_and_vertices_do_not_cover_each_other(open_explorer, width):
-    page = open_explorer(viewport={"width": WIDTHS[width], "height": 850})
+def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer, width, name):
+    page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
+    for picture in ("#joints text", "#plane .walls text"):
+        assert covered(page, picture) == []
+
+
+def covered(page, picture):
     boxes = page.evaluate(
-        """() => [...document.querySelectorAll("#joints text")].map((t) => {
+        """(picture) => [...document.querySelectorAll(picture)].map((t) => {
             const { x, y, width, height } = t.getBBox();
-            return [t.textContent, x, y + 2, x + width, y + height - 2]; })"""
+            return [t.textContent, x, y + 2, x + width, y + height - 2]; })""",
+        picture,
     )
-    pairs = [
+    return [
         (a[0], b[0])
         for i, a in enumerate(boxes)
         for b in boxes[i + 1 :]
         if min(a[3], b[3]) > max(a[1], b[1]) and min(a[4], b[4]) > max(a[2], b[2])
     ]
-    assert pairs == []
 
 
 def test_without_scripts_the_page_says_what_it_would_show(browser, files):

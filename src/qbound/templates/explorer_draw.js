@@ -159,7 +159,7 @@ function nameArcs(drawn, slice) {
     if (size > 26 && (!longest.has(key) || longest.get(key).size < size)) longest.set(key, { arc, points, size });
   }
   const group = layer(drawn, "arc-names", false);
-  return [...longest.values()].map(({ arc, points }) => {
+  const names = [...longest.values()].sort((a, b) => b.size - a.size).map(({ arc, points }) => {
     const [[x, y], [nx, ny]] = middleOf(points);
     const half = 4 * arc.boundary.length; // of the word's width, about
     const { left, top, right, bottom } = drawn.box;
@@ -173,6 +173,8 @@ function nameArcs(drawn, slice) {
     group.append(text);
     return text;
   });
+  thin(names, drawn.width);
+  return names;
 }
 
 function between(value, low, high) {
@@ -324,17 +326,21 @@ function drawWalls(robot, drawn, state) {
     if (ends.length === 2) group.append(wallLabel(wall, ends, drawn));
     return line;
   });
-  stack([...group.querySelectorAll("text")]);
+  thin(group.querySelectorAll("text"), drawn.width);
 }
 
-/** Names at one place are written above each other. */
-function stack(names) {
-  const place = (name) => [Number(name.getAttribute("x")), Number(name.getAttribute("y"))];
-  names.forEach((name, i) => {
-    const taken = names.slice(0, i).filter((other) => (
-      Math.abs(place(other)[0] - place(name)[0]) < 40 && Math.abs(place(other)[1] - place(name)[1]) < 14));
-    if (taken.length > 0) name.setAttribute("y", place(name)[1] + (place(name)[1] < 40 ? 16 : -16) * taken.length);
-  });
+/** Keep names inside the picture, and leave out one that would cover another. */
+function thin(names, width) {
+  const kept = [];
+  for (const name of names) {
+    const { x, width: size } = name.getBBox();
+    name.setAttribute("x", Number(name.getAttribute("x")) + Math.max(0, 4 - x) - Math.max(0, x + size + 4 - width));
+    const box = name.getBBox();
+    const covers = (other) => Math.abs(box.x + box.width / 2 - other.x - other.width / 2) < (box.width + other.width) / 2
+      && Math.abs(box.y - other.y) < box.height - 2;
+    if (kept.some(covers)) name.remove();
+    else kept.push(box);
+  }
 }
 
 /** Write a wall's name where its line leaves the picture on the right, or at the top. */
