@@ -263,7 +263,7 @@ def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
         build_trial(tmp_path, "", TRIAL_INDEX.replace("misprint", "plausible"))
 
 
-# --- numbers on pages that are no chapters ---------------------------------------------------------
+# --- numbers on pages that are no chapters --------------------------------------------------------
 
 
 def trial_with_result(folder: Path, wanted: str) -> str:
