@@ -336,11 +336,14 @@ def pdf() -> int:
         make_book()
     build_pages("singlehtml")
     target, page = BUILD / "qbound.pdf", BUILD / "singlehtml" / "index.html"
+    target.unlink(missing_ok=True)
     options = ["--headless", "--disable-gpu", "--no-pdf-header-footer"]
     options += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # as in CI
     patience = ["--virtual-time-budget=600000", "--generate-pdf-document-outline"]
     command = [browser, *options, *patience, f"--print-to-pdf={target}", page.as_uri()]
     must("Printing", command, quiet=True)
+    if not target.exists():  # a browser may fail and say that all is well
+        raise Failed("The browser has printed nothing.")
     say(f"The PDF: {target.as_uri()}")
     return 0
 

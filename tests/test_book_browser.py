@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from browsers import refuse_remote, settle
 
 HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
@@ -201,3 +202,39 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     assert after != before
     inside.locator("#task-go").click()
     inside.get_by_text("There. On the way you crossed").wait_for(timeout=20_000)
+
+
+SAMPLE = [  # one page of each kind, and the longest
+    "index.html",
+    "explore.html",
+    "chapters/02_vector_labelling.html",
+    "chapters/06_theorem_2.html",
+    "chapters/10_every_region.html",
+    "chapters/15_what_holds.html",
+    "notation.html",
+    "traceability.html",
+    "commands.html",
+    "cite.html",
+    "generated/qbound.circle.html",
+]
+
+
+@pytest.mark.parametrize("theme", THEMES)
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("name", SAMPLE)
+def test_a_page_breaks_no_rule_of_accessibility(browser, name, width, theme):
+    size = {"width": WIDTHS[width], "height": 900}
+    page = browser.new_page(viewport=size, color_scheme=theme, reduced_motion="reduce")
+    open_page(page, name)
+    found = Axe().run(page).response["violations"]
+    page.close()
+    assert [(v["id"], [node["html"][:120] for node in v["nodes"]]) for v in found] == []
+
+
+def test_a_solution_is_folded_until_a_reader_asks(page):
+    open_page(page, "chapters/06_theorem_2.html")
+    solution = page.locator("#exercises .admonition.dropdown").first
+    words = solution.locator("p:not(.admonition-title)").first
+    assert not words.is_visible()
+    solution.locator(".admonition-title").click()
+    words.wait_for(state="visible", timeout=2000)

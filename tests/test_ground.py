@@ -391,6 +391,72 @@ def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -
     assert not any(folder.exists() for folder in made)
 
 
+# --- run.py: the author's loop and the PDF --------------------------------------------------------
+
+
+@pytest.fixture
+def made(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What remake has made, in order, instead of making it."""
+    made: list[str] = []
+    monkeypatch.setattr(run, "make_book", lambda: made.append("everything"))
+    monkeypatch.setattr(run, "build_pages", lambda: made.append("pages"))
+    monkeypatch.setattr(run, "must", lambda title, *_: made.append(title))
+    monkeypatch.setattr(run, "execute", lambda files: made.extend(f.name for f in files))
+    (house / "notebooks/01_a.md").write_text("# A\n")
+    return made
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        (["book/index.md"], ["pages"]),
+        (["notebooks/01_a.md"], ["Pairing 01_a.md", "01_a.ipynb", "pages"]),
+        (["notebooks/01_a.ipynb"], ["01_a.ipynb", "pages"]),
+        (["notebooks/01_a.md", "notebooks/01_a.ipynb"], ["Pairing 01_a.md", "01_a.ipynb", "pages"]),
+        (["notebooks/02_gone.md"], ["pages"]),
+        (["notebooks/01_a.md", "src/qbound/circle.py"], ["everything"]),
+        (["pyproject.toml"], ["everything"]),
+    ],
+)
+def test_a_change_makes_again_what_hangs_on_it_and_no_more(
+    run: ModuleType, made: list[str], changed: list[str], expected: list[str]
+) -> None:
+    run.remake({Path(name) for name in changed})
+    assert made == expected
+
+
+def test_without_chromium_the_pdf_is_refused_in_a_sentence(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run.shutil, "which", lambda _: None)
+    monkeypatch.setattr(run, "prepare", lambda: pytest.fail("it asks for the browser first"))
+    assert run.main(["pdf"]) == 1
+    assert "printed by Chromium, and there is none" in capsys.readouterr().out
+
+
+def test_any_browser_of_the_family_prints(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    here = {"google-chrome": "/opt/google-chrome", "msedge": "/opt/msedge"}
+    monkeypatch.setattr(run.shutil, "which", here.get)
+    assert run.find_browser() == "/opt/google-chrome"
+
+
+def test_a_browser_that_prints_nothing_is_a_failure_and_leaves_no_old_pdf(
+    run: ModuleType,
+    house: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    run.BUILD.mkdir(parents=True)
+    (run.BUILD / "qbound.pdf").write_text("of last week")
+    steps = record_steps(run, monkeypatch)
+    monkeypatch.setattr(run, "find_browser", lambda: "chromium")
+    monkeypatch.setattr(run, "book_is_fresh", lambda: True)
+    assert run.main(["pdf"]) == 1
+    assert "Printing" in steps
+    assert "has printed nothing" in capsys.readouterr().out
+    assert not (run.BUILD / "qbound.pdf").exists()
+
+
 # --- the lock and the metadata --------------------------------------------------------------------
 
 
@@ -650,3 +716,18 @@ def test_the_hooks_download_nothing() -> None:
 def test_the_check_in_a_clean_clone_can_be_started() -> None:
     assert os.access(ROOT / ".ci/run", os.X_OK)
     assert "QBOUND_REQUIRE_BROWSER=1" in (ROOT / ".ci/run").read_text(encoding="utf-8")
+
+
+def test_the_lines_of_the_readme_run() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    [lines] = re.findall(r"(?s)```python\n(.*?)```", text)
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", lines], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_whatever_the_readme_points_to_is_there() -> None:
+    targets = re.findall(r"\]\(([^)#:]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert len(targets) > 5
+    assert [target for target in targets if not (ROOT / target).exists()] == []

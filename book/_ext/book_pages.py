@@ -111,9 +111,10 @@ class PanelsScroll(SphinxPostTransform):
     def run(self, **kwargs: Any) -> None:
         for image in list(self.document.findall(nodes.image)):
             if width_in_points(Path(self.app.srcdir, image["uri"])) > WIDEST_PANEL:
+                shown = image.parent if isinstance(image.parent, nodes.reference) else image
                 box = nodes.container(classes=["wide-figure"])
-                image.replace_self(box)
-                box += image
+                shown.replace_self(box)
+                box += shown
 
 
 def width_in_points(file: Path) -> float:

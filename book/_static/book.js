@@ -77,7 +77,27 @@ window.addEventListener("message", ({ data, source }) => {
 });
 new MutationObserver(tellTheme).observe(root, { attributeFilter: ["data-theme"] });
 
+// What the theme and docutils leave without a name, or with a role that assistive software refuses.
+function repairNames() {
+  for (const summary of document.querySelectorAll(".bd-sidebar-primary details > summary")) {
+    const chapter = summary.closest("li")?.querySelector("a")?.textContent.trim();
+    summary.setAttribute("aria-label", `Pages of ${chapter}`);
+  }
+  const home = document.querySelector(".bd-sidebar-primary .sidebar-primary-item:has(.logo)");
+  home?.setAttribute("role", "region");
+  home?.setAttribute("aria-label", "The book");
+  for (const odd of document.querySelectorAll(".citation-list, [role=doc-biblioentry]"))
+    odd.removeAttribute("role");
+  for (const head of document.querySelectorAll("th")) {
+    if (head.textContent.trim() || head.querySelector("img, svg, math")) continue;
+    const corner = document.createElement("td"); // an empty corner heads nothing
+    corner.className = head.className;
+    head.replaceWith(corner);
+  }
+}
+
 window.addEventListener("load", () => {
+  repairNames();
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
   formulasShown.then(holdPunctuation).then(watchBoxes);
