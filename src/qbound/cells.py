@@ -107,20 +107,20 @@ class Complex:
     def _ends(self) -> Floats:
         """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).
 
-        There an angle may jump by a turn, and where a form vanishes on a whole fibre its roots turn
-        over: the limit from inside the slab is meant.
+        There an angle may jump by a turn, and where a form vanishes on a whole fibre it has no
+        roots to speak of: their limit from inside the slab is meant.
         """
         chosen = range(len(self.cells))
-        start, width = self.spans(chosen)[:, 0], np.diff(self.spans(chosen)).ravel()
-        inset = np.array([0.0, 1e-4, 2e-4, 1 - 2e-4, 1 - 1e-4])
-        t = np.column_stack([start[:, None] + width[:, None] * inset, start + width])
-        values = self._roots(chosen, t)  # (2, k, 6)
-        at, near, far = values[:, :, [0, 5]], values[:, :, [1, 4]], values[:, :, [2, 3]]
+        start, width = self.spans(chosen)[:, :1], np.diff(self.spans(chosen))
+        inset = 1e-4 * np.array([0, 1, 2, 3])
+        t = start + width * np.concatenate([inset, 1 - inset])
+        values = self._roots(chosen, t).reshape(2, -1, 2, 4)
+        at, near, far, farther = np.moveaxis(values, -1, 0)
         if self.plane.lift_kind == "revolute":
             at = at + TURN * np.round((near - at) / TURN)
-            limit = near + np.where(np.abs(near - far) < 1, near - far, 0)
-            at = np.where(np.abs(at - near) > 1, limit, at)
-        lower, upper = at
+        roots = [cell.lower for cell in self.cells] + [cell.upper for cell in self.cells]
+        blank = self.plane.blank(roots, np.concatenate([t, t])[:, [0, 4]]).reshape(at.shape)
+        lower, upper = np.where(blank, 3 * near - 3 * far + farther, at)
         return np.stack([lower, np.maximum(lower, upper)], axis=-1)
 
     # --- lines ----------------------------------------------------------------------------------

@@ -18,7 +18,16 @@ from numpy.typing import NDArray
 
 from qbound.circle import polar
 from qbound.harmonic import HarmonicForm, Kind, basis
-from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE, POSITIVE, SAME_CRITICAL, TANGENT, UNCHANGED
+from qbound.tolerances import (
+    BLANK,
+    NEAR_CIRCLE,
+    NEGLIGIBLE,
+    POSITIVE,
+    ROUNDING,
+    SAME_CRITICAL,
+    TANGENT,
+    UNCHANGED,
+)
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -95,14 +104,16 @@ class Plane:
         table = table / np.where(largest > 0, largest, 1.0)
         self.scaled: Floats = np.where(np.abs(table) > NEGLIGIBLE, table, 0.0)
         self.table: Floats = self.scaled / powers
+        # Largest values of the coefficients along the lift: what is rounding is so beside these.
+        self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
         slides = self.lift_kind == "prismatic"
         self.affine = [slides and not any(row) for row in self.table[:, :, 2].tolist()]
 
     def along_lift(self, t: Floats) -> Floats:
         """Return the coefficients of every form along the lift, shape (len(t), m, 3)."""
-        m = len(self.table)
-        rows = basis(self.base_kind, t) @ np.moveaxis(self.table, 1, 0).reshape(3, 3 * m)
-        return np.asarray(rows.reshape(len(t), m, 3))
+        m, factors = len(self.table), basis(self.base_kind, t)
+        table = np.moveaxis(self.table, 1, 0).reshape(3, 3 * m)
+        return _settled((factors @ table).reshape(len(t), m, 3), self.sizes, self.lift_kind)
 
     def positive(self, t: Floats, v: Floats, least: float) -> Bools:
         """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
@@ -141,9 +152,7 @@ class Plane:
         A root that leaves its form just there (at a fold, but for rounding) stays at the fold.
         """
         form, branch, turns = np.array(roots, dtype=np.int64).reshape(-1, 3).T[:, :, None]
-        table = np.concatenate([self.table, np.zeros((2, 3, 3))])  # ends, -1 and -2, have no form
-        c = basis(self.base_kind, t) @ table[form[:, 0]]
-        c0, c1, c2 = np.moveaxis(c, -1, 0)
+        c0, c1, c2 = np.moveaxis(_settled(*self._lifted(roots, t), self.lift_kind), -1, 0)
         if self.lift_kind == "revolute":
             theta, alpha, _ = polar(c1, c2, -c0)
             values = theta + branch * alpha + TURN * turns
@@ -152,6 +161,36 @@ class Plane:
             values = np.clip(np.where(branch < 0, lower, upper), *self.lift_ends)
         ends = np.array(self.lift_ends)[(form == HIGHEST.form).astype(int)]
         return np.asarray(np.where(form < 0, ends, values))
+
+    def blank(self, roots: Sequence[Root], t: Floats) -> Bools:
+        """Tell where the forms of roots vanish on the whole fibre, shape as t (k, n)."""
+        c, size = self._lifted(roots, t)
+        return np.asarray((np.abs(c) <= BLANK * size).all(axis=-1) & (size > 0).any(axis=-1))
+
+    def _lifted(self, roots: Sequence[Root], t: Floats) -> tuple[Floats, Floats]:
+        """Coefficients along the lift, (k, n, 3), and their sizes, (k, 1, 3); of ends all zero."""
+        forms = [root.form for root in roots]
+        table, sizes = (
+            np.concatenate([x, np.zeros((2, *x.shape[1:]))]) for x in (self.table, self.sizes)
+        )
+        return basis(self.base_kind, t) @ table[forms], sizes[forms][:, None]
+
+
+def _settled(c: Floats, size: Floats, kind: Kind) -> Floats:
+    """Make double roots exact where coefficients, sums of terms of these sizes, cannot tell.
+
+    Where terms cancel, as at a point in which a form touches zero along a curve, what is left of
+    the discriminant is rounding.
+    """
+    (c0, c1, c2), (e0, e1, e2) = np.moveaxis(c, -1, 0), np.moveaxis(ROUNDING * size, -1, 0)
+    if kind == "revolute":
+        d = np.hypot(c1, c2)
+        double, exact = np.abs(np.abs(c0) - d) <= e0 + e1 + e2, np.copysign(d, c0)
+    else:
+        doubt = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
+        double = (np.abs(c1 * c1 - 4 * c0 * c2) <= doubt) & (c2 != 0)
+        exact = c1 * c1 / np.where(double, 4 * c2, 1.0)
+    return np.stack([np.where(double, exact, c0), c1, c2], axis=-1)
 
 
 def _unit(kind: Kind, ends: tuple[float, float]) -> float:

@@ -24,6 +24,13 @@ the sums of many joints."""
 NEGLIGIBLE: Final = 1e-13
 """A coefficient this small beside the largest is rounding of a cancelled one."""
 
+ROUNDING: Final = 16.0 * 2.0**-52
+"""Error of a sum of three products beside the size of its terms, with that of its coefficients."""
+
+BLANK: Final = 1e-9
+"""Coefficients this small beside their terms: the form vanishes on the fibre, as critical base
+values lie within `SAME_CRITICAL` of where it does."""
+
 NEAR_CIRCLE: Final = 0.03
 """Distance from the unit circle (or the real line) under which a computed root is kept.
 
