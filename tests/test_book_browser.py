@@ -204,6 +204,9 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     inside.get_by_text("There. On the way you crossed").wait_for(timeout=20_000)
 
 
+# axe takes a table's head for empty when its words are a formula: it does not read MathML.
+FORMULA_HEADS = {"exclude": [["th:has(mjx-container)"]]}
+
 SAMPLE = [  # one page of each kind, and the longest
     "index.html",
     "explore.html",
@@ -226,7 +229,7 @@ def test_a_page_breaks_no_rule_of_accessibility(browser, name, width, theme):
     size = {"width": WIDTHS[width], "height": 900}
     page = browser.new_page(viewport=size, color_scheme=theme, reduced_motion="reduce")
     open_page(page, name)
-    found = Axe().run(page).response["violations"]
+    found = Axe().run(page, context=FORMULA_HEADS).response["violations"]
     page.close()
     assert [(v["id"], [node["html"][:120] for node in v["nodes"]]) for v in found] == []
 

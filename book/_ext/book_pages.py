@@ -46,6 +46,7 @@ LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
 
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.
 BEFORE_THEME, AFTER_THEME = 400, 600
+BEFORE_NAPOLEON = 400
 
 
 class VerdictRole(SphinxRole):
@@ -177,6 +178,14 @@ def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [one for button in buttons for one in button.get("buttons", [button])]
 
 
+def read_as_prose(
+    app: Sphinx, what: str, name: str, obj: object, options: Any, lines: list[str]
+) -> None:
+    """Let the docstring of a constant hold a colon: napoleon reads "type: text" on a first line."""
+    if what in {"attribute", "data", "property"}:
+        lines.insert(0, "")
+
+
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register role, transforms and links with Sphinx."""
     app.add_role("verdict", VerdictRole())
@@ -184,6 +193,7 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.add_post_transform(PanelsScroll)
+    app.connect("autodoc-process-docstring", read_as_prose, priority=BEFORE_NAPOLEON)
     app.connect("source-read", link_to_chapters)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)

@@ -78,7 +78,7 @@ def above(value: arb) -> float:
 
 
 def factor(kind: Kind, q: Any) -> list[Any]:
-    """Return (1, cos q, sin q) or (1, q, q^2) of a real or a complex ball."""
+    """Return (1, cos q, sin q) or (1, q, q²) of a real or a complex ball."""
     return [1, q.cos(), q.sin()] if kind == "revolute" else [1, q, q * q]
 
 

@@ -360,7 +360,7 @@ def side_roots(problem: ExactProblem, form: int, side: Side) -> list[Balls] | No
 
 
 def line_roots(kind: str, c: Sequence[arb]) -> list[arb] | None:
-    """Solve c0 + c1 cos v + c2 sin v = 0, or c0 + c1 v + c2 v^2 = 0; None if perhaps double."""
+    """Solve c0 + c1 cos v + c2 sin v = 0, or c0 + c1 v + c2 v² = 0; None if perhaps double."""
     c0, c1, c2 = c
     if kind == "prismatic" and c2.is_zero():
         return [-c0 / c1] if not c1.contains(0) else ([] if not c0.contains(0) else None)

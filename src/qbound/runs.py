@@ -1,7 +1,7 @@
 """A run: a piece of a curve of two joints that is a graph of one joint over the other, in balls.
 
-With joint j held at t a form is c0 + c1 cos v + c2 sin v (or c0 + c1 v + c2 v^2) in the other
-joint. Its derivative along v at a root is w = +- sqrt(P), with P = c1^2 + c2^2 - c0^2 (or c1^2 - 4
+With joint j held at t a form is c0 + c1 cos v + c2 sin v (or c0 + c1 v + c2 v²) in the other
+joint. Its derivative along v at a root is w = +- sqrt(P), with P = c1² + c2² - c0² (or c1² - 4
 c0 c2), and (cos v, sin v), or v, follows from w without an inverse function. So the graph, its
 slope and its integral are analytic as long as P is positive.
 """
@@ -111,7 +111,7 @@ class Curve:
         return True
 
     def factors(self, c: Sequence[Any], w: Any) -> list[Any]:
-        """Return (1, cos v, sin v), or (1, v, v^2), of the root whose derivative is w."""
+        """Return (1, cos v, sin v), or (1, v, v²), of the root whose derivative is w."""
         c0, c1, c2 = c
         if self.lift == "revolute":
             d2 = c1 * c1 + c2 * c2
@@ -158,7 +158,7 @@ def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] = (1, 0, 0
 
 
 def _antiderivative(kind: Kind, weight: Sequence[Any], v: Any) -> Any:
-    """Return the antiderivative of w0 + w1 cos v + w2 sin v, or of w0 + w1 v + w2 v^2."""
+    """Return the antiderivative of w0 + w1 cos v + w2 sin v, or of w0 + w1 v + w2 v²."""
     w0, w1, w2 = weight
     if kind == "revolute":
         return w0 * v + w1 * v.sin() - w2 * v.cos()
