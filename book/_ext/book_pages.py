@@ -13,6 +13,7 @@ import nbformat
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
+from sphinx.ext.napoleon import NumpyDocstring
 from sphinx.transforms import SphinxTransform
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxDirective, SphinxRole
@@ -46,7 +47,6 @@ LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
 
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.
 BEFORE_THEME, AFTER_THEME = 400, 600
-BEFORE_NAPOLEON = 400
 
 
 class VerdictRole(SphinxRole):
@@ -178,22 +178,20 @@ def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [one for button in buttons for one in button.get("buttons", [button])]
 
 
-def read_as_prose(
-    app: Sphinx, what: str, name: str, obj: object, options: Any, lines: list[str]
-) -> None:
-    """Let the docstring of a constant hold a colon: napoleon reads "type: text" on a first line."""
-    if what in {"attribute", "data", "property"}:
-        lines.insert(0, "")
+def whole_docstring(docstring: Any) -> list[str]:
+    """Return the docstring of a constant as it is: it may hold a colon, and states no type."""
+    return list(docstring._dedent(docstring._consume_to_end()))
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register role, transforms and links with Sphinx."""
+    # Napoleon reads the words before a first colon as a type, and has no setting against it.
+    NumpyDocstring._parse_attribute_docstring = whole_docstring
     app.add_role("verdict", VerdictRole())
     app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.add_post_transform(PanelsScroll)
-    app.connect("autodoc-process-docstring", read_as_prose, priority=BEFORE_NAPOLEON)
     app.connect("source-read", link_to_chapters)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)
