@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib import pyplot as plt
 
 from qbound import figures, find_region, load_robot
-from qbound.figures_workspace import draw_patches
-from qbound.planar import planar_arm
-from qbound.workspace import find_workspace
+from qbound.figures.workspace import draw_patches
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
 
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
 PATH, NUMBER = re.compile(r' d="[^"]*"'), re.compile(r"-?\d+\.\d{3,}")

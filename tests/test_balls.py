@@ -10,8 +10,8 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from qbound.balls import above, along, below, derivative, magnitude, precision, values
 from qbound.harmonic import HarmonicForm
+from qbound.proofs.balls import above, along, below, derivative, magnitude, precision, values
 
 KINDS = ("revolute", "prismatic")
 

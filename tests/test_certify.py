@@ -16,14 +16,15 @@ import pytest
 from robots_at_random import box_of, robot_file
 from scipy.optimize import minimize
 
-from qbound import certify as prover
-from qbound import check, check_arb, cli, minorant, polygon, statements
+from qbound import check, cli, polygon
 from qbound.boundary import required_distance
-from qbound.certify import bracket_scale, certify
+from qbound.proofs import certify as prover
+from qbound.proofs import check_arb, minorant, statements
+from qbound.proofs.certify import bracket_scale, certify
+from qbound.proofs.triangulation import triangulate
 from qbound.region import find_region
 from qbound.robot import Pair
 from qbound.robotfile import parse_robot, robot_text
-from qbound.triangulation import triangulate
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
 """Random robots; a longer run is written down in docs/decisions/0233."""
@@ -359,8 +360,8 @@ def test_without_a_fault_the_checkers_agree_with_the_search():
 
 VERDICTS = """
 import ctypes
-from qbound import statements
-from qbound.certify import certify
+from qbound.proofs import statements
+from qbound.proofs.certify import certify
 from qbound.robotfile import robot_text
 text, _ = robot_text("minervabot-v2")
 boxes = [(["-20", "-80"], ["30", "-40"], "0"), (["-60", "-140"], ["40", "20"], "0")]

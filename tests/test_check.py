@@ -20,9 +20,10 @@ from jsonschema import ValidationError, validate
 from robots_at_random import robot_file
 
 import qbound
-from qbound import check, check_arb, statements
+from qbound import check
 from qbound.boundary import clearance
-from qbound.certify import certify
+from qbound.proofs import check_arb, statements
+from qbound.proofs.certify import certify
 from qbound.robotfile import parse_robot, robot_text
 
 FILE = Path(check.__file__)

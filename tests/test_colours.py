@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from qbound import figures, figures_workspace
+from qbound import figures
+from qbound.figures import workspace as figures_workspace
 
 # The identity, and deuteranopes and protanopes by Viénot, Brettel and Mollon (1999): matrices on
 # linear RGB.

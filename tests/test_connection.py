@@ -14,9 +14,9 @@ from test_region import random_robot
 
 from qbound import find_region, load_robot
 from qbound.cli import main
-from qbound.connection import connection, outer_groups, separated, wall
-from qbound.exact import exact_problem, exact_robot
-from qbound.paving import pave
+from qbound.proofs.connection import connection, outer_groups, separated, wall
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.paving import pave
 from qbound.region import solve
 
 PAPER = exact_problem(exact_robot("minervabot-v2"))

@@ -13,10 +13,10 @@ from test_decomposition import PP, PR, RP, RR, forms
 from test_region import random_robot
 
 from qbound import find_region
-from qbound.balls import precision
-from qbound.crossings import crossings, folds
-from qbound.exact import ExactProblem, exact_problem, exact_robot
 from qbound.harmonic import HarmonicForm
+from qbound.proofs.balls import precision
+from qbound.proofs.crossings import crossings, folds
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 
 NAMES = (("q1.lower", "q1.upper"), ("q2.lower", "q2.upper"))
 SQUARE = ((-1, 1), (-1, 1))

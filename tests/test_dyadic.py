@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from test_balls import random_form
 
-from qbound.balls import precision, values
-from qbound.dyadic import Cells, Room
+from qbound.proofs.balls import precision, values
+from qbound.proofs.dyadic import Cells, Room
 
 
 def random_room(seed: int, joints: int) -> Room:
@@ -77,9 +77,9 @@ def test_a_room_without_forms_bounds_nothing():
 ROUNDING = """
 import ctypes, ctypes.util
 libm = ctypes.CDLL(ctypes.util.find_library("m"))
-from qbound.exact import exact_problem, exact_robot
-from qbound.paving import pave
-from qbound.connection import connection
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.paving import pave
+from qbound.proofs.connection import connection
 problem, tiny = exact_problem(exact_robot("minervabot-v2")), float("1e-30")
 for mode in (0x000, 0x400, 0x800, 0xC00):  # nearest, down, up, towards zero
     assert libm.fesetround(mode) == 0

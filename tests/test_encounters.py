@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 from oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 from qbound import find_region, load_robot, paper_rule
-from qbound.encounters import (
+from qbound.outline import from_lowest
+from qbound.paths.encounters import (
     boundaries,
     least_margin,
     plane_of_motion,
@@ -16,10 +17,9 @@ from qbound.encounters import (
     stated_boundaries,
     tool_crossings,
 )
-from qbound.outline import from_lowest
+from qbound.paths.traversal import Leg, follow, traverse
 from qbound.polygon import centroid, scaled
 from qbound.robotfile import parse_robot
-from qbound.traversal import Leg, follow, traverse
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

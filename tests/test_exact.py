@@ -11,10 +11,10 @@ from numpy.testing import assert_allclose
 from oracles import packaged_table, robot_tables
 
 from qbound import load_robot, paper_rule, save_robot
-from qbound.balls import precision, values
 from qbound.boundary import clearance
-from qbound.exact import ExactProblem, exact_problem, exact_robot
-from qbound.exact_windows import exact_windows_problem
+from qbound.proofs.balls import precision, values
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.region import clearance_problem
 from qbound.robotfile import parse_robot, robot_text
 

@@ -19,11 +19,11 @@ from qbound import find_region, load_robot, packaged_robots, paper_rule
 from qbound.boundary import clearance, position
 from qbound.cli import main
 from qbound.explorer import explorer_data, explorer_page
-from qbound.planar import planar_arm, postures
+from qbound.paths.traversal import traverse
 from qbound.region import solve, violated
 from qbound.robotfile import parse_robot
 from qbound.scaling import least_along_edges
-from qbound.traversal import traverse
+from qbound.workspace.planar import planar_arm, postures
 
 TEMPLATES = resources.files("qbound") / "templates"
 POSES = 3000

@@ -17,7 +17,7 @@ from test_region import random_robot
 
 from qbound import figures, find_region, load_robot
 from qbound.paper_rule import vertices
-from qbound.traversal import traverse
+from qbound.paths.traversal import traverse
 
 MINERVA = load_robot("minervabot-v2")
 SIX = np.array([vertex.q for vertex in vertices(MINERVA)])

@@ -13,10 +13,10 @@ from test_crossings import stated
 from test_region import random_robot
 
 from qbound import find_region
-from qbound.balls import precision, values
 from qbound.cli import main
-from qbound.exact import ExactProblem, exact_problem, exact_robot
-from qbound.paving import Paving, pave, start
+from qbound.proofs.balls import precision, values
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.paving import Paving, pave, start
 
 PPP = ("prismatic",) * 3
 

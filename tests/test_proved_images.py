@@ -9,13 +9,13 @@ from flint import arb
 from numpy.testing import assert_allclose
 
 from qbound import load_robot, paper_rule
-from qbound.exact import exact_problem, exact_robot
-from qbound.exact_windows import exact_windows_problem
-from qbound.planar import planar_arm
-from qbound.proved_images import jacobian_determinant, proved_images
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact_windows import exact_windows_problem
+from qbound.proofs.proved_images import jacobian_determinant, proved_images
 from qbound.region import clearance_problem
 from qbound.robot import Joint, Point, Robot
-from qbound.workspace import find_workspace
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")

@@ -12,8 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from qbound import find_region, load_robot
 from qbound.outline import from_lowest
-from qbound.robotfile import parse_robot
-from qbound.trajectory import (
+from qbound.paths.trajectory import (
     joint_speeds,
     lasting,
     ros_trajectory,
@@ -22,7 +21,8 @@ from qbound.trajectory import (
     timed,
     top_speeds,
 )
-from qbound.traversal import Leg, follow, traverse
+from qbound.paths.traversal import Leg, follow, traverse
+from qbound.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 STOPS = st.lists(

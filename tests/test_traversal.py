@@ -18,9 +18,9 @@ from oracles import (
 
 from qbound import load_robot
 from qbound.paper_rule import vertices
+from qbound.paths.traversal import self_crossings, simple_orders, traverse
 from qbound.polygon import centroid, scaled
 from qbound.robotfile import parse_robot
-from qbound.traversal import self_crossings, simple_orders, traverse
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

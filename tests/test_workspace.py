@@ -16,12 +16,12 @@ from shapely import LineString, Polygon, unary_union
 from test_region import in_centimetres, mirror, random_robot, turned
 
 from qbound import load_robot, paper_rule
-from qbound.fibres import find_fibres
-from qbound.passage import find_passage
-from qbound.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
 from qbound.region import Problem, clearance_problem
 from qbound.robot import HalfSpace, Joint, Pair, Point, Robot
-from qbound.workspace import NoHomeError, area_by_green, find_workspace, overlap
+from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, overlap
+from qbound.workspace.fibres import find_fibres
+from qbound.workspace.passage import find_passage
+from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
 
 MINERVA = load_robot("minervabot-v2")
 seeds = st.integers(0, 10_000)

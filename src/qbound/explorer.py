@@ -26,12 +26,12 @@ from qbound.boundary import clearance, position, required_distance
 from qbound.curves import flatten
 from qbound.harmonic import HarmonicForm
 from qbound.outline import from_lowest
-from qbound.planar import planar_arm
 from qbound.region import Component, Region
 from qbound.robot import HalfSpace, Joint, Pair, Robot
 from qbound.scaling import largest_safe_scale
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
-from qbound.workspace import find_workspace
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
 
 Floats = NDArray[np.float64]
 Data = dict[str, Any]

@@ -28,8 +28,8 @@ from qbound.claims.walks import (
     walk,
     workspace,
 )
+from qbound.paths.traversal import traverse
 from qbound.robot import Body, joint_symbols
-from qbound.traversal import traverse
 
 SMALL = 1e-9
 """A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""

@@ -12,13 +12,13 @@ from qbound import bodies, clearance, find_region, load_robot, paper_rule, polyg
 from qbound.boundary import position
 from qbound.claims.facts import robot, vertices
 from qbound.harmonic import HarmonicForm
-from qbound.planar import planar_arm
+from qbound.paths.traversal import Traversal, self_crossings, simple_orders, traverse
 from qbound.region import Component, Region, solve
 from qbound.robot import Robot
 from qbound.sampling import Sample, sample
 from qbound.scaling import SafeScale
-from qbound.traversal import Traversal, self_crossings, simple_orders, traverse
-from qbound.workspace import find_workspace
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
 
 Floats = NDArray[np.float64]
 

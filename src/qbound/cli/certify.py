@@ -9,10 +9,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from qbound import statements
-from qbound.certify import Bracket, Certificate, bracket_scale, certify
 from qbound.check import number
 from qbound.cli.values import check_targets, held, joint_value, write_text
+from qbound.proofs import statements
+from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
 from qbound.robot import Joint, Robot
 from qbound.robotfile import parse_robot, robot_text
 

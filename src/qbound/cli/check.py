@@ -6,7 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from qbound import check, check_arb
+from qbound import check
+from qbound.proofs import check_arb
 from qbound.robotfile import robot_text
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from qbound import __version__
 from qbound.cli.values import configuration, write_text
-from qbound.connection import Connection, connection, wall
-from qbound.exact import exact_problem, exact_robot
+from qbound.proofs.connection import Connection, connection, wall
+from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
 

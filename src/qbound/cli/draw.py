@@ -17,7 +17,7 @@ from qbound.cli.chosen import (
     region_by_rule,
 )
 from qbound.cli.values import check_targets, configuration, held, write_all
-from qbound.encounters import plane_of_motion
+from qbound.paths.encounters import plane_of_motion
 from qbound.robotfile import load_robot
 
 
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
 def _picture(
     options: argparse.Namespace, q: np.ndarray[Any, Any], values: dict[int, float], both: bool
 ) -> bytes:
-    from qbound.pictures import Chart, pose_picture
+    from qbound.figures.pictures import Chart, pose_picture
 
     robot, chart = load_robot(options.robot), None
     if both or options.region:

@@ -11,7 +11,7 @@ import numpy as np
 from qbound import __version__
 from qbound.cli.route import Route
 from qbound.cli.values import joint_units
-from qbound.encounters import (
+from qbound.paths.encounters import (
     Boundary,
     Crossing,
     Margin,

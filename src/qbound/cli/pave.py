@@ -9,8 +9,8 @@ from typing import Any
 
 from qbound import __version__
 from qbound.cli.values import held, write_text
-from qbound.exact import exact_problem, exact_robot
-from qbound.paving import Paving, pave
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.paving import Paving, pave
 from qbound.robotfile import load_robot
 
 
@@ -77,7 +77,7 @@ def paving_content(robot: str, paving: Paving) -> dict[str, Any]:
 
 def _bounds(volume: Any) -> tuple[float, float]:
     """Return doubles certainly not above and not below a ball."""
-    from qbound.balls import above, below
+    from qbound.proofs.balls import above, below
 
     return below(volume), above(volume)
 

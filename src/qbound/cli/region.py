@@ -14,11 +14,11 @@ from qbound.arcs import Arc
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
 from qbound.cli.values import Content, check_targets, held, joint_units, write_all
-from qbound.planar import NoPlanarWorkspaceError, planar_arm
 from qbound.region import Component, Region, violated
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
-from qbound.workspace import NoHomeError, find_workspace
+from qbound.workspace.areas import NoHomeError, find_workspace
+from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
 def add_to(commands: Any) -> None:
@@ -161,7 +161,7 @@ def _say(region: Region, content: dict[str, Any]) -> None:
 
 
 def _draw(robot: Robot, q: Sequence[float], region: Region, free: Sequence[int]) -> bytes:
-    from qbound.pictures import Chart, pose_picture
+    from qbound.figures.pictures import Chart, pose_picture
 
     numbered = region.components[0] if region.components else None
     return pose_picture(robot, q, Chart(region, (free[0], free[1]), numbered), None)

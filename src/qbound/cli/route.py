@@ -14,10 +14,10 @@ from qbound import polygon
 from qbound.arcs import Arc
 from qbound.cli.chosen import component_of, embedded, region_by_rule
 from qbound.cli.values import held
+from qbound.paths.traversal import Leg, Traversal, follow, straight
 from qbound.region import Component, Region
 from qbound.robot import Robot
 from qbound.tolerances import TOUCH
-from qbound.traversal import Leg, Traversal, follow, straight
 
 Floats = NDArray[np.float64]
 

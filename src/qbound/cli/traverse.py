@@ -14,9 +14,7 @@ from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints
 from qbound.cli.pathreport import Report, report, report_content
 from qbound.cli.route import Route
 from qbound.cli.values import Content, check_targets, csv_text, joint_units, shown, write_all
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
-from qbound.trajectory import (
+from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
     lasting,
@@ -25,7 +23,9 @@ from qbound.trajectory import (
     stretched,
     timed,
 )
-from qbound.traversal import Traversal
+from qbound.paths.traversal import Traversal
+from qbound.robot import Robot
+from qbound.robotfile import load_robot
 
 
 def add_to(commands: Any) -> None:
@@ -124,7 +124,7 @@ def _csv(robot: Robot, walk: Traversal, times: Trajectory | None) -> str:
 
 
 def _picture(robot: Robot, way: Route, plane: tuple[int, int]) -> bytes:
-    from qbound.pictures import Chart, traversal_picture
+    from qbound.figures.pictures import Chart, traversal_picture
 
     first, second = free_joints(robot, way.held)
     return traversal_picture(robot, Chart(way.region, (first, second)), way.walk, way.stops, plane)

@@ -11,11 +11,11 @@ from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.region import loop_content
 from qbound.cli.values import Content, check_targets, held, joint_value, shown, write_all
-from qbound.passage import Passage, find_passage
-from qbound.planar import planar_arm
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
-from qbound.workspace import NoHomeError, Workspace, find_workspace, overlap
+from qbound.workspace.areas import NoHomeError, Workspace, find_workspace, overlap
+from qbound.workspace.passage import Passage, find_passage
+from qbound.workspace.planar import planar_arm
 
 
 def add_to(commands: Any) -> None:
@@ -79,7 +79,7 @@ def _outputs(
 ) -> list[tuple[str, Content]]:
     outputs = list[tuple[str, Content]]()
     if options.svg:
-        from qbound.figures_workspace import workspace_picture
+        from qbound.figures.workspace import workspace_picture
 
         outputs.append((options.svg, workspace_picture(workspace, content["length_unit"])))
     if options.json:

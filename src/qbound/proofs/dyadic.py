@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.balls import above, ball, derivative, factor, gradient, magnitude, precision
 from qbound.harmonic import HarmonicForm
+from qbound.proofs.balls import above, ball, derivative, factor, gradient, magnitude, precision
 
 if TYPE_CHECKING:
     from flint import arb

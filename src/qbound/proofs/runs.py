@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qbound.balls import along, ball, derivative, factor, interval, turns, values
-from qbound.crossings import Balls, line_roots, sides
-from qbound.exact import ExactProblem
 from qbound.harmonic import Kind
+from qbound.proofs.balls import along, ball, derivative, factor, interval, turns, values
+from qbound.proofs.crossings import Balls, line_roots, sides
+from qbound.proofs.exact import ExactProblem
 
 if TYPE_CHECKING:
     from flint import arb

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
 from qbound.figures import INK
+from qbound.paths.traversal import Traversal
 from qbound.region import Component, Region
 from qbound.robot import HalfSpace, Robot
-from qbound.traversal import Traversal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qbound.dyadic import Cells, Room
+from qbound.proofs.dyadic import Cells, Room
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

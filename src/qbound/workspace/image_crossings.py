@@ -1,6 +1,6 @@
 """Where a boundary reached in one posture crosses one that is reached in the other.
 
-Both postures of a place lie at the same distance u from the fold (`qbound.planar`), and at the same
+Both postures of a place lie at the same distance u from the fold (`planar`), and at the same
 place along the circle or line on which the first joint moves the tool. For fixed u each form
 becomes a one-joint form of that place; two of them share a root only where a resultant vanishes,
 one univariate polynomial of u a pair. Its degree is known, so that as many values determine it.
@@ -17,8 +17,8 @@ from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import NDArray
 
 from qbound.harmonic import HarmonicForm, basis
-from qbound.planar import PlanarArm
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
+from qbound.workspace.planar import PlanarArm
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]

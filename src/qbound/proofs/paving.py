@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.balls import below, precision
-from qbound.dyadic import BITS, DEEPEST, Cells, Room
-from qbound.exact import ExactProblem
+from qbound.proofs.balls import below, precision
+from qbound.proofs.dyadic import BITS, DEEPEST, Cells, Room
+from qbound.proofs.exact import ExactProblem
 
 if TYPE_CHECKING:
     from flint import arb

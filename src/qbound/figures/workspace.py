@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc
 from qbound.figures import COLLIDING, FEASIBLE, SECOND, STYLE, UNUSED, USED
-from qbound.workspace import SINGULAR, Aspect, Workspace
+from qbound.workspace.areas import SINGULAR, Aspect, Workspace
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.bodies import outline
 from qbound.outline import polygons
+from qbound.paths.traversal import Traversal
 from qbound.region import Region
 from qbound.robot import Robot
-from qbound.traversal import Traversal
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

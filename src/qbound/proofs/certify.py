@@ -20,10 +20,8 @@ from numpy.typing import NDArray
 
 from qbound import check
 from qbound.boundary import clearance, required_distance
-from qbound.minorant import Bound, Waves, longest_edges, second_order, to_waves
-from qbound.robot import Pair, Robot
-from qbound.robotfile import parse_robot
-from qbound.statements import (
+from qbound.proofs.minorant import Bound, Waves, longest_edges, second_order, to_waves
+from qbound.proofs.statements import (
     Statement,
     asked_for_more,
     decimal,
@@ -31,6 +29,8 @@ from qbound.statements import (
     scaled_polygon,
     units,
 )
+from qbound.robot import Pair, Robot
+from qbound.robotfile import parse_robot
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.balls import ball, pi, precision
 from qbound.boundary import clearance
 from qbound.harmonic import HarmonicForm, Kind
+from qbound.proofs.balls import ball, pi, precision
 from qbound.robot import HalfSpace, Joint, Pair, Robot
 from qbound.robotfile import load_robot, robot_text
 

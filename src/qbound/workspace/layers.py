@@ -1,6 +1,6 @@
 """What an arm covers on each circle or line along which its first joint moves the tool.
 
-A distance u of the second joint from the fold names the circle (`qbound.planar`). On it the safe
+A distance u of the second joint from the fold names the circle (`planar`). On it the safe
 places of one posture are the fibre of the region, moved along by the phase of the tool; what is
 between them is reached, too, but not safely. Laid over each other, the intervals of all postures
 tell how long a part of the circle is reached in one posture, in both, safely or not.
@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arcs import NODES, legendre
-from qbound.cover import UNSAFE, Cover, Interval, cover
-from qbound.fibres import Fibres
-from qbound.image_crossings import crossing_distances
-from qbound.planar import PlanarArm, Range, turns_within
 from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
+from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
+from qbound.workspace.fibres import Fibres
+from qbound.workspace.image_crossings import crossing_distances
+from qbound.workspace.planar import PlanarArm, Range, turns_within
 
 Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]

@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc, integrate
-from qbound.cover import Cover
-from qbound.fibres import Fibres, find_fibres
 from qbound.harmonic import HarmonicForm
-from qbound.layers import Layers, Ranges
-from qbound.planar import PlanarArm, Posture, postures
 from qbound.region import Component, Problem
+from qbound.workspace.cover import Cover
+from qbound.workspace.fibres import Fibres, find_fibres
+from qbound.workspace.layers import Layers, Ranges
+from qbound.workspace.planar import PlanarArm, Posture, postures
 
 Floats = NDArray[np.float64]
 
@@ -103,7 +103,7 @@ class Workspace:
         """Return every posture of a place with its component, None where it is not safe.
 
         All full turns within the ranges are listed; a posture that is outside them is listed once,
-        as not safe. Errors as `qbound.planar.postures`.
+        as not safe. Errors as `qbound.workspace.planar.postures`.
         """
         inside = postures(self.arm, place, self.region.problem.ranges)
         sides = {posture.side for posture in inside}

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from qbound.boundary import clearance, pair_vector, position, required_distance
 from qbound.curves import meetings
-from qbound.planar import NoPlanarWorkspaceError, singular_form
+from qbound.paths.traversal import Traversal
 from qbound.region import Problem
 from qbound.robot import HalfSpace, Pair, Robot
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
-from qbound.traversal import Traversal
+from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
 Floats = NDArray[np.float64]
 Form = Callable[[Floats], Floats]

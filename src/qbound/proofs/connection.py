@@ -17,9 +17,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.dyadic import DEEPEST, Cells
-from qbound.exact import ExactProblem
-from qbound.paving import Paving, start
+from qbound.proofs.dyadic import DEEPEST, Cells
+from qbound.proofs.exact import ExactProblem
+from qbound.proofs.paving import Paving, start
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.balls import along, ball, derivative, gradient, precision, turns, values
-from qbound.dyadic import Cells, Room
-from qbound.exact import ExactProblem
 from qbound.harmonic import HarmonicForm
+from qbound.proofs.balls import along, ball, derivative, gradient, precision, turns, values
+from qbound.proofs.dyadic import Cells, Room
+from qbound.proofs.exact import ExactProblem
 
 if TYPE_CHECKING:
     from flint import arb

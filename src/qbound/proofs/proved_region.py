@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arcs import Arc
-from qbound.balls import ball, precision, turns
-from qbound.crossings import (
+from qbound.harmonic import HarmonicForm
+from qbound.proofs.balls import ball, precision, turns
+from qbound.proofs.crossings import (
     Balls,
     Crossing,
     Crossings,
@@ -33,10 +34,9 @@ from qbound.crossings import (
     side_roots,
     sides,
 )
-from qbound.exact import ExactProblem
-from qbound.harmonic import HarmonicForm
+from qbound.proofs.exact import ExactProblem
+from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
 from qbound.region import Component, Region
-from qbound.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
 
 if TYPE_CHECKING:
     from flint import arb

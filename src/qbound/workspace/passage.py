@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound import polygon
 from qbound.arcs import Arc
-from qbound.fibres import Fibres
 from qbound.region import Component
+from qbound.workspace.fibres import Fibres
 
 Floats = NDArray[np.float64]
 Loop = tuple[Arc, ...]
@@ -65,7 +65,7 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
     Parameters
     ----------
     region : Fibres
-        Of `qbound.fibres.find_fibres`; that of one side of the singular curve
+        Of `qbound.workspace.fibres.find_fibres`; that of one side of the singular curve
         (`Workspace.covers.sides`) asks for a path that does not cross the curve.
     start, goal : array_like, shape (2,)
         rad or length. Joints without limits may turn on: full turns do not count.

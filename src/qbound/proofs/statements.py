@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import polygon
+from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.triangulation import triangulate
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]

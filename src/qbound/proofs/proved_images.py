@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.balls import ball, derivative, precision, values
 from qbound.boundary import position
-from qbound.exact import BITS, ExactProblem
 from qbound.harmonic import HarmonicForm, Kind
-from qbound.proved_region import BITS as AREA_BITS
-from qbound.proved_region import ProvedComponent, prove_region
+from qbound.proofs.balls import ball, derivative, precision, values
+from qbound.proofs.exact import BITS, ExactProblem
+from qbound.proofs.proved_region import BITS as AREA_BITS
+from qbound.proofs.proved_region import ProvedComponent, prove_region
+from qbound.proofs.runs import area_under
 from qbound.region import Problem, solve
 from qbound.robot import Robot
-from qbound.runs import area_under
 
 if TYPE_CHECKING:
     from flint import arb

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from qbound import paper_rule
-from qbound.balls import along, ball, pi, precision, turns
 from qbound.boundary import pair_vector
-from qbound.exact import BITS, ExactProblem, exact_state
 from qbound.paper_rule import Window
+from qbound.proofs.balls import along, ball, pi, precision, turns
+from qbound.proofs.exact import BITS, ExactProblem, exact_state
 from qbound.robot import HalfSpace, Robot
 
 if TYPE_CHECKING:

@@ -1,0 +1,1 @@
+"""Paths through a region: traversals, what they meet, and when each joint is where."""

@@ -1,0 +1,1 @@
+"""Proofs: exact numbers, balls, cells and certificates that a checker accepts."""

@@ -1,0 +1,1 @@
+"""The geometric workspace of two joints: inverse kinematics, areas, and what connects."""
