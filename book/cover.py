@@ -1,9 +1,10 @@
-"""Draw the picture of the front page and of the README: python book/cover.py.
+"""Draw the picture of the front page and of the README: python book/cover.py [FILE].
 
 Left the joint values that are safe, right where the tool goes over them, by the exact workspace.
 """
 
 import re
+import sys
 from io import StringIO
 from pathlib import Path
 
@@ -52,4 +53,4 @@ def rounded(path: re.Match[str]) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else TARGET)
