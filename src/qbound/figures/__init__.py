@@ -2,6 +2,9 @@
 
 Angles come in radians and are drawn in degrees. The colours (Okabe and Ito) hold for colour-blind
 readers, and no meaning rests on colour alone: lines differ in dash, points in marker.
+
+Here are the style and the parts of pictures; `pictures` puts whole ones together for a robot file,
+`workspace` draws aspects and their images, `cells` pavings.
 """
 
 from __future__ import annotations

@@ -1,1 +1,6 @@
-"""Paths through a region: traversals, what they meet, and when each joint is where."""
+"""Paths through a region: traversals, what they meet, and when each joint is where.
+
+- `traversal`: vertices or arcs in an order, the joint path and the tool's (Figures 7 to 10);
+- `encounters`: where a path crosses itself or the singular curve, and its margins;
+- `trajectory`: the path in time.
+"""

@@ -1,1 +1,8 @@
-"""The geometric workspace of two joints: inverse kinematics, areas, and what connects."""
+"""The geometric workspace of two joints: inverse kinematics, areas, and what connects.
+
+- `planar`: the arm in its plane: det J, its zeros, inverse kinematics;
+- `fibres`: the region as intervals of the first joint, one set for each value of the second;
+- `cover`, `layers`: these intervals laid over each other on the circles or lines of the tool;
+- `image_crossings`: where the images of two postures' boundaries cross;
+- `areas`: the workspace, its aspects and areas; `passage`: which poses it joins.
+"""
