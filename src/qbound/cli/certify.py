@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from qbound.check import number
+from qbound.cli.chosen import add_robot
 from qbound.cli.values import check_targets, held, joint_value, write_text
 from qbound.proofs import statements
 from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
@@ -27,7 +28,7 @@ def add_to(commands: Any) -> None:
         help="prove that every configuration of a set is safe",
         epilog="example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+    add_robot(parser)
     sets = parser.add_mutually_exclusive_group()
     sets.add_argument(
         "--scale", metavar="S", help="the polygon of home's vertices, scaled (default 1)"

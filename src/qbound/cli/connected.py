@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import Any
 
 from qbound import __version__
-from qbound.cli.values import configuration, write_text
+from qbound.cli.chosen import add_robot
+from qbound.cli.values import configuration, json_text, write_text
 from qbound.proofs.connection import Connection, connection, wall
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.robot import Robot
@@ -23,7 +23,7 @@ def add_to(commands: Any) -> None:
         help="can the arm go from one pose to another? proved either way",
         epilog="example: qbound connected minervabot-v2 0deg 0deg 92deg -133deg",
     )
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+    add_robot(parser)
     parser.add_argument(
         "values", nargs="+", metavar="VALUE", help="both poses, one after the other: 20deg, 0.35rad"
     )
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     found = connection(exact_problem(exact_robot(options.robot)), one, other)
     if options.json:
         content = connection_content(robot, [one, other], found)
-        write_text(options.json, json.dumps(content, indent=1) + "\n")
+        write_text(options.json, json_text(content))
     if options.json != "-":
         _say(found)
     return STATUS[found.answer]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import Any
 
 import numpy as np
 
 from qbound import __version__
-from qbound.cli.values import configuration, write_text
+from qbound.cli.chosen import add_robot
+from qbound.cli.values import configuration, json_text, write_text
 from qbound.measures import BoundaryPoint, locate, nearest_boundary
 from qbound.region import Region, find_region, margins
 from qbound.robot import Robot
@@ -23,7 +23,7 @@ def add_to(commands: Any) -> None:
         help="is a configuration safe, and by how much?",
         epilog="example: qbound contains minervabot-v2 20deg -45deg",
     )
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+    add_robot(parser)
     parser.add_argument("values", nargs="+", metavar="VALUE", help="20deg, 0.35rad, or a length")
     parser.add_argument(
         "--weights",
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     robot = load_robot(options.robot)
     content = contents(robot, configuration(robot, options.values), options.weights)
     if options.json:
-        write_text(options.json, json.dumps(content, indent=1) + "\n")
+        write_text(options.json, json_text(content))
     if options.json != "-":
         _say(robot, content)
     return 0 if content["feasible"] else 1

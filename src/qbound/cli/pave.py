@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from typing import Any
 
 from qbound import __version__
-from qbound.cli.values import held, write_text
+from qbound.cli.chosen import add_robot, add_slice
+from qbound.cli.values import held, json_text, write_text
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave
 from qbound.robotfile import load_robot
@@ -21,7 +21,7 @@ def add_to(commands: Any) -> None:
         help="bracket a region of any number of joints by cells, each proved",
         epilog="example: qbound pave minervabot-v2 --tolerance 0.001",
     )
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+    add_robot(parser)
     parser.add_argument(
         "--tolerance",
         type=float,
@@ -30,9 +30,7 @@ def add_to(commands: Any) -> None:
         help="undecided part of the joint range at which to stop (default 0.01)",
     )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
-    parser.add_argument(
-        "--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints at values"
-    )
+    add_slice(parser)
     parser.set_defaults(run=run)
 
 
@@ -44,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     paving = pave(exact_problem(exact_robot(options.robot), values), options.tolerance)
     content = paving_content(options.robot, paving)
     if options.json:
-        write_text(options.json, json.dumps(content, indent=1) + "\n")
+        write_text(options.json, json_text(content))
     if options.json != "-":
         _say(content)
     return 0 if paving.undecided_fraction <= options.tolerance else 3

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,7 +12,7 @@ from qbound import __version__
 from qbound.arcs import Arc
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
-from qbound.cli.values import Content, check_targets, held, joint_units, write_all
+from qbound.cli.values import Content, check_targets, held, joint_units, json_text, write_all
 from qbound.region import Component, Region, violated
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
@@ -81,7 +80,7 @@ def _outputs(
         if options.npz:
             outputs.append((options.npz, polygon_npz(region, drawn, joints, units)))
     if options.json:
-        outputs.append((options.json, json.dumps(content, indent=1) + "\n"))
+        outputs.append((options.json, json_text(content)))
     return outputs
 
 

@@ -13,7 +13,15 @@ from qbound.cli import route
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints
 from qbound.cli.pathreport import Report, report, report_content
 from qbound.cli.route import Route
-from qbound.cli.values import Content, check_targets, csv_text, joint_units, shown, write_all
+from qbound.cli.values import (
+    Content,
+    check_targets,
+    csv_text,
+    joint_units,
+    json_text,
+    shown,
+    write_all,
+)
 from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
@@ -109,7 +117,7 @@ def _outputs(
     if options.json:
         content = report_content(robot, way, found, options)
         content["duration"] = None if times is None else float(times.t[-1])
-        outputs.append((options.json, json.dumps(content, indent=1) + "\n"))
+        outputs.append((options.json, json_text(content)))
     return outputs
 
 

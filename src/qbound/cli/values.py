@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 import os
 import sys
@@ -113,11 +114,6 @@ def check_targets(files: Sequence[str], kinds: Sequence[str] = ()) -> None:
             )
 
 
-def write_whole(file: str, write: Callable[[Path], object]) -> None:
-    """Write one file whole or not at all: a draft beside it, then renamed."""
-    write_all([(file, write)])
-
-
 def write_text(file: str, text: str) -> None:
     """Write a text whole or not at all; ``-`` is standard output."""
     write_all([(file, text)])
@@ -130,6 +126,11 @@ def _write(draft: Path, content: Content) -> None:
         draft.write_bytes(content)
     else:
         content(draft)
+
+
+def json_text(content: Mapping[str, object]) -> str:
+    """Return what a command found as JSON, a line an entry."""
+    return json.dumps(content, indent=1) + "\n"
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from typing import Any
 
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
 from qbound.cli.region import loop_content
-from qbound.cli.values import Content, check_targets, held, joint_value, shown, write_all
+from qbound.cli.values import Content, check_targets, held, joint_value, json_text, shown, write_all
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
 from qbound.workspace.areas import NoHomeError, Workspace, find_workspace, overlap
@@ -83,7 +82,7 @@ def _outputs(
 
         outputs.append((options.svg, workspace_picture(workspace, content["length_unit"])))
     if options.json:
-        outputs.append((options.json, json.dumps(content, indent=1) + "\n"))
+        outputs.append((options.json, json_text(content)))
     return outputs
 
 
