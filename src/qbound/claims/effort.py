@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import paper_rule, polygon
+from qbound.arcs import legendre
 from qbound.circle import nearest_turn
 from qbound.claims.facts import robot, vertices
 from qbound.claims.walks import by_windows, floor
@@ -71,7 +72,7 @@ def closed_form_area(nodes: int) -> float:
 
 def _sliver(bound: paper_rule.Bound, start: Floats, end: Floats, nodes: int) -> float:
     """Integral of the curve's height over its chord, from start to end."""
-    x, weight = np.polynomial.legendre.leggauss(nodes)
+    x, weight = legendre(nodes)
     chord = start + (x[:, None] + 1) / 2 * (end - start)
     lower, upper = paper_rule.geometric_bounds(robot(), bound.boundary, chord)
     curve = nearest_turn(upper if bound.k == paper_rule.UPPER else lower, chord[:, 1])

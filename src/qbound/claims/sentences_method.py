@@ -10,7 +10,7 @@ from qbound import clearance, paper, paper_rule, polygon
 from qbound.bodies import gaps
 from qbound.boundary import closest_approach
 from qbound.claims import effort
-from qbound.claims.facts import lettered, pairs, robot, vertices, walls
+from qbound.claims.facts import SMALL, lettered, pairs, robot, vertices, walls
 from qbound.claims.ledger import Finding, entry, judge, require
 from qbound.claims.walks import (
     SCALE,
@@ -30,9 +30,6 @@ from qbound.claims.walks import (
 )
 from qbound.paths.traversal import traverse
 from qbound.robot import Body, joint_symbols
-
-SMALL = 1e-9
-"""A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
 
 @entry(

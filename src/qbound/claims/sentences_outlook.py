@@ -9,7 +9,7 @@ import numpy as np
 
 from qbound import clearance, components, paper
 from qbound.boundary import closest_approach, position
-from qbound.claims.facts import lettered, pairs, robot
+from qbound.claims.facts import SMALL, lettered, pairs, robot
 from qbound.claims.ledger import Finding, entry, judge, require
 from qbound.claims.walks import (
     LEFT,
@@ -27,9 +27,6 @@ from qbound.claims.walks import (
 )
 from qbound.region import clearance_problem, solve
 from qbound.robot import Joint, Pair, Robot, joint_symbols, with_symbols
-
-SMALL = 1e-9
-"""A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
 
 @cache

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from qbound import bodies, circle_roots, pair_vector, paper_rule, polygon, scaling
 from qbound.boundary import closest_approach
-from qbound.claims.facts import mended, pairs, robot, square, vertices, walls
+from qbound.claims.facts import SMALL, mended, pairs, robot, square, vertices, walls
 from qbound.claims.ledger import Finding, entry, judge, undetermined
 from qbound.claims.walks import (
     body_gap,
@@ -24,9 +24,6 @@ from qbound.claims.walks import (
 from qbound.robot import Pair, Robot
 
 Floats = NDArray[np.float64]
-
-SMALL = 1e-9
-"""A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
 
 @entry(

@@ -6,7 +6,7 @@ import numpy as np
 
 from qbound import paper_rule
 from qbound.claims import effort
-from qbound.claims.facts import robot
+from qbound.claims.facts import SMALL, robot
 from qbound.claims.ledger import Finding, entry, judge, require
 from qbound.claims.walks import (
     LEFT,
@@ -27,9 +27,6 @@ from qbound.claims.walks import (
     workspace,
 )
 from qbound.sampling import sample
-
-SMALL = 1e-9
-"""A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
 
 @entry(
