@@ -171,15 +171,16 @@ def _integral(arc: Arc, form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
     return converged(lambda n: np.asarray(form(*arc.nodes(n))).sum(axis=0))
 
 
-def converged(sums: Callable[[int], Floats]) -> Floats:
-    """Return sums over n nodes, n doubled until they change by rounding alone."""
+def converged(sums: Callable[[int], Floats], smallest: float | None = None) -> Floats:
+    """Return sums over n nodes, n doubled until they change by rounding or by `smallest`."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)
-        if (np.abs(now - before) <= QUADRATURE * (1 + np.abs(now))).all():
-            return now
+        rounding = QUADRATURE * (1 + np.abs(now)) if smallest is None else smallest
+        if (np.abs(now - before) <= rounding).all():
+            break
         before = now
-    return before
+    return now
 
 
 @cache

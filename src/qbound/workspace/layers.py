@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property, partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arcs import NODES, legendre
+from qbound.arcs import NODES, converged, legendre
 from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
 from qbound.workspace.fibres import Fibres
@@ -27,8 +27,6 @@ from qbound.workspace.planar import PlanarArm, Range, turns_within
 Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]
 Slab = tuple[float, float]
-
-
 Measure = Callable[[Cover], Floats]
 
 
@@ -76,10 +74,11 @@ class Layers:
             laid = self.cover(u, slab)
             return np.asarray(self.arm.speed(u) * [measure(laid) for measure in measures])
 
-        slabs = list(pairwise(self.distances.tolist()))
-        rough = np.array([_quadrature(density, slab, NODES[0]) for slab in slabs])
+        slabs = pairwise(self.distances.tolist())
+        sums = [cache(partial(_quadrature, density, slab)) for slab in slabs]
+        rough = np.array([over(NODES[0]) for over in sums])
         smallest = QUADRATURE * float(np.abs(rough).sum(axis=0).max(initial=0))
-        fine = [_converged(density, *pair, smallest) for pair in zip(slabs, rough, strict=True)]
+        fine = [converged(over, smallest) for over in sums]
         return [float(value) for value in np.sum(fine, axis=0)]
 
     def cover(self, u: Floats, slab: Slab) -> Cover:
@@ -156,15 +155,3 @@ def _quadrature(density: Callable[[Floats, Slab], Floats], slab: Slab, n: int) -
     middle, half = sum(slab) / 2, (slab[1] - slab[0]) / 2
     weights = weights * math.pi / 2 * half * np.cos(angle)
     return np.asarray(density(middle + half * np.sin(angle), slab) @ weights)
-
-
-def _converged(
-    density: Callable[[Floats, Slab], Floats], slab: Slab, before: Floats, smallest: float
-) -> Floats:
-    """Double the nodes until the integrals change by no more than `smallest`."""
-    for n in NODES[1:]:
-        now = _quadrature(density, slab, n)
-        if np.abs(now - before).max() <= smallest:
-            break
-        before = now
-    return now

@@ -88,7 +88,7 @@ def _between(region: Fibres, component: Component, q: Floats) -> tuple[Loop, ...
     closed = [loop for loop in component.loops if not _goes_round(loop)]
     holes = [loop for loop in closed if polygon.area(_ring(loop)) < 0]
     for hole in holes:
-        if any(_encloses(_ring(hole), copy) for copy in _copies(region, q, _ring(hole))):
+        if any(polygon.contains(_ring(hole), copy) for copy in _copies(region, q, _ring(hole))):
             return (hole,)
     return tuple(loop for loop in component.loops if all(loop is not hole for hole in holes))
 
@@ -113,14 +113,6 @@ def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
 
 def _span(x: float, low: float, high: float) -> tuple[int, int]:
     return math.ceil((low - x) / math.tau), math.floor((high - x) / math.tau) + 1
-
-
-def _encloses(ring: Floats, q: Floats) -> bool:
-    """Tell whether a closed polygon winds around a point that is not on it."""
-    x, y = (ring - q).T
-    angles = np.diff(np.arctan2(np.append(y, y[0]), np.append(x, x[0])))
-    turns = (angles - math.tau * np.round(angles / math.tau)).sum() / math.tau
-    return bool(round(turns) != 0)
 
 
 def _exit(region: Fibres, a: Floats, b: Floats, n: int = 4097) -> Exit | None:
