@@ -25,6 +25,7 @@ from qbound.tolerances import (
     POSITIVE,
     ROUNDING,
     SAME_CRITICAL,
+    SAME_POINT,
     TANGENT,
     UNCHANGED,
 )
@@ -459,12 +460,12 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
 
 def _goes_on(plane: Plane, lines: Floats, at: Ints, pairs: Sequence[tuple[Root, Root]]) -> Bools:
     """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
-    step = UNCHANGED * np.minimum(lines[at] - lines[at - 1], lines[at + 1] - lines[at])
+    step = UNCHANGED**2 * np.minimum(lines[at] - lines[at - 1], lines[at + 1] - lines[at])
     t = lines[at][:, None] + step[:, None] * np.array([-1, 0, 1])
     bottoms, tops = [lower for lower, _ in pairs], [upper for _, upper in pairs]
     lower, upper = plane.follow(bottoms, t), plane.follow(tops, t)
     smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * (upper - lower).min(axis=1)
-    wide = (upper - lower).min(axis=1) > UNCHANGED
+    wide = (upper - lower).min(axis=1) > SAME_POINT * plane.lift_unit
     going = smooth & wide & plane.open(lines[at], lower[:, 1], upper[:, 1], POSITIVE)
     return np.asarray(going & _simple(plane, bottoms, t) & _simple(plane, tops, t))
 

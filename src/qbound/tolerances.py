@@ -52,12 +52,13 @@ TRANSVERSAL: Final = 1e-6
 """Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
 
 SAME_POINT: Final = 1e-12
-"""Joint values closer than this are one point of a drawn line."""
+"""Joint values closer than this are one point of a drawn line, or of a cell that ends there."""
 
 UNCHANGED: Final = 1e-3
-"""Part of a slab beside a critical line in which a cell that goes on may change by this part.
+"""Part of its height by which a cell that goes on may change beside a critical line.
 
-Where it changes more, or is narrower, the line is kept: that costs time and no answer."""
+It is looked at within the square of this part of a slab. Where it changes more the line is kept:
+that costs time and no answer."""
 
 QUADRATURE: Final = 1e-13
 """Relative change of a quadrature at doubled nodes under which it has converged.
