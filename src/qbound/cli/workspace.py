@@ -78,7 +78,7 @@ def _outputs(
 ) -> list[tuple[str, Content]]:
     outputs = list[tuple[str, Content]]()
     if options.svg:
-        from qbound.figures.workspace import workspace_picture
+        from qbound.figures.pictures import workspace_picture
 
         outputs.append((options.svg, workspace_picture(workspace, content["length_unit"])))
     if options.json:

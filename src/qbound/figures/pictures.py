@@ -1,4 +1,4 @@
-"""Whole pictures for a robot file: its region, the robot in a pose, a traversal; SVG or PNG.
+"""Whole pictures for a robot file: its region, a pose, a traversal, its workspace; SVG or PNG.
 
 Each is returned as bytes, the same on every run; `figures` draws the parts.
 """
@@ -15,9 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
 from qbound.figures import INK
+from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.paths.traversal import Traversal
 from qbound.region import Component, Region
 from qbound.robot import HalfSpace, Robot
+from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,14 +109,33 @@ def traversal_picture(
     return _picture(2, draw, kind)
 
 
-def _picture(panels: int, draw: Callable[[Sequence[Axes]], None], kind: str) -> bytes:
+def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
+    """Draw the places that the tool reaches and what bounds them; `unit` is that of lengths."""
+    names = ["xyz"[int(np.abs(axis).argmax())] for axis in workspace.arm.axes]
+
+    def draw(axes: Sequence[Axes]) -> None:
+        (ax,) = axes
+        draw_patches(ax, workspace)
+        draw_images(ax, workspace)
+        ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
+        legend(ax)
+
+    return _picture(1, draw, kind, size=(7, 6))
+
+
+def _picture(
+    panels: int,
+    draw: Callable[[Sequence[Axes]], None],
+    kind: str,
+    size: tuple[float, float] = PANEL,
+) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     silent = ("Date", "Creator") if kind == "svg" else ("Software",)
     with mpl.rc_context(figures.STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(PANEL[0] * panels, PANEL[1]))
+        figure = Figure(figsize=(size[0] * panels, size[1]))
         draw(figure.subplots(1, panels, squeeze=False)[0])
         buffer = BytesIO()
         figure.savefig(buffer, format=kind, dpi=160, metadata=dict.fromkeys(silent))

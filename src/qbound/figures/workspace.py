@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from io import BytesIO
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc
-from qbound.figures import COLLIDING, FEASIBLE, SECOND, STYLE, UNUSED, USED
+from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED
 from qbound.workspace.areas import SINGULAR, Aspect, Workspace
 
 if TYPE_CHECKING:
@@ -62,24 +61,6 @@ def draw_patches(ax: Axes, workspace: Workspace) -> list[Artist]:
 def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
     """Draw where the tool goes as the joints walk round every aspect, named by boundary."""
     return _draw_arcs(ax, workspace, workspace.arm.tool)
-
-
-def workspace_picture(workspace: Workspace, unit: str) -> bytes:
-    """Draw a workspace as SVG, the same bytes on every run; `unit` is that of lengths."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    names = ["xyz"[int(np.abs(axis).argmax())] for axis in workspace.arm.axes]
-    with mpl.rc_context(STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(7, 6))
-        ax = figure.add_subplot()
-        draw_patches(ax, workspace)
-        draw_images(ax, workspace)
-        ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
-        legend(ax)
-        buffer = BytesIO()
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return buffer.getvalue()
 
 
 def legend(ax: Axes, columns: int = 4) -> None:
