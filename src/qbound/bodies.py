@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.curves import cross
 from qbound.robot import Body, Robot
 from qbound.tolerances import CONTACT, ZERO_AMPLITUDE
 
@@ -136,7 +137,7 @@ def _anticlockwise(outline: ArrayLike) -> Floats:
     """Return the corners anticlockwise; refuse an outline that is not convex."""
     p = np.asarray(outline, dtype=float)
     step = np.roll(p, -1, axis=-2) - p
-    turn = _cross(step, np.roll(step, -1, axis=-2))
+    turn = cross(step, np.roll(step, -1, axis=-2))
     rounding = ZERO_AMPLITUDE * (step**2).sum(axis=-1).max()
     left, right = ((sense * turn >= -rounding).all(axis=-1) for sense in (1, -1))
     if not (left | right).all():
@@ -152,7 +153,3 @@ def _beyond_edges(p: Floats, r: Floats) -> Any:
     edge = (normal * p).sum(axis=-1)
     beyond = np.einsum("...ei,...ci->...ec", normal, r) - edge[..., None]
     return beyond.min(axis=-1).max(axis=-1)
-
-
-def _cross(u: Floats, v: Floats) -> Floats:
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

@@ -55,7 +55,7 @@ def squared_distance(
 
 def observer(robot: Robot, pair: Pair) -> str:
     """Return the frame a of Theorem 1: that of the pair's point nearer to the base."""
-    return min((robot.point(name).frame for name in pair.points), key=lambda f: _depth(robot, f))
+    return min((robot.point(name).frame for name in pair.points), key=robot.depth)
 
 
 def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
@@ -154,17 +154,9 @@ def components(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
 def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     """Return the sign of "first to second" and the two points, the one nearer to the base first."""
     first, second = (robot.point(name) for name in pair.points)
-    if _depth(robot, first.frame) <= _depth(robot, second.frame):
+    if robot.depth(first.frame) <= robot.depth(second.frame):
         return 1, first, second
     return -1, second, first
-
-
-def _depth(robot: Robot, frame: str) -> int:
-    """Count the joints between the base and a frame."""
-    frames = [robot.base, *(joint.frame for joint in robot.joints)]
-    if frame not in frames:
-        raise ValueError(f"no frame {frame!r}; there are {', '.join(frames)}")
-    return frames.index(frame)
 
 
 def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
@@ -173,8 +165,8 @@ def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, 
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
     u = add_constant(u, point.at)
     squared = add_constant(np.zeros_like(u[0]), point.at @ point.at)
-    last = _depth(robot, point.frame)
-    first = 0 if observer is None else _depth(robot, observer)
+    last = robot.depth(point.frame)
+    first = 0 if observer is None else robot.depth(observer)
     if first > last:
         raise ValueError(f"frame {observer!r} does not carry the point {name!r}")
     for j in reversed(range(first, last)):

@@ -99,10 +99,11 @@ def meetings(a: Floats, u: Floats, b: Floats, v: Floats) -> tuple[Floats, Floats
     t, s : ndarray, shape (m, n)
     """
     gap = b[None, :] - a[:, None]
-    turn = _cross(u[:, None], v[None, :])
+    turn = cross(u[:, None], v[None, :])
     with np.errstate(divide="ignore", invalid="ignore"):
-        return _cross(gap, v[None, :]) / turn, _cross(gap, u[:, None]) / turn
+        return cross(gap, v[None, :]) / turn, cross(gap, u[:, None]) / turn
 
 
-def _cross(u: Floats, v: Floats) -> Floats:
+def cross(u: Floats, v: Floats) -> Floats:
+    """Return ``u_x v_y - u_y v_x`` of plane vectors, shape (..., 2) to (...)."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

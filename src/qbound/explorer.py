@@ -116,13 +116,12 @@ def explorer_data(
         If not exactly two joints are left free.
     """
     held = dict(held or {})
-    free = [j for j in range(len(robot.joints)) if j not in held]
+    free = robot.free(held)
     if len(free) != 2:
         raise ValueError(
             f"the explorer shows two joints; {robot.name} has {len(free)} that are not held"
         )
-    q = np.array(robot.home, dtype=float)
-    q[list(held)] = list(held.values())
+    q = robot.with_held(robot.home[free], held)
     views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
     tool = position(robot, robot.tool)
     return {
@@ -136,7 +135,7 @@ def explorer_data(
         "joints": [_joint(joint) for joint in robot.joints],
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": [
-            {"frame": _depth(robot, b.frame), "outline": np.insert(b.polygon, 1, 0, 1).tolist()}
+            {"frame": robot.depth(b.frame), "outline": np.insert(b.polygon, 1, 0, 1).tolist()}
             for b in robot.bodies
         ],
         "boundaries": [_boundary(robot, b, rule) for b in robot.boundaries],
@@ -170,7 +169,7 @@ def _joint(joint: Joint) -> Data:
 
 def _point(robot: Robot, i: int) -> Data:
     point = robot.points[i]
-    depth = _depth(robot, point.frame)
+    depth = robot.depth(point.frame)
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
@@ -195,11 +194,6 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
     """List the terms of a form that are not zero: coefficient, then one index a joint."""
     places = np.argwhere(form.coefficients != 0)
     return [[float(form.coefficients[tuple(p)]), *p.tolist()] for p in places]
-
-
-def _depth(robot: Robot, frame: str) -> int:
-    """Count the joints between the base and a frame."""
-    return [robot.base, *(joint.frame for joint in robot.joints)].index(frame)
 
 
 def _reach(robot: Robot) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -124,6 +124,25 @@ class Robot:
     def boundary(self, name: str) -> Pair | HalfSpace:
         """Return the boundary of that name."""
         return _named("boundary", {b.name: b for b in self.boundaries}, name)
+
+    def depth(self, frame: str) -> int:
+        """Count the joints between the base and a frame; ValueError if there is no such frame."""
+        frames = [self.base, *(joint.frame for joint in self.joints)]
+        if frame not in frames:
+            raise ValueError(f"no frame {frame!r}; there are {', '.join(frames)}")
+        return frames.index(frame)
+
+    def free(self, held: Collection[int]) -> list[int]:
+        """Return the joints that are not held, by index."""
+        return [j for j in range(len(self.joints)) if j not in held]
+
+    def with_held(self, q: ArrayLike, held: Mapping[int, float]) -> NDArray[np.float64]:
+        """Put the held joints' values beside those of the free ones, (..., free) to (..., n)."""
+        values = np.asarray(q, dtype=float)
+        full = np.empty((*values.shape[:-1], len(self.joints)))
+        full[..., self.free(held)] = values
+        full[..., list(held)] = list(held.values())
+        return full
 
     def frames(self, q: ArrayLike) -> Frames:
         """Forward kinematics (Table 2): every joint's frame and every point as a frame.

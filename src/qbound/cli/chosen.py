@@ -5,9 +5,6 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from qbound import paper_rule
 from qbound.outline import from_lowest
 from qbound.region import Component, Region, find_region, solve
@@ -53,16 +50,3 @@ def component_of(region: Region, k: int) -> Component:
     if not 0 <= k < count:
         raise ValueError(f"no component {k}; there are {count}, numbered from 0")
     return region.components[k]
-
-
-def free_joints(robot: Robot, values: dict[int, float]) -> list[int]:
-    """Return the joints that are not held."""
-    return [j for j in range(len(robot.joints)) if j not in values]
-
-
-def embedded(robot: Robot, values: dict[int, float], q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Put the held joints' values beside those of the free ones, (..., free) to (..., n)."""
-    full = np.empty((*q.shape[:-1], len(robot.joints)))
-    full[..., free_joints(robot, values)] = q
-    full[..., list(values)] = list(values.values())
-    return full

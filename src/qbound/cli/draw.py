@@ -13,7 +13,6 @@ from qbound.cli.chosen import (
     add_rule,
     add_slice,
     component_of,
-    free_joints,
     region_by_rule,
 )
 from qbound.cli.values import check_targets, configuration, held, write_all
@@ -66,7 +65,7 @@ def _picture(
     robot, chart = load_robot(options.robot), None
     if both or options.region:
         region = region_by_rule(robot, options.rule, values)
-        first, second = free_joints(robot, values)
+        first, second = robot.free(values)
         numbered = component_of(region, options.component) if region.components else None
         chart = Chart(region, (first, second), numbered)
     plane = (plane_of_motion(robot) or (0, 2)) if both or options.arm else None

@@ -6,11 +6,9 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from qbound import __version__
 from qbound.arcs import Arc
-from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
 from qbound.cli.values import Content, check_targets, held, joint_units, json_text, write_all
 from qbound.region import Component, Region, violated
@@ -67,7 +65,7 @@ def _outputs(
     values: dict[int, float],
 ) -> list[tuple[str, Content]]:
     """Make what was asked for; files in the order in which they are named here."""
-    joints, free = content["joints"], free_joints(robot, values)
+    joints, free = content["joints"], robot.free(values)
     units, outputs = joint_units(robot, free), list[tuple[str, Content]]()
     if options.svg:
         outputs.append((options.svg, _draw(robot, content["home"]["q"], region, free)))
@@ -88,8 +86,8 @@ def region_content(
     robot: Robot, region: Region, rule: str, values: dict[int, float]
 ) -> dict[str, Any]:
     """Return the JSON form of a region, schema qbound/region/1."""
-    q = np.array(robot.home)
-    q[list(values)] = list(values.values())
+    free = robot.free(values)
+    q = robot.with_held(robot.home[free], values)
     found = violated(robot, q)
     feasible = region.home is not None if rule == "paper" else not found
     return {
@@ -97,7 +95,7 @@ def region_content(
         "robot": robot.name,
         "version": __version__,
         "rule": rule,
-        "joints": [joint.name for j, joint in enumerate(robot.joints) if j not in values],
+        "joints": [robot.joints[j].name for j in free],
         "home_component": None if region.home is None else 0,
         "feasible_area": region.area,
         "home": {
@@ -112,7 +110,7 @@ def region_content(
 
 def _workspace_content(robot: Robot, region: Region, values: dict[int, float]) -> dict[str, Any]:
     """Return the workspace of the home component, or the reason why there is none."""
-    home = robot.home[free_joints(robot, values)]
+    home = robot.home[robot.free(values)]
     try:
         found = find_workspace(planar_arm(robot, values), region.problem, home)
     except (NoPlanarWorkspaceError, NoHomeError) as reason:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from qbound import polygon
 from qbound.arcs import Arc
-from qbound.cli.chosen import component_of, embedded, region_by_rule
+from qbound.cli.chosen import component_of, region_by_rule
 from qbound.cli.values import held
 from qbound.paths.traversal import Leg, Traversal, follow, straight
 from qbound.region import Component, Region
@@ -88,7 +88,7 @@ def _along_lines(
         raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
     if options.scale != 1:
         corners = polygon.scaled(corners, options.scale, polygon.centroid(corners))
-    q = embedded(robot, values, corners)
+    q = robot.with_held(corners, values)
     legs = [(f"{a} to {b}", straight(robot, q[a - 1], q[b - 1])) for a, b in pairwise(order)]
     return [str(number) for number in order], legs
 
@@ -124,7 +124,7 @@ def _joined(
 
 def _arc_leg(robot: Robot, values: dict[int, float], arc: Arc, backwards: bool) -> Leg:
     def at(s: Floats) -> Floats:
-        return embedded(robot, values, arc.at(1 - s if backwards else s))
+        return robot.with_held(arc.at(1 - s if backwards else s), values)
 
     return Leg(at, parts=len(arc.pieces.roots))
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from qbound.cli import route
-from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints
+from qbound.cli.chosen import add_robot, add_rule, add_slice
 from qbound.cli.pathreport import Report, report, report_content
 from qbound.cli.route import Route
 from qbound.cli.values import (
@@ -134,7 +134,7 @@ def _csv(robot: Robot, walk: Traversal, times: Trajectory | None) -> str:
 def _picture(robot: Robot, way: Route, plane: tuple[int, int]) -> bytes:
     from qbound.figures.pictures import Chart, traversal_picture
 
-    first, second = free_joints(robot, way.held)
+    first, second = robot.free(way.held)
     return traversal_picture(robot, Chart(way.region, (first, second)), way.walk, way.stops, plane)
 
 

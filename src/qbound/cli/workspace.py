@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from qbound import __version__
-from qbound.cli.chosen import add_robot, add_rule, add_slice, free_joints, region_by_rule
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.region import loop_content
 from qbound.cli.values import Content, check_targets, held, joint_value, json_text, shown, write_all
 from qbound.robot import Robot
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     files = [file for file in (options.svg, options.json) if file]
     check_targets(files)
     values = held(robot, options.slice)
-    free = free_joints(robot, values)
+    free = robot.free(values)
     places = [_place(text) for text in options.at]
     poses = [_pose(robot, free, text) for text in options.go or ()]
     arm, home = planar_arm(robot, values), robot.home[free]

@@ -131,7 +131,7 @@ def singular_crossings(
         form = singular_form(robot, held)
     except NoPlanarWorkspaceError:
         return None
-    free = [j for j in range(len(robot.joints)) if j not in held]
+    free = robot.free(held)
 
     def det(q: Floats) -> Floats:
         return np.asarray(form(q[..., free]))

@@ -152,7 +152,7 @@ def scaled_polygon(
     if not scale > 0:
         raise ValueError(f"a scale of {scale}: wanted a number of more than 0")
     scaled = polygon.scaled(corners, scale, polygon.centroid(corners))
-    return filled([points_of(robot, _with_held(robot, scaled, held))], margin)
+    return filled([points_of(robot, robot.with_held(scaled, held or {}))], margin)
 
 
 def inner_polygon(
@@ -184,7 +184,8 @@ def inner_polygon(
     component = _home(asked_for_more(robot, inset), held)
     loops = [_thinned(loop, per_arc) for loop in component.loops]
     return filled(
-        [_distinct(_within_limits(robot, _with_held(robot, loop, held))) for loop in loops], margin
+        [_distinct(_within_limits(robot, robot.with_held(loop, held or {}))) for loop in loops],
+        margin,
     )
 
 
@@ -220,16 +221,6 @@ def _thinned(loop: Sequence[Any], per_arc: int) -> Floats:
     return np.concatenate(
         [arc.points[row[:-1].astype(int)] for arc, row in zip(loop, rows, strict=True)]
     )
-
-
-def _with_held(robot: Robot, q: Floats, held: Mapping[int, float] | None) -> Floats:
-    """Put the held joints' values back between the two free ones."""
-    full = np.empty((len(q), len(robot.joints)))
-    free = [j for j in range(len(robot.joints)) if j not in (held or {})]
-    full[:, free] = q
-    for j, value in (held or {}).items():
-        full[:, j] = value
-    return full
 
 
 def _within_limits(robot: Robot, q: Floats) -> list[Point]:
