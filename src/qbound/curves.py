@@ -10,6 +10,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.tolerances import ON_BOUNDARY
+
 Floats = NDArray[np.float64]
 Curve = Callable[[Floats], Floats]
 """Parameters in [0, 1], shape (k,), to places, shape (k, d)."""
@@ -102,6 +104,26 @@ def meetings(a: Floats, u: Floats, b: Floats, v: Floats) -> tuple[Floats, Floats
     turn = cross(u[:, None], v[None, :])
     with np.errstate(divide="ignore", invalid="ignore"):
         return cross(gap, v[None, :]) / turn, cross(gap, u[:, None]) / turn
+
+
+def tangent_corners(q: Floats, normal: Floats) -> Floats:
+    """Return where the tangents at neighbouring points of a curve meet, shape (m - 1, 2).
+
+    Tangents along one straight line meet in the middle.
+
+    Parameters
+    ----------
+    q, normal : ndarray, shape (m, 2)
+        Points of the curve and what is normal to it there, of any length.
+    """
+    size = np.abs(normal).max(axis=-1, keepdims=True)
+    normal = normal / np.where(size > 0, size, 1)
+    pair = np.stack([normal[:-1], normal[1:]], axis=1)
+    level = (pair * np.stack([q[:-1], q[1:]], axis=1)).sum(axis=-1)
+    flat = np.abs(np.linalg.det(pair)) <= ON_BOUNDARY  # one straight line
+    pair[flat] = np.eye(2)
+    met = np.linalg.solve(pair, level[..., None])[..., 0]
+    return np.asarray(np.where(flat[:, None], (q[:-1] + q[1:]) / 2, met))
 
 
 def cross(u: Floats, v: Floats) -> Floats:

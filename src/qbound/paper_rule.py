@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary import clearance, pair_vector
 from qbound.circle import CircleRoots, circle_roots
+from qbound.curves import tangent_corners
 from qbound.harmonic import HarmonicForm
 from qbound.region import Problem, state
 from qbound.robot import HalfSpace, Pair, Robot
@@ -219,8 +220,8 @@ def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
         (bound,) = set(one.bounds) & set(other.bounds)
         if isinstance(robot.boundary(bound.boundary), HalfSpace):
             curve = _curve_between(robot, bound, one.q, other.q, n)
-            form = clearance(robot, robot.boundary(bound.boundary))
-            result += list(_tangent_corners(form, curve) if tangents else curve[1:-1])
+            normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
+            result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
     return np.array(result)
 
 
@@ -230,15 +231,6 @@ def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: in
     lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
     q2 = np.unwrap(upper if bound.k == UPPER else lower)
     return np.stack([q1, q2 + start[1] - q2[0]], -1)
-
-
-def _tangent_corners(form: HarmonicForm, curve: Floats) -> Floats:
-    """Return the points where neighbouring tangents of a level curve meet."""
-    q1, q2 = curve.T
-    along_q1, along_q2 = form.gradient(curve).T
-    slope = -along_q1 / along_q2
-    meet = -np.diff(q2 - slope * q1) / np.diff(slope)
-    return np.stack([meet, q2[:-1] + slope[:-1] * (meet - q1[:-1])], -1)
 
 
 def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc
+from qbound.curves import tangent_corners
 from qbound.harmonic import HarmonicForm
 from qbound.region import Component, Problem
 from qbound.scaling import first_exit, least_along_edges
@@ -174,7 +175,7 @@ def _corners(problem: Problem, arc: Arc, n: int) -> Iterator[Floats]:
         q = arc.at(np.linspace(low, high, parts * (n - 1) + 1))
         yield q[:1]
         inside = _bends_in(form, arc.at([(low + high) / 2]))[0]
-        yield _tangent_corners(form, q) if inside else q[1:-1]
+        yield tangent_corners(q, form.gradient(q)) if inside else q[1:-1]
 
 
 def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
@@ -203,16 +204,3 @@ def _inflections(form: HarmonicForm, arc: Arc) -> Floats:
         same = _bends_in(form, arc.at(middle)) == first
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return np.concatenate([[0.0], low, [1.0]])
-
-
-def _tangent_corners(form: HarmonicForm, q: Floats) -> Floats:
-    """Return the points where the tangents at neighbouring points of a level curve meet."""
-    normal = form.gradient(q)
-    size = np.abs(normal).max(axis=-1, keepdims=True)
-    normal = normal / np.where(size > 0, size, 1)
-    pair = np.stack([normal[:-1], normal[1:]], axis=1)
-    level = (pair * np.stack([q[:-1], q[1:]], axis=1)).sum(axis=-1)
-    flat = np.abs(np.linalg.det(pair)) <= ON_BOUNDARY  # one straight line
-    pair[flat] = np.eye(2)
-    met = np.linalg.solve(pair, level[..., None])[..., 0]
-    return np.asarray(np.where(flat[:, None], (q[:-1] + q[1:]) / 2, met))
