@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Any
 
 BITS = 160
-"""Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, 2^-43."""
+"""Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
 
 Table = dict[str, Any]
 
