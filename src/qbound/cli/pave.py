@@ -9,6 +9,7 @@ from typing import Any
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_slice
 from qbound.cli.values import held, json_text, write_text
+from qbound.proofs.balls import above, below
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave
 from qbound.robotfile import load_robot
@@ -59,7 +60,7 @@ def paving_content(robot: str, paving: Paving) -> dict[str, Any]:
         "schema": "qbound/paving/1",
         "robot": load_robot(robot).name,
         "version": __version__,
-        "volume": {"inner": _bounds(inner)[0], "outer": _bounds(outer)[1]},
+        "volume": {"inner": below(inner), "outer": above(outer)},
         "undecided": float(paving.undecided_fraction),
         "range": [[float(low), float(high)] for low, high in paving.room.ends],
         "cells": {
@@ -71,13 +72,6 @@ def paving_content(robot: str, paving: Paving) -> dict[str, Any]:
             )
         },
     }
-
-
-def _bounds(volume: Any) -> tuple[float, float]:
-    """Return doubles certainly not above and not below a ball."""
-    from qbound.proofs.balls import above, below
-
-    return below(volume), above(volume)
 
 
 def _say(content: dict[str, Any]) -> None:

@@ -15,6 +15,7 @@ from qbound import polygon
 from qbound.arcs import Arc
 from qbound.region import Component
 from qbound.workspace.fibres import Fibres
+from qbound.workspace.planar import turns_within
 
 Floats = NDArray[np.float64]
 Loop = tuple[Arc, ...]
@@ -104,15 +105,11 @@ def _goes_round(loop: Loop) -> bool:
 def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
     """Return q with the full turns of unlimited joints that bring it into a ring's extent."""
     low, high = ring.min(axis=0), ring.max(axis=0)
-    turns = [
-        [0.0] if limits is not None else math.tau * np.arange(*_span(x, a, b))
+    places = [
+        [x] if limits is not None else turns_within("revolute", x, (a, b))
         for x, limits, a, b in zip(q, region.problem.ranges, low, high, strict=True)
     ]
-    return [q + np.array([one, other]) for one in turns[0] for other in turns[1]]
-
-
-def _span(x: float, low: float, high: float) -> tuple[int, int]:
-    return math.ceil((low - x) / math.tau), math.floor((high - x) / math.tau) + 1
+    return [np.array([one, other]) for one in places[0] for other in places[1]]
 
 
 def _exit(region: Fibres, a: Floats, b: Floats, n: int = 4097) -> Exit | None:
