@@ -117,6 +117,18 @@ def row_of(table: Table, kind: str, name: str) -> Table:
     return row
 
 
+def in_unit(table: Table, unit: str, scale: float) -> Table:
+    """Write the lengths of a robot table in another unit, `scale` of which are one of the old."""
+    table["length_unit"] = unit
+    for row in table["joint"]:
+        row["origin"] = [scale * x for x in row["origin"]]
+    for row in table["point"]:
+        row["at"] = [scale * x for x in row["at"]]
+    for row in table["boundary"]:
+        row |= {k: scale * row[k] for k in ("clearance", "offset") if k in row}
+    return table
+
+
 def homogeneous(rotation: Any, origin: Any) -> Floats:
     """The 4 x 4 matrix of a frame."""
     matrix = np.eye(4)

@@ -13,6 +13,7 @@ from oracles import (
     VECTORS,
     equation_29,
     frame_matrix,
+    in_unit,
     packaged_table,
     point_seen_from,
     robot_tables,
@@ -249,15 +250,7 @@ def test_clearance_of_b7_is_its_only_component() -> None:
 @pytest.mark.parametrize(("unit", "scale"), [("mm", 10.0), ("m", 0.01)])
 def test_units_of_length_scale_every_form(unit, scale) -> None:
     """Two units: the same file in mm and in m; lengths by the factor, clearances by its square."""
-    table = packaged_table()
-    table["length_unit"] = unit
-    for row in table["joint"]:
-        row["origin"] = [scale * x for x in row["origin"]]
-    for row in table["point"]:
-        row["at"] = [scale * x for x in row["at"]]
-    for row in table["boundary"]:
-        row |= {k: scale * row[k] for k in ("clearance", "offset") if k in row}
-    robot = parse_robot(table)
+    robot = parse_robot(in_unit(packaged_table(), unit, scale))
     for old, new in zip(MINERVA.boundaries, robot.boundaries, strict=True):
         power = 2 if old.name < "B5" else 1
         expected = scale**power * clearance(MINERVA, old).coefficients

@@ -13,6 +13,7 @@ from oracles import (
     circle_zeros,
     equation_29,
     feasible_by_paper,
+    in_unit,
     packaged_table,
     point_seen_from,
     row_of,
@@ -289,17 +290,6 @@ def test_table_4_read_in_millimetres_leaves_beta_4_without_a_root() -> None:
 
 
 # --- any robot -----------------------------------------------------------------------------------
-
-
-def in_unit(table: Table, unit: str, scale: float) -> Table:
-    table["length_unit"] = unit
-    for row in table["joint"]:
-        row["origin"] = [scale * x for x in row["origin"]]
-    for row in table["point"]:
-        row["at"] = [scale * x for x in row["at"]]
-    for row in table["boundary"]:
-        row |= {k: scale * row[k] for k in ("clearance", "offset") if k in row}
-    return table
 
 
 def with_contacts(table: Table) -> Table:
