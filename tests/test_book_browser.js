@@ -96,13 +96,12 @@ function cutFormulas() {
 
 function brokenWords() {
   return [...document.querySelectorAll(".prev-next-title")].flatMap((title) => {
-    const [text] = [...textsOf(title)];
-    return [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
+    return [...textsOf(title)].flatMap((text) => [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
       const range = document.createRange();
       range.setStart(text, word.index);
       range.setEnd(text, word.index + word[0].length);
       return range.getClientRects().length > 1 ? word[0] : "";
-    });
+    }));
   }).filter(Boolean);
 }
 

@@ -96,8 +96,17 @@ function repairNames() {
   }
 }
 
+// A module's name is long for a phone: it may break after a dot.
+function breakAfterDots() {
+  for (const title of document.querySelectorAll(".prev-next-title")) {
+    const parts = title.textContent.split(/(?<=\.)(?=\w)/);
+    title.replaceChildren(...parts.flatMap((part) => [part, document.createElement("wbr")]));
+  }
+}
+
 window.addEventListener("load", () => {
   repairNames();
+  breakAfterDots();
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
   formulasShown.then(holdPunctuation).then(watchBoxes);

@@ -5,6 +5,7 @@ Meaning is what a schema cannot say: finite numbers, unique names, one chain, re
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,6 +13,14 @@ from typing import Any
 from qbound.schema import Place, first_fault, one_line, place, shown
 
 Table = Mapping[str, Any]
+
+LARGEST = 1e100
+"""Largest number of a file: squares of lengths, and their products, must stay within floats."""
+
+MOST_TURNS = 100
+"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
+
+TURN = {"deg": 360.0, "rad": math.tau}
 
 
 class RobotFileError(ValueError):
@@ -49,6 +58,9 @@ def _check_finite(table: Table) -> None:
     for path, value in _leaves(table):
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise _fault(table, path, f"{shown(value)} is not a finite number")
+        size = abs(value) if isinstance(value, int | float) else 0
+        if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
+            raise _fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
 
 
 def _check_names(table: Table) -> None:
@@ -139,6 +151,11 @@ def _check_limits(table: Table) -> None:
         elif not joint["limits"][0] < joint["limits"][1]:
             text = f"{shown(joint['limits'])} does not rise; wanted: [lowest, highest]"
             raise _fault(table, path, text)
+        elif joint["type"] == "revolute":
+            turns = (joint["limits"][1] - joint["limits"][0]) / TURN[table["angle_unit"]]
+            if turns > MOST_TURNS:
+                text = f"{shown(joint['limits'])} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+                raise _fault(table, path, text)
 
 
 def _listed(names: Sequence[str]) -> str:

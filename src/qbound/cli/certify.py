@@ -71,6 +71,8 @@ def run(options: argparse.Namespace) -> int:
 def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement:
     """State what the options ask for."""
     values = held(robot, options.slice)
+    if options.inset is not None and not options.region:
+        raise ValueError("--inset: only --region is proved but for an inset")
     if options.box:
         return statements.box(*_ranges(robot, options.box), options.margin)
     if options.path:
@@ -80,7 +82,7 @@ def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement
             [statements.anticlockwise(read_points(robot, options.polygon))], options.margin
         )
     if options.region:
-        inset = options.inset or statements.usual_inset(robot)
+        inset = statements.usual_inset(robot) if options.inset is None else options.inset
         return statements.inner_polygon(robot, inset, margin=options.margin, held=values)
     scale = float(number(options.scale or "1"))
     return statements.home_polygon(robot, scale, options.margin, values)

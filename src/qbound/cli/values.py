@@ -36,6 +36,8 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
         name, _, number = text.partition("=")
         if name not in names:
             raise ValueError(f"--slice {text}: no joint {name!r}; there are {', '.join(names)}")
+        if names.index(name) in found:
+            raise ValueError(f"--slice {text}: {name!r} is held twice")
         found[names.index(name)] = joint_value(robot, names.index(name), number)
     return found
 
