@@ -373,7 +373,8 @@ BAD: dict[str, tuple[Change, str, str]] = {
         put("joint[0].limits", [math.nan, 1]), "joint[0].limits[0] (q1)", "nan is not a finite num",
     ),
     "too large an offset": (
-        put("boundary[6].offset", 1e200), "boundary[6].offset (B7)", "1e+200 is too large; wanted: ",
+        put("boundary[6].offset", 1e200), "boundary[6].offset (B7)",
+        "1e+200 is too large; wanted: at most 1e+100",
     ),
     "hundreds of turns": (
         put("joint[1].limits", [-150000, 150000]), "joint[1].limits (q2)",
