@@ -441,3 +441,13 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert "line 3" in capsys.readouterr().err
     path.write_text("0,0\n-20,-45\n20,-45\n")
     assert cli.main(["certify", "minervabot-v2", "--polygon", str(path)]) == 0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--inset", "1"], ["--region", "--inset", "0"], ["--largest-scale", "--margin", "1"]],
+    ids=" ".join,
+)
+def test_options_that_say_nothing_together_are_refused(options, capsys):
+    assert cli.main(["certify", "minervabot-v2", *options]) == 2
+    assert "inset" in (error := capsys.readouterr().err) or "--largest-scale" in error

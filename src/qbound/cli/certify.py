@@ -58,6 +58,8 @@ def run(options: argparse.Namespace) -> int:
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
     _check_length(options.margin)
+    if options.largest_scale and (options.margin != "0" or options.slice):
+        raise ValueError("--largest-scale: for the robot as it is, without --margin and --slice")
     if options.largest_scale:
         return _say_bracket(robot, bracket_scale(text), options.output)
     answer = certify(text, statement(robot, options))

@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     content = region_content(robot, region, options.rule, values)
     write_all(_outputs(options, robot, region, content, values))
     if "-" not in files:
-        _say(region, content)
+        _say(region, content, joint_units(robot, robot.free(values)))
     return 0 if content["home"]["feasible"] else 1
 
 
@@ -147,14 +147,15 @@ def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
     }
 
 
-def _say(region: Region, content: dict[str, Any]) -> None:
+def _say(region: Region, content: dict[str, Any], units: Sequence[str]) -> None:
+    unit = f"{units[0]}^2" if units[0] == units[1] else " ".join(units)
     for violation in content["home"]["violated"]:
         print(f"home violates {violation['boundary']}, margin {violation['margin']:.6g}")
-    print(f"{len(region.components)} components, area {region.area:.9g} in all")
+    print(f"{len(region.components)} components, area {region.area:.9g} {unit} in all")
     for component in region.components:
         home = ", with the home pose" if component.contains_home else ""
         vertices = len(component.vertices)
-        print(f"  area {component.area:.9g}, {vertices} vertices{home}")
+        print(f"  area {component.area:.9g} {unit}, {vertices} vertices{home}")
 
 
 def _draw(robot: Robot, q: Sequence[float], region: Region, free: Sequence[int]) -> bytes:
