@@ -95,6 +95,8 @@ def environment() -> dict[str, str]:
         "IPYTHONDIR": str(VENV / "ipython"),
         "JUPYTER_PREFER_ENV_PATH": "1",
         "MPLCONFIGDIR": str(VENV / "matplotlib"),
+        "OMP_NUM_THREADS": "1",  # sums of matrix products in one order, whatever the cores
+        "OPENBLAS_NUM_THREADS": "1",
         "PYTHONNOUSERSITE": "1",
     }
 

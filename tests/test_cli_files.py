@@ -453,3 +453,13 @@ def test_ctrl_c_ends_without_a_traceback_and_without_a_file(capsys, monkeypatch)
     status, out, err = run(capsys, "sample minervabot-v2 -n 5 --seed 1 --csv a")
     assert (status, out, err) == (130, "", "qbound: stopped\n")
     assert files() == set()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["sample", "-n", "99999999999999", "--seed", "1"], ["traverse", "1", "2", "--scale", "1e10"]],
+)
+def test_what_does_not_fit_into_memory_is_one_sentence(words, capsys):
+    command, *options = words
+    assert main([command, "minervabot-v2", *options]) == 2
+    assert capsys.readouterr().err.startswith("qbound: ")

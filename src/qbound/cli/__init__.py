@@ -61,6 +61,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ValueError, OSError, ImportError) as error:
         print(f"qbound: {error}", file=sys.stderr)
         return 2
+    except MemoryError:
+        print("qbound: this asks for more memory than there is", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         print("qbound: stopped", file=sys.stderr)
         return STOPPED
