@@ -64,10 +64,6 @@ class Pieces:
         """Tell of each piece whether it is straight: along a fibre, or at an end."""
         return [root is None or root.form < 0 for root in self.roots]
 
-    def ordered(self, place: Floats) -> Floats:
-        """From (base, lift) to the order of the joints."""
-        return place if self.base == 0 else place[..., ::-1]
-
     def places(self, angle: Floats) -> Floats:
         """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
         part = (1 + np.sin(angle))[:, None] / 2
@@ -79,7 +75,7 @@ class Pieces:
         values = self.plane.follow(roots, q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
         inside = np.abs(angle) < math.pi / 2  # the ends are given
         q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
-        return self.ordered(q)
+        return ordered(q, self.base)
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
@@ -112,12 +108,12 @@ class Arc:
     @property
     def start(self) -> Floats:
         """Joint values at the start, shape (2,)."""
-        return self.pieces.ordered(self.pieces.start[0])
+        return ordered(self.pieces.start[0], self.pieces.base)
 
     @property
     def end(self) -> Floats:
         """Joint values at the end, shape (2,)."""
-        return self.pieces.ordered(self.pieces.end[-1])
+        return ordered(self.pieces.end[-1], self.pieces.base)
 
     @cached_property
     def points(self) -> Floats:
@@ -149,6 +145,11 @@ class Arc:
         """
         q, dq = self.pieces.nodes(n)
         return q.reshape(-1, 2), dq.reshape(-1, 2)
+
+
+def ordered(place: Floats, base: int) -> Floats:
+    """Bring places, shape (..., 2), from (base, lift) to the order of the joints, or back."""
+    return place if base == 0 else place[..., ::-1]
 
 
 def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) -> Floats:

@@ -17,7 +17,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.decomposition import TURN, Cell, Decomposition, Plane
+from qbound.decomposition import TURN, Cell, Decomposition, Plane, Root
 from qbound.tolerances import POSITIVE, TOUCH
 
 Floats = NDArray[np.float64]
@@ -96,8 +96,10 @@ class Complex:
         return np.stack([lower, np.maximum(lower, upper)])
 
     def _roots(self, chosen: Sequence[int], t: Floats) -> Floats:
-        roots = [self.cells[k].lower for k in chosen] + [self.cells[k].upper for k in chosen]
-        return self.plane.follow(roots, np.concatenate([t, t])).reshape(2, *t.shape)
+        return self.plane.follow(self._bounding(chosen), np.tile(t, (2, 1))).reshape(2, *t.shape)
+
+    def _bounding(self, chosen: Sequence[int]) -> list[Root]:
+        return [self.cells[k].lower for k in chosen] + [self.cells[k].upper for k in chosen]
 
     def spans(self, chosen: Sequence[int]) -> Floats:
         """Return the base values between which chosen cells lie, shape (k, 2)."""
@@ -111,16 +113,16 @@ class Complex:
         roots to speak of: their limit from inside the slab is meant.
         """
         chosen = range(len(self.cells))
-        start, width = self.spans(chosen)[:, :1], np.diff(self.spans(chosen))
+        spans = self.spans(chosen)
+        start, width = spans[:, :1], np.diff(spans)
         inset = 1e-4 * np.array([0, 1, 2, 3])
         t = start + width * np.concatenate([inset, 1 - inset])
         values = self._roots(chosen, t).reshape(2, -1, 2, 4)
         at, near, far, farther = np.moveaxis(values, -1, 0)
         if self.plane.lift_kind == "revolute":
             at = at + TURN * np.round((near - at) / TURN)
-        roots = [cell.lower for cell in self.cells] + [cell.upper for cell in self.cells]
-        blank = self.plane.blank(roots, np.concatenate([t, t])[:, [0, 4]]).reshape(at.shape)
-        lower, upper = np.where(blank, 3 * near - 3 * far + farther, at)
+        blank = self.plane.blank(self._bounding(chosen), np.tile(t[:, [0, 4]], (2, 1)))
+        lower, upper = np.where(blank.reshape(at.shape), 3 * near - 3 * far + farther, at)
         return np.stack([lower, np.maximum(lower, upper)], axis=-1)
 
     # --- lines ----------------------------------------------------------------------------------

@@ -107,6 +107,9 @@ class Plane:
         self.table: Floats = self.scaled / powers
         # Largest values of the coefficients along the lift: what is rounding is so beside these.
         self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
+        # Ends of the lift's range are roots of forms -1 and -2: two rows of zeros at the end.
+        self._rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
+        self._row_sizes = np.concatenate([self.sizes, np.zeros((2, 3))])
         slides = self.lift_kind == "prismatic"
         self.affine = [slides and not any(row) for row in self.table[:, :, 2].tolist()]
 
@@ -171,10 +174,7 @@ class Plane:
     def _lifted(self, roots: Sequence[Root], t: Floats) -> tuple[Floats, Floats]:
         """Coefficients along the lift, (k, n, 3), and their sizes, (k, 1, 3); of ends all zero."""
         forms = [root.form for root in roots]
-        table, sizes = (
-            np.concatenate([x, np.zeros((2, *x.shape[1:]))]) for x in (self.table, self.sizes)
-        )
-        return basis(self.base_kind, t) @ table[forms], sizes[forms][:, None]
+        return basis(self.base_kind, t) @ self._rows[forms], self._row_sizes[forms][:, None]
 
 
 def _settled(c: Floats, size: Floats, kind: Kind) -> Floats:

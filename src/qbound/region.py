@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain, islice
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arcs import NODES, Arc, legendre
+from qbound.arcs import NODES, Arc, legendre, ordered
 from qbound.boundary import clearance, pair_vector, required_distance
 from qbound.cells import Complex
 from qbound.decomposition import TURN, Plane, Range, decompose
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import QUADRATURE
+from qbound.tolerances import QUADRATURE, SAME_POINT
 from qbound.walks import Layout, Sheets, Walk, behind
 
 Floats = NDArray[np.float64]
@@ -44,6 +45,12 @@ class Problem:
     names: tuple[str, ...]
     ranges: tuple[Range, Range]
     limits: tuple[tuple[str, str], tuple[str, str]]
+
+    def with_form(self, name: str, coefficients: Floats) -> Problem:
+        """Return the problem with one more form, of coefficients (3, 3), as its last."""
+        table = np.concatenate([self.forms.coefficients, coefficients[None]])
+        forms = HarmonicForm(table, self.forms.kinds)
+        return replace(self, forms=forms, names=(*self.names, name))
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,12 +169,12 @@ def components_over(
     """
     cells = Complex(decompose(Plane(problem.forms, problem.ranges, base)))
     found = _measured(cells, problem, np.asarray(home, dtype=float), base)
-    walks = [Walk(steps, f.sheets, f.shift) for f in found for steps in cells.loops(f.sheets)]
-    loops = Layout(cells, base, problem.names, problem.limits).arcs(walks)
-    components = []
-    for f in found:
-        own = [arcs for arcs, w in zip(loops, walks, strict=True) if w.sheets is f.sheets]
-        components.append((_component(f, base, own), frozenset(f.sheets)))
+    walks = [[Walk(w, f.sheets, f.shift) for w in cells.loops(f.sheets)] for f in found]
+    loops = iter(Layout(cells, base, problem.names, problem.limits).arcs(list(chain(*walks))))
+    components = [
+        (_component(f, base, list(islice(loops, len(own)))), frozenset(f.sheets))
+        for f, own in zip(found, walks, strict=True)
+    ]
     return cells, sorted(components, key=lambda item: (not item[0].contains_home, -item[0].area))
 
 
@@ -224,7 +231,7 @@ def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list
     """Measure every component, and choose the turns at which it is shown."""
     moments = _cell_moments(cells)
     inside = (problem.forms(home) > 0).all()  # else on a boundary or beyond: in no component
-    home = _ordered(home, base)
+    home = ordered(home, base)
     at_home = _cell_of_home(cells, home) if inside else None
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
     found = []
@@ -242,7 +249,7 @@ def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list
 
 
 def _component(found: _Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
-    centroid = None if any(found.wraps) else _ordered(found.middle + found.shift, base)
+    centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
     wraps = found.wraps[base], found.wraps[1 - base]
     corners = tuple(_vertices(loops))
     return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
@@ -262,18 +269,13 @@ def _cell_of_home(cells: Complex, home: Floats) -> tuple[int, Floats] | None:
         t = t - TURN * math.floor((t - plane.ends[0]) / TURN)
     start, end = cells.spans(range(len(cells.cells))).T
     chosen = np.flatnonzero((start <= t) & (t <= end))
-    inset = 1e-12 * (end - start)[chosen]  # on a line an angle may jump by a turn
+    inset = SAME_POINT * (end - start)[chosen]  # on a line an angle may jump by a turn
     inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
     lower, upper = cells.interval(chosen.tolist(), inside[:, None])[..., 0]
     turns = TURN * np.ceil((lower - v) / TURN) * (plane.lift_range is None)
     for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
         return int(chosen[k]), np.array([t, v + turns[k]])
     return None
-
-
-def _ordered(place: Floats, base: int) -> Floats:
-    """From (base, lift) to the order of the joints, and back."""
-    return place if base == 0 else place[..., ::-1]
 
 
 def _cell_moments(cells: Complex) -> Floats:
@@ -296,9 +298,9 @@ def _cell_moments(cells: Complex) -> Floats:
 
 def _moments(cells: Complex, chosen: list[int], n: int) -> Floats:
     nodes, weights = legendre(n)
-    middle, half = (cells.spans(chosen) @ np.array([[0.5, -0.5], [0.5, 0.5]])).T[:, :, None]
-    angle = nodes * math.pi / 2
-    t = middle + half * np.sin(angle)
+    start, end = cells.spans(chosen).T[:, :, None]
+    half, angle = (end - start) / 2, nodes * math.pi / 2
+    t = (start + end) / 2 + half * np.sin(angle)
     low, high = cells.interval(chosen, t)
     strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
     moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from qbound import __version__
 from qbound.cli.route import Route
-from qbound.cli.values import joint_units
+from qbound.cli.values import heading
 from qbound.paths.encounters import (
     Boundary,
     Crossing,
@@ -69,12 +68,7 @@ def report_content(
     """Return the JSON form of a traversal."""
     walk, plane = way.walk, found.plane
     return {
-        "schema": "qbound/traverse/1",
-        "robot": robot.name,
-        "version": __version__,
-        "rule": options.rule,
-        "joints": [joint.name for joint in robot.joints],
-        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+        **heading("qbound/traverse/1", robot, options.rule),
         "component": options.component,
         "order": options.order,
         "along": "arcs" if options.arcs else "lines",

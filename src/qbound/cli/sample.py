@@ -8,10 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from qbound import __version__, paper_rule, sampling
+from qbound import paper_rule, sampling
 from qbound.cli.chosen import add_robot, add_rule
 from qbound.cli.progress import progress
-from qbound.cli.values import Content, check_targets, csv_text, joint_units, npz_bytes, write_all
+from qbound.cli.values import (
+    Content,
+    check_targets,
+    csv_text,
+    heading,
+    joint_units,
+    npz_bytes,
+    write_all,
+)
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
 from qbound.sampling import Sample
@@ -83,12 +91,7 @@ def _npz(robot: Robot, drawn: Sample) -> bytes:
 
 def _json(robot: Robot, drawn: Sample, options: argparse.Namespace) -> str:
     content = {
-        "schema": "qbound/sample/1",
-        "robot": robot.name,
-        "version": __version__,
-        "rule": options.rule,
-        "joints": [joint.name for joint in robot.joints],
-        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+        **heading("qbound/sample/1", robot, options.rule),
         "ranges": sampling.joint_ranges(robot).tolist(),
         "n": len(drawn.free),
         "seed": options.seed,

@@ -10,10 +10,12 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound import __version__
 from qbound.robot import Robot
 
 Content = str | bytes | Callable[[Path], object]
@@ -155,6 +157,18 @@ def joint_units(robot: Robot, joints: Iterable[int] | None = None) -> list[str]:
     """Return the unit of each joint's values: ``rad``, or the robot's length unit."""
     chosen = range(len(robot.joints)) if joints is None else joints
     return ["rad" if robot.kinds[j] == "revolute" else robot.length_unit for j in chosen]
+
+
+def heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
+    """Return what a JSON of paths or poses begins with: what, of which robot, in which units."""
+    return {
+        "schema": schema,
+        "robot": robot.name,
+        "version": __version__,
+        "rule": rule,
+        "joints": [joint.name for joint in robot.joints],
+        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+    }
 
 
 def shown(robot: Robot, j: int, value: float) -> str:

@@ -137,10 +137,7 @@ def _with(problem: ExactProblem, determinant: HarmonicForm, side: int) -> ExactP
 
 def _with_floats(problem: Problem, determinant: HarmonicForm, side: int) -> Problem:
     row = np.vectorize(lambda c: float(ball(c)), otypes=[float])(side * determinant.coefficients)
-    forms = HarmonicForm(
-        np.concatenate([problem.forms.coefficients, row[None]]), problem.forms.kinds
-    )
-    return replace(problem, forms=forms, names=(*problem.names, SINGULAR))
+    return problem.with_form(SINGULAR, row)
 
 
 def _determinant(one: HarmonicForm, other: HarmonicForm, place: tuple[int, int]) -> Any:

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc, integrate
-from qbound.harmonic import HarmonicForm
 from qbound.region import Component, Problem
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
@@ -231,7 +230,4 @@ def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> F
     """Find the aspects with one sign of det J: the region with it as one more form."""
     if arm.fold is None:
         return find_fibres(problem, home)
-    forms = [*problem.forms.coefficients, side * arm.singular.coefficients]
-    stacked = HarmonicForm(np.array(forms), problem.forms.kinds)
-    names = (*problem.names, SINGULAR)
-    return find_fibres(Problem(stacked, names, problem.ranges, problem.limits), home)
+    return find_fibres(problem.with_form(SINGULAR, side * arm.singular.coefficients), home)
