@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.decomposition import TURN, Cell, Decomposition, Plane, Root
-from qbound.tolerances import POSITIVE, TOUCH
+from qbound.tolerances import POSITIVE, SAME_POINT, TOUCH
 
 Floats = NDArray[np.float64]
 
@@ -105,6 +105,27 @@ class Complex:
         """Return the base values between which chosen cells lie, shape (k, 2)."""
         slabs = np.array([self.cells[k].slab for k in chosen], dtype=np.int64)
         return np.stack([self.abscissae[slabs], self.abscissae[slabs + 1]], axis=-1)
+
+    def holding(self, place: Floats) -> tuple[int, Floats] | None:
+        """Return the cell that holds base and lift values, where every form must be positive.
+
+        Returns
+        -------
+        tuple of int and ndarray, shape (2,), or None
+            The cell, and the place in the cell's own turns; None beyond the ranges.
+        """
+        t, v = place
+        if self.wrapped:
+            t = t - TURN * math.floor((t - self.plane.ends[0]) / TURN)
+        start, end = self.spans(range(len(self.cells))).T
+        chosen = np.flatnonzero((start <= t) & (t <= end))
+        inset = SAME_POINT * (end - start)[chosen]  # on a line an angle may jump by a turn
+        inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
+        lower, upper = self.interval(chosen.tolist(), inside[:, None])[..., 0]
+        turns = TURN * np.ceil((lower - v) / TURN) * self.circle
+        for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
+            return int(chosen[k]), np.array([t, v + turns[k]])
+        return None
 
     def _ends(self) -> Floats:
         """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).

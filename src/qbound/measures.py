@@ -1,4 +1,4 @@
-"""Measures of a region: moments, the component of a configuration, the nearest boundary point.
+"""Measures of a region: moments and the nearest boundary point.
 
 Not in the paper. Everything is taken on the exact arcs. For the nearest point each piece between
 two of an arc's points is parametrised by its chord, from which the form gives the curve's distance.
@@ -15,10 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arcs import Arc, integrate
-from qbound.circle import circle_roots
 from qbound.decomposition import TURN
 from qbound.region import Component, Problem, Region
-from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]
 
@@ -161,94 +159,6 @@ def vertex_centroid(component: Component) -> Floats:
     if any(component.wraps) or not component.vertices:
         raise ValueError("the component has no vertices, or goes round a joint")
     return np.asarray(np.mean([vertex.q for vertex in component.vertices], axis=0))
-
-
-# --- which component ------------------------------------------------------------------------------
-
-
-def locate(region: Region, q: ArrayLike) -> int | None:
-    """Return the index of the component that holds a configuration, modulo full turns (eq. 9).
-
-    Parameters
-    ----------
-    q : array_like, shape (2,)
-        rad or length.
-
-    Returns
-    -------
-    int or None
-        None on a boundary and beyond it: components are open.
-
-    Notes
-    -----
-    From q along one joint up to the first root of any form (Theorem 2) everything is feasible, so
-    both ends belong to one component; the arc on which the end lies tells which.
-    """
-    problem, q = region.problem, np.asarray(q, dtype=float)
-    if not _feasible(problem, q):
-        return None
-    best, index = math.inf, None
-    for joint, sense in product((1, 0), (1, -1)):
-        hit = _first_hit(problem, q, joint, sense)
-        if hit is None:
-            continue
-        place, name = hit
-        gaps = [_gap(problem, component, place, name) for component in region.components]
-        if sum(math.isfinite(gap) for gap in gaps) == 1:
-            return int(np.argmin(gaps))
-        if min(gaps) < best:  # two components touch there: another way may tell
-            best, index = min(gaps), int(np.argmin(gaps))
-    if index is None:  # both joints turn all the way round from here
-        return next(i for i, component in enumerate(region.components) if all(component.wraps))
-    return index
-
-
-def _feasible(problem: Problem, q: Floats) -> bool:
-    inside = all(
-        limits is None or limits[0] < x < limits[1]
-        for limits, x in zip(problem.ranges, q, strict=True)
-    )
-    return inside and bool((problem.forms(q) > 0).all())
-
-
-def _first_hit(problem: Problem, q: Floats, joint: int, sense: int) -> tuple[Floats, str] | None:
-    """Return the first place along a joint at which a form vanishes or the range ends."""
-    steps, names = [math.inf], [""]
-    limits = problem.ranges[joint]
-    if limits is not None:
-        side = (sense + 1) // 2
-        steps.append(abs(limits[side] - q[joint]))
-        names.append(problem.limits[joint][side])
-    for name, form in zip(problem.names, problem.forms.along(joint, q), strict=True):
-        for root in _roots(form, problem.forms.kinds[joint]):
-            step = sense * (root - q[joint])
-            step = step % TURN if problem.forms.kinds[joint] == "revolute" else step
-            if step > 0:
-                steps.append(step)
-                names.append(name)
-    first = int(np.argmin(steps))
-    if math.isinf(steps[first]):
-        return None
-    return q + sense * steps[first] * np.eye(2)[joint], names[first]
-
-
-def _roots(form: Floats, kind: str) -> list[float]:
-    """Real roots of a one-joint form given by its coefficients, constant first."""
-    if kind == "revolute":
-        roots = circle_roots(form[1], form[2], -form[0])
-        return [float(x) for x in roots.q] if roots.count > 0 else []
-    if not form[1:].any():
-        return []
-    found = np.asarray(np.polynomial.polynomial.polyroots(np.trim_zeros(form, "b")))
-    return [float(x.real) for x in found if abs(x.imag) <= TOUCH * (1 + abs(x))]
-
-
-def _gap(problem: Problem, component: Component, place: Floats, name: str) -> float:
-    """Distance of a place from a component's arcs of one boundary, infinite if they do not meet."""
-    arcs = [arc for loop in component.loops for arc in loop if arc.boundary == name]
-    reach = TOUCH * (1 + float(np.abs(place).max()))
-    found = [_nearest_on(problem, arc, place, np.ones(2), reach)[1] for arc in arcs]
-    return min((gap for gap in found if gap < reach), default=math.inf)
 
 
 # --- the nearest boundary point -------------------------------------------------------------------

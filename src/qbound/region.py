@@ -20,7 +20,7 @@ from qbound.cells import Complex
 from qbound.decomposition import TURN, Plane, Range, decompose
 from qbound.harmonic import HarmonicForm
 from qbound.robot import HalfSpace, Pair, Robot
-from qbound.tolerances import QUADRATURE, SAME_POINT
+from qbound.tolerances import QUADRATURE
 from qbound.walks import Layout, Sheets, Walk, behind
 
 Floats = NDArray[np.float64]
@@ -45,6 +45,11 @@ class Problem:
     names: tuple[str, ...]
     ranges: tuple[Range, Range]
     limits: tuple[tuple[str, str], tuple[str, str]]
+
+    def safe(self, q: Floats) -> bool:
+        """Tell whether a configuration lies strictly within the ranges and keeps every form."""
+        inside = all(r is None or r[0] < x < r[1] for x, r in zip(q, self.ranges, strict=True))
+        return inside and bool((self.forms(q) > 0).all())
 
     def with_form(self, name: str, coefficients: Floats) -> Problem:
         """Return the problem with one more form, of coefficients (3, 3), as its last."""
@@ -90,10 +95,25 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """All components, the one with the home pose first, the others by falling area."""
+    """All components, the one with the home pose first, the others by falling area.
+
+    Attributes
+    ----------
+    components : tuple of Component
+    problem : Problem
+    cells : Complex
+        The cells that make them up.
+    base : int
+        Which joint is the base of the cells.
+    owner : dict of int to int
+        Component of each cell.
+    """
 
     components: tuple[Component, ...]
     problem: Problem
+    cells: Complex
+    base: int
+    owner: dict[int, int]
 
     @property
     def home(self) -> Component | None:
@@ -104,6 +124,15 @@ class Region:
     def area(self) -> float:
         """Sum of all components' areas."""
         return sum(component.area for component in self.components)
+
+    def holding(self, q: ArrayLike) -> int | None:
+        """Return the index of the component that holds a configuration, modulo full turns (eq. 9).
+
+        None on a boundary and beyond it: components are open.
+        """
+        place = np.asarray(q, dtype=float)
+        found = self.cells.holding(ordered(place, self.base)) if self.problem.safe(place) else None
+        return None if found is None else self.owner[found[0]]
 
 
 def clearance_problem(robot: Robot, held: Mapping[int, float] | None = None) -> Problem:
@@ -143,39 +172,33 @@ def state(
     return Problem(stacked, names, (ranges[0], ranges[1]), (limits[0], limits[1]))
 
 
-def solve(problem: Problem, home: ArrayLike) -> Region:
+def solve(problem: Problem, home: ArrayLike, base: int | None = None) -> Region:
     """Find every component of { all forms > 0, within the ranges }.
 
     Parameters
     ----------
     home : array_like, shape (2,)
         Configuration that names the first component and around which it is unrolled.
+    base : int, optional
+        Which joint is the base of the cells; the components do not depend on it.
 
     Notes
     -----
     A component is open; touching in points or curves neither joins components nor makes one.
     """
-    base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    _, found = components_over(problem, home, base)
-    return Region(tuple(component for component, _ in found), problem)
-
-
-def components_over(
-    problem: Problem, home: ArrayLike, base: int
-) -> tuple[Complex, list[tuple[Component, frozenset[int]]]]:
-    """Find every component with one joint, 0 or 1, as the base, and the cells that make it up.
-
-    The components do not depend on the base; the cells do. Arguments and order as in `solve`.
-    """
+    if base is None:  # the lift of the two kinds slides
+        base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     cells = Complex(decompose(Plane(problem.forms, problem.ranges, base)))
     found = _measured(cells, problem, np.asarray(home, dtype=float), base)
     walks = [[Walk(w, f.sheets, f.shift) for w in cells.loops(f.sheets)] for f in found]
     loops = iter(Layout(cells, base, problem.names, problem.limits).arcs(list(chain(*walks))))
     components = [
-        (_component(f, base, list(islice(loops, len(own)))), frozenset(f.sheets))
+        (_component(f, base, list(islice(loops, len(own)))), f.sheets)
         for f, own in zip(found, walks, strict=True)
     ]
-    return cells, sorted(components, key=lambda item: (not item[0].contains_home, -item[0].area))
+    components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
+    owner = {k: i for i, (_, sheets) in enumerate(components) for k in sheets}
+    return Region(tuple(component for component, _ in components), problem, cells, base, owner)
 
 
 def find_region(robot: Robot, held: Mapping[int, float] | None = None) -> Region:
@@ -232,7 +255,7 @@ def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list
     moments = _cell_moments(cells)
     inside = (problem.forms(home) > 0).all()  # else on a boundary or beyond: in no component
     home = ordered(home, base)
-    at_home = _cell_of_home(cells, home) if inside else None
+    at_home = cells.holding(home) if inside else None
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
     found = []
     for sheets, wraps in cells.components():
@@ -260,22 +283,6 @@ def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
         for before, arc in zip(behind(arcs), arcs, strict=True):
             if before.boundary != arc.boundary:
                 yield Vertex(arc.start, (before.boundary, arc.boundary))
-
-
-def _cell_of_home(cells: Complex, home: Floats) -> tuple[int, Floats] | None:
-    """Return the cell with the home pose and where home is in the cell's own coordinates."""
-    (t, v), plane = home, cells.plane
-    if plane.base_range is None:
-        t = t - TURN * math.floor((t - plane.ends[0]) / TURN)
-    start, end = cells.spans(range(len(cells.cells))).T
-    chosen = np.flatnonzero((start <= t) & (t <= end))
-    inset = SAME_POINT * (end - start)[chosen]  # on a line an angle may jump by a turn
-    inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
-    lower, upper = cells.interval(chosen.tolist(), inside[:, None])[..., 0]
-    turns = TURN * np.ceil((lower - v) / TURN) * (plane.lift_range is None)
-    for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
-        return int(chosen[k]), np.array([t, v + turns[k]])
-    return None
 
 
 def _cell_moments(cells: Complex) -> Floats:

@@ -10,7 +10,7 @@ import numpy as np
 from qbound import __version__
 from qbound.cli.chosen import add_robot
 from qbound.cli.values import configuration, json_text, write_text
-from qbound.measures import BoundaryPoint, locate, nearest_boundary
+from qbound.measures import BoundaryPoint, nearest_boundary
 from qbound.region import Region, find_region, margins
 from qbound.robot import Robot
 from qbound.robotfile import load_robot
@@ -52,7 +52,7 @@ def contents(robot: Robot, q: list[float], weights: list[float]) -> dict[str, An
     """Return what is known of a configuration; with two joints its component and the boundary."""
     found = sorted(margins(robot, q), key=lambda item: item[1])
     region = find_region(robot) if len(robot.joints) == 2 else None
-    where = None if region is None else locate(region, q)
+    where = None if region is None else region.holding(q)
     return {
         "robot": robot.name,
         "version": __version__,

@@ -107,7 +107,7 @@ class Workspace:
         inside = postures(self.arm, place, self.region.problem.ranges)
         sides = {posture.side for posture in inside}
         outside = [p for p in postures(self.arm, place) if p.side not in sides]
-        return [(p, self.region.component(p.q)) for p in [*inside, *outside]]
+        return [(p, self.region.holding(p.q)) for p in [*inside, *outside]]
 
     def safe_postures(self, place: ArrayLike) -> int:
         """Count the safe postures of a place, 0, 1 or 2, full turns of a joint counted once."""
@@ -174,7 +174,7 @@ def find_workspace(
 
 def _owned(region: Fibres, part: Fibres, chosen: frozenset[int]) -> dict[int, int]:
     """Return the aspects inside chosen components, each with its component."""
-    holders = {i: region.component(part.inside(i)) for i in range(len(part.components))}
+    holders = {i: region.holding(part.inside(i)) for i in range(len(part.components))}
     return {i: k for i, k in holders.items() if k is not None and k in chosen}
 
 

@@ -72,7 +72,7 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
         rad or length. Joints without limits may turn on: full turns do not count.
     """
     a, b = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    one, other = region.component(a), region.component(b)
+    one, other = region.holding(a), region.holding(b)
     possible = one is not None and one == other
     loops: tuple[Loop, ...] = ()
     if one is not None and other is not None and not possible:
