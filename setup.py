@@ -14,7 +14,7 @@ class WithResults(build_py):
         """Build as usual; a working copy (an editable installation) reads the folder itself."""
         super().run()
         if not self.editable_mode:
-            target = Path(self.build_lib, "qbound", "recorded_results")
+            target = Path(self.build_lib, "lizarraga2025", "recorded_results")
             shutil.rmtree(target, ignore_errors=True)
             target.mkdir(parents=True)
             for file in sorted(Path(__file__).resolve().parent.glob("results/*.json")):

@@ -15,7 +15,7 @@ from time import process_time
 import numpy as np
 
 from qbound import find_region, load_robot
-from qbound.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
 from qbound.sampling import keeps_clear
 
 GRID = 1000

@@ -9,7 +9,7 @@ from shapely import LineString, Point
 from test_region import inside_limits, random_robot, relative
 
 from qbound import find_region, load_robot
-from qbound.arcs import integrate
+from qbound.region.arcs import integrate
 
 SEEDS = [3, 8, 13, 21, 34, 36, 44, 55]
 

@@ -10,7 +10,7 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, along, below, derivative, magnitude, precision, values
 
 KINDS = ("revolute", "prismatic")

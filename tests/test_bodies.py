@@ -13,9 +13,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import PACKAGED, frame_matrix
 
-from qbound import bodies, clearance, load_robot, paper_rule
-from qbound.region import solve, state
-from qbound.robot import Body
+from qbound import clearance, load_robot
+from qbound.measures import bodies
+from qbound.model.robot import Body
+from qbound.region import paper_rule
+from qbound.region.region import solve, state
 
 PRINTED, MENDED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-mended", "-symmetric")

@@ -218,7 +218,7 @@ SAMPLE = [  # one page of each kind, and the longest
     "traceability.html",
     "commands.html",
     "cite.html",
-    "generated/qbound.circle.html",
+    "generated/qbound.forms.circle.html",
 ]
 
 

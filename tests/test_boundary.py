@@ -21,17 +21,17 @@ from oracles import (
 )
 from scipy.optimize import minimize_scalar
 
-from qbound import clearance, components, load_robot, pair_vector, paper
-from qbound.boundary import (
+from lizarraga2025 import printed as paper
+from qbound import clearance, components, load_robot, pair_vector
+from qbound.boundary.functions import (
     closest_approach,
     geometric_vector,
     observer,
     position,
-    required_distance,
     squared_distance,
 )
-from qbound.robot import joint_symbols, with_symbols
-from qbound.robotfile import parse_robot
+from qbound.model.robot import joint_symbols, with_symbols
+from qbound.model.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 COMPONENTS = list(paper.EQUATION_29)
@@ -210,7 +210,7 @@ def test_clearance_of_a_pair_is_positive_exactly_where_it_keeps_apart(
     table["point"][0]["radius"], table["point"][n]["radius"] = one, other
     assume(apart + one + other > 0)
     robot, pair = with_pair(table, 0, n, apart)
-    assert required_distance(robot, pair) == pytest.approx(apart + one + other)
+    assert robot.required_distance(pair) == pytest.approx(apart + one + other)
     ends = [point_seen_from(table, f"p{i}", "0", q) for i in (0, n)]
     distance = np.linalg.norm(ends[1] - ends[0])
     expected = distance**2 - (apart + one + other) ** 2

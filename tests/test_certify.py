@@ -16,15 +16,15 @@ import pytest
 from robots_at_random import box_of, robot_file
 from scipy.optimize import minimize
 
-from qbound import check, cli, polygon
-from qbound.boundary import required_distance
+from qbound import check, cli
+from qbound.geometry import polygon
+from qbound.model.robot import Pair
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import certify as prover
 from qbound.proofs import check_arb, minorant, statements
 from qbound.proofs.certify import bracket_scale, certify
 from qbound.proofs.triangulation import triangulate
-from qbound.region import find_region
-from qbound.robot import Pair
-from qbound.robotfile import parse_robot, robot_text
+from qbound.region.region import find_region
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
 """Random robots; a longer run is written down in docs/decisions/0233."""
@@ -47,7 +47,7 @@ def margins(robot, q):
     for wall in robot.boundaries:
         if isinstance(wall, Pair):
             a, b = (places.position(robot.base, name, robot.base) for name in wall.points)
-            found.append(np.linalg.norm(a - b, axis=-1) - required_distance(robot, wall))
+            found.append(np.linalg.norm(a - b, axis=-1) - robot.required_distance(wall))
         else:
             height = places.position(robot.base, wall.point, robot.base) @ wall.normal
             found.append(height - wall.offset - robot.point(wall.point).radius)
@@ -362,7 +362,7 @@ VERDICTS = """
 import ctypes
 from qbound.proofs import statements
 from qbound.proofs.certify import certify
-from qbound.robotfile import robot_text
+from qbound.model.robotfile import robot_text
 text, _ = robot_text("minervabot-v2")
 boxes = [(["-20", "-80"], ["30", "-40"], "0"), (["-60", "-140"], ["40", "20"], "0")]
 for mode in (0x000, 0x400, 0x800, 0xC00):

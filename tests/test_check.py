@@ -21,10 +21,10 @@ from robots_at_random import robot_file
 
 import qbound
 from qbound import check
-from qbound.boundary import clearance
+from qbound.boundary.functions import clearance
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb, statements
 from qbound.proofs.certify import certify
-from qbound.robotfile import parse_robot, robot_text
 
 FILE = Path(check.__file__)
 ONE = 2**check.BITS

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from oracles import angle_gap, circle_zeros
 
-from qbound.circle import ALL, circle_arc, circle_roots, nearest_turn
+from qbound.forms.circle import ALL, circle_arc, circle_roots, nearest_turn
 
 NUMBERS = st.integers(-3000, 3000).map(lambda k: k / 100)
 

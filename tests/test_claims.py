@@ -17,8 +17,9 @@ import pytest
 import yaml
 from jsonschema import Draft202012Validator, ValidationError, validate
 
-from qbound import paper, recorded
-from qbound.claims import (
+from lizarraga2025 import printed as paper
+from lizarraga2025 import recorded
+from lizarraga2025.ledger import (
     Claim,
     bounds,
     cite,
@@ -32,7 +33,7 @@ from qbound.claims import (
     theorem_2,
     undetermined,
 )
-from qbound.claims.ledger import KINDS, VERDICTS, claim, from_content, identifiers, save
+from lizarraga2025.ledger.entries import KINDS, VERDICTS, claim, from_content, identifiers, save
 from qbound.cli import main
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -179,7 +180,7 @@ def test_the_recorded_ledger_is_the_computed_one() -> None:
 
 
 def test_the_recorded_ledger_keeps_to_its_schema() -> None:
-    schema = resources.files("qbound") / "schemas" / "claims.schema.json"
+    schema = resources.files("lizarraga2025") / "schemas" / "claims.schema.json"
     content = json.loads((ROOT / "results" / "claims.json").read_text(encoding="utf-8"))
     validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
     content["claims"][0]["verdict"] = "true"
@@ -291,7 +292,7 @@ def test_without_the_extra_the_error_names_it(capsys, monkeypatch) -> None:
     def missing(name: str) -> None:
         raise ModuleNotFoundError("No module named 'sympy'", name="sympy")
 
-    monkeypatch.setattr("qbound.cli.claims.claim", missing)
+    monkeypatch.setattr("lizarraga2025.commands.claims.claim", missing)
     assert main(["claims", "E-34", "--recompute"]) == 2
     assert "pip install 'qbound[notebooks]'" in capsys.readouterr().err
 

@@ -12,9 +12,9 @@ import pytest
 from bs4 import BeautifulSoup
 from test_book_browser import open_page, refuse_remote
 
-from qbound import recorded
-from qbound.claims import cite
-from qbound.claims.ledger import KINDS, VERDICTS, from_content
+from lizarraga2025 import recorded
+from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.entries import KINDS, VERDICTS, from_content
 
 HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
 LEDGER = [from_content(content) for content in recorded.claims()]

@@ -9,8 +9,9 @@ import pytest
 from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 
-from qbound import load_robot, packaged_robots, paper_rule
+from qbound import load_robot, packaged_robots
 from qbound.cli import main
+from qbound.region import paper_rule
 
 
 def run(capsys, *arguments: str) -> tuple[int, str, str]:

@@ -13,7 +13,7 @@ from test_decomposition import PP, PR, RP, RR, forms
 from test_region import random_robot
 
 from qbound import find_region
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import precision
 from qbound.proofs.crossings import crossings, folds
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from qbound.cells import Complex
-from qbound.decomposition import Plane, critical_values, decompose
-from qbound.harmonic import HarmonicForm, Kind, basis
+from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.region.cells import Complex
+from qbound.region.decomposition import Plane, critical_values, decompose
 
 RR: tuple[Kind, Kind] = ("revolute", "revolute")
 RP: tuple[Kind, Kind] = ("revolute", "prismatic")

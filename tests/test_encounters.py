@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from oracles import crossing_points, packaged_table, point_seen_from, row_of
 
-from qbound import find_region, load_robot, paper_rule
-from qbound.outline import from_lowest
+from qbound import find_region, load_robot
+from qbound.export.polygons import from_lowest
+from qbound.geometry.polygon import centroid, scaled
+from qbound.model.robotfile import parse_robot
 from qbound.paths.encounters import (
     boundaries,
     least_margin,
@@ -18,8 +20,7 @@ from qbound.paths.encounters import (
     tool_crossings,
 )
 from qbound.paths.traversal import Leg, follow, traverse
-from qbound.polygon import centroid, scaled
-from qbound.robotfile import parse_robot
+from qbound.region import paper_rule
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

@@ -10,13 +10,14 @@ from hypothesis import given
 from numpy.testing import assert_allclose
 from oracles import packaged_table, robot_tables
 
-from qbound import load_robot, paper_rule, save_robot
-from qbound.boundary import clearance
+from qbound import load_robot, save_robot
+from qbound.boundary.functions import clearance
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.balls import precision, values
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.region import clearance_problem
-from qbound.robotfile import parse_robot, robot_text
+from qbound.region import paper_rule
+from qbound.region.region import clearance_problem
 
 
 def holds(ball, value: mpmath.mpf) -> bool:

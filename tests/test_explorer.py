@@ -15,17 +15,18 @@ import quickjs
 import shapely
 from numpy.testing import assert_allclose
 
-from qbound import find_region, load_robot, packaged_robots, paper_rule
-from qbound.boundary import clearance, position
+from qbound import find_region, load_robot, packaged_robots
+from qbound.boundary.functions import clearance, position
 from qbound.cli import main
-from qbound.explorer import explorer_data, explorer_page
+from qbound.explorer.page import explorer_data, explorer_page
+from qbound.measures.scaling import least_along_edges
+from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region import solve, violated
-from qbound.robotfile import parse_robot
-from qbound.scaling import least_along_edges
+from qbound.region import paper_rule
+from qbound.region.region import solve, violated
 from qbound.workspace.planar import planar_arm, postures
 
-TEMPLATES = resources.files("qbound") / "templates"
+TEMPLATES = resources.files("qbound") / "explorer" / "web"
 POSES = 3000
 
 

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose
 from test_explorer import ROBOTS, SPATIAL
 
 from qbound import find_region, load_robot
-from qbound.explorer import explorer_page
-from qbound.region import violated
+from qbound.explorer.page import explorer_page
+from qbound.region.region import violated
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}

@@ -16,8 +16,8 @@ from oracles import packaged_table, point_seen_from
 from test_region import random_robot
 
 from qbound import figures, find_region, load_robot
-from qbound.paper_rule import vertices
 from qbound.paths.traversal import traverse
+from qbound.region.paper_rule import vertices
 
 MINERVA = load_robot("minervabot-v2")
 SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
@@ -180,7 +180,7 @@ import sys
 from matplotlib.figure import Figure
 import matplotlib as mpl
 from qbound import figures, find_region, load_robot
-from qbound.paper_rule import bound_curves, vertices
+from qbound.region.paper_rule import bound_curves, vertices
 robot = load_robot("minervabot-v2")
 with mpl.rc_context(figures.STYLE):
     figure = Figure()

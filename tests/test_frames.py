@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from oracles import ANGLES, AXES, VECTORS, homogeneous
 from scipy.spatial.transform import Rotation
 
-from qbound.frames import Frame, Frames, axis_rotation, roll_pitch_yaw
+from qbound.model.frames import Frame, Frames, axis_rotation, roll_pitch_yaw
 
 EYE = np.eye(3)
 

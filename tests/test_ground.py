@@ -44,9 +44,9 @@ def run() -> ModuleType:
 @pytest.fixture
 def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small copy of the repository's layout to which run.py's paths point."""
-    for folder in ("src/qbound", "notebooks", "book"):
+    for folder in ("src/qbound/forms", "notebooks", "book"):
         (tmp_path / folder).mkdir(parents=True)
-    (tmp_path / "src/qbound/circle.py").write_text("TURN = 6.28\n")
+    (tmp_path / "src/qbound/forms/circle.py").write_text("TURN = 6.28\n")
     (tmp_path / "notebooks/01_a.ipynb").write_text(notebook({"source": ["1 + 1"]}))
     (tmp_path / "book/conf.py").write_text("project = 'qbound'\n")
     for name in ("pyproject.toml", "requirements.lock"):
@@ -245,7 +245,8 @@ def test_the_code_of_the_user_does_not_mix_in(
 
 
 @pytest.mark.parametrize(
-    "source", ["src/qbound/circle.py", "notebooks/01_a.ipynb", "book/conf.py", "pyproject.toml",
+    "source",
+    ["src/qbound/forms/circle.py", "notebooks/01_a.ipynb", "book/conf.py", "pyproject.toml",
                "requirements.lock"]
 )  # fmt: skip
 def test_a_changed_source_makes_the_book_stale(run: ModuleType, house: Path, source: str) -> None:
@@ -260,7 +261,7 @@ def test_a_source_that_comes_or_goes_makes_the_book_stale(
     run: ModuleType, house: Path, change: str
 ) -> None:
     before = run.fingerprint(house)
-    module = house / "src/qbound/circle.py"
+    module = house / "src/qbound/forms/circle.py"
     if change == "rename":
         module.rename(module.with_name("round.py"))
     elif change == "add":
@@ -310,7 +311,7 @@ def test_the_book_is_made_once_and_again_when_a_source_changes(
     monkeypatch.setattr(run.subprocess, "call", lambda *_, **__: 0)
     assert [run.test(), run.test()] == [0, 0]
     assert titles == ["Executing", "Building"]
-    (house / "src/qbound/circle.py").write_text("TURN = 6.283\n")
+    (house / "src/qbound/forms/circle.py").write_text("TURN = 6.283\n")
     run.test()
     assert titles == ["Executing", "Building"] * 2
 
@@ -414,7 +415,7 @@ def made(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> list[
         (["notebooks/01_a.ipynb"], ["01_a.ipynb", "pages"]),
         (["notebooks/01_a.md", "notebooks/01_a.ipynb"], ["Pairing 01_a.md", "01_a.ipynb", "pages"]),
         (["notebooks/02_gone.md"], ["pages"]),
-        (["notebooks/01_a.md", "src/qbound/circle.py"], ["everything"]),
+        (["notebooks/01_a.md", "src/qbound/forms/circle.py"], ["everything"]),
         (["pyproject.toml"], ["everything"]),
     ],
 )
@@ -555,59 +556,53 @@ def test_the_wheel_holds_every_file_of_the_package(tmp_path: Path) -> None:
     (wheel,) = tmp_path.glob("*.whl")
     assert wheel.name.startswith(f"qbound-{PROJECT['version']}-py3-none-any")
     with zipfile.ZipFile(wheel) as archive:
-        packed = {name for name in archive.namelist() if name.startswith("qbound/")}
-        recorded = {f"qbound/recorded_results/{p.name}": p for p in ROOT.glob("results/*.json")}
+        packed = {name for name in archive.namelist() if ".dist-info/" not in name}
+        folder = "lizarraga2025/recorded_results"
+        recorded = {f"{folder}/{p.name}": p for p in ROOT.glob("results/*.json")}
         for name, path in recorded.items():
             assert archive.read(name) == path.read_bytes(), "the wheel carries results/ itself"
-    package = copy / "src/qbound"
-    sources = {f"qbound/{p.relative_to(package).as_posix()}" for p in package.rglob("*.*")}
-    assert "qbound/py.typed" in sources
+    files = (p.relative_to(copy / "src").as_posix() for p in (copy / "src").rglob("*.*"))
+    sources = {name for name in files if ".egg-info" not in name}
+    assert {"qbound/py.typed", "lizarraga2025/py.typed"} <= sources
     assert packed == sources | set(recorded)
     assert recorded
 
 
 WRONG_IMPORTS = [
-    ("harmonic", "robot", "a pillar knows the other"),
-    ("circle", "frames", "a pillar knows the other"),
-    ("robot", "circle", "a pillar knows the other"),
-    ("frames", "harmonic", "a pillar knows the other"),
-    ("boundary", "region", "a call upward"),
-    ("robot", "boundary", "a call upward"),
-    ("scaling", "figures", "a call upward"),
-    ("sampling", "circle", "no fair opponent"),
-    ("sampling", "robotfile", "side by side"),
-    ("paper_rule", "paper", "mathematics that reads the printed numbers"),
-    ("boundary", "paper", "mathematics that reads the printed numbers"),
-    ("paper", "polygon", "data that computes"),
-    ("check", "tolerances", "a checker that does not stand alone"),
-    ("results", "tolerances", "a writer that does not stand alone"),
+    ("qbound.forms.harmonic", "qbound.model.robot", "algebra that knows kinematics"),
+    ("qbound.model.frames", "qbound.forms.circle", "kinematics that knows algebra"),
+    ("qbound.boundary.functions", "qbound.region.arcs", "a call upward"),
+    ("qbound.model.robot", "qbound.boundary.functions", "a call upward"),
+    ("qbound.measures.scaling", "qbound.figures.pictures", "a call upward"),
+    ("qbound.sampling", "qbound.forms.circle", "no fair opponent"),
+    ("qbound.sampling", "qbound.region.arcs", "no fair opponent"),
+    ("qbound.region.paper_rule", "lizarraga2025.printed", "a library that reads the paper"),
+    ("qbound.cli.region", "lizarraga2025.ledger.entries", "a library that reads the paper"),
+    ("lizarraga2025.printed", "qbound.geometry.polygon", "data that computes"),
+    ("lizarraga2025.results", "lizarraga2025.ledger.entries", "a call upward"),
+    ("qbound.check", "qbound.tolerances", "a checker that does not stand alone"),
 ]
 RIGHT_IMPORTS = [
-    ("cli", "figures"),
-    ("figures", "paper"),
-    ("scaling", "polygon"),
-    ("paper_rule", "circle"),
-    ("sampling", "boundary"),
-    ("robotfile", "robot"),
-    ("boundary", "harmonic"),
-    ("boundary", "robot"),
-    ("robot", "frames"),
-    ("decomposition", "circle"),
-    ("circle", "tolerances"),
+    ("qbound.cli.region", "qbound.figures.pictures"),
+    ("qbound.measures.scaling", "qbound.geometry.polygon"),
+    ("qbound.region.paper_rule", "qbound.forms.circle"),
+    ("qbound.sampling", "qbound.boundary.functions"),
+    ("qbound.model.robotfile", "qbound.model.robot"),
+    ("lizarraga2025.ledger.tables", "lizarraga2025.printed"),
+    ("lizarraga2025.ledger.tables", "qbound.region.region"),
+    ("qbound.forms.circle", "qbound.tolerances"),
 ]
 
 
 def check_imports(folder: Path, imports: list[tuple[str, str]]) -> subprocess.CompletedProcess[str]:
-    """Write a package of the drawn modules with these imports, and lint it by our contract."""
-    package = folder / "qbound"
-    package.mkdir()
-    (package / "__init__.py").touch()
-    for pair in (*RIGHT_IMPORTS, *imports):
-        for name in pair:
-            (package / f"{name}.py").touch()
+    """Write both packages with these imports and no others, and lint them by our contracts."""
+    for source in (ROOT / "src").rglob("*.py"):
+        empty = folder / source.relative_to(ROOT / "src")
+        empty.parent.mkdir(parents=True, exist_ok=True)
+        empty.touch()
     for importer, imported in imports:
-        with (package / f"{importer}.py").open("a") as module:
-            module.write(f"import qbound.{imported}\n")
+        with (folder / f"{importer.replace('.', '/')}.py").open("a") as module:
+            module.write(f"import {imported}\n")
     shutil.copy(ROOT / "pyproject.toml", folder)
     command = "from importlinter.cli import lint_imports_command as c; c()"
     return subprocess.run(
@@ -632,11 +627,11 @@ def test_the_import_contract_refuses(
 ) -> None:
     done = check_imports(tmp_path, [(importer, imported)])
     assert done.returncode == 1, f"{why}: {done.stdout}{done.stderr}"
-    assert f"qbound.{importer} -> qbound.{imported}" in done.stdout, done.stdout
+    assert f"{importer} -> {imported}" in done.stdout, done.stdout
 
 
 def test_the_import_contract_refuses_a_module_without_a_place(tmp_path: Path) -> None:
-    done = check_imports(tmp_path, [("attic", "circle")])
+    done = check_imports(tmp_path, [("qbound.attic", "qbound.forms.circle")])
     assert done.returncode == 1
     assert "attic" in done.stdout
 

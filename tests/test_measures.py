@@ -9,10 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 from test_region import inside_limits, random_robot
 
-from qbound import find_region, load_robot, paper_rule
-from qbound.harmonic import HarmonicForm
-from qbound.measures import along, moments, nearest_boundary, vertex_centroid
-from qbound.region import Problem, Region, solve
+from qbound import find_region, load_robot
+from qbound.forms.harmonic import HarmonicForm
+from qbound.measures.nearest import along, moments, nearest_boundary, vertex_centroid
+from qbound.region import paper_rule
+from qbound.region.region import Problem, Region, solve
 
 LIMITS = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
 TURN = 2 * pi

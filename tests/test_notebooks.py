@@ -16,7 +16,7 @@ import pytest
 from jsonschema import Draft202012Validator, validate
 from jupytext.compare import compare_notebooks
 
-from qbound import paper
+from lizarraga2025 import printed as paper
 
 ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = sorted((ROOT / "notebooks").glob("*.md"))
@@ -181,7 +181,7 @@ def committed(path: Path) -> dict:
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
 def test_results_keep_to_their_schema(path):
-    schema = resources.files("qbound") / "schemas" / "results.schema.json"
+    schema = resources.files("lizarraga2025") / "schemas" / "results.schema.json"
     validate(
         json.loads(path.read_text(encoding="utf-8")),
         json.loads(schema.read_text(encoding="utf-8")),

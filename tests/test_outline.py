@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely.geometry import Point, Polygon
 
-from qbound import find_region, load_robot, paper_rule
-from qbound.outline import area, from_lowest, polygons
-from qbound.region import solve
-from qbound.robotfile import parse_robot
+from qbound import find_region, load_robot
+from qbound.export.polygons import area, from_lowest, polygons
+from qbound.model.robotfile import parse_robot
+from qbound.region import paper_rule
+from qbound.region.region import solve
 
 MINERVA = load_robot("minervabot-v2")
 PILLARS = [

@@ -14,8 +14,8 @@ from skimage.measure import label
 from test_region import check_arcs, check_grid, check_roles
 
 from qbound import find_region, load_robot, packaged_robots
-from qbound.region import margins, violated
-from qbound.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.region.region import margins, violated
 
 KINDS = {
     "two-joint-arm-with-walls": ("revolute", "revolute"),

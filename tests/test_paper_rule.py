@@ -20,9 +20,12 @@ from oracles import (
     table_6,
 )
 
-from qbound import load_robot, paper
-from qbound.boundary import closest_approach
-from qbound.paper_rule import (
+from lizarraga2025 import printed as paper
+from qbound import load_robot
+from qbound.boundary.functions import closest_approach
+from qbound.model.robot import Robot
+from qbound.model.robotfile import parse_robot
+from qbound.region.paper_rule import (
     LOWER,
     UPPER,
     Bound,
@@ -33,8 +36,6 @@ from qbound.paper_rule import (
     vertices,
     windows,
 )
-from qbound.robot import Robot
-from qbound.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 BOUNDS = table_6(np.arctan2)

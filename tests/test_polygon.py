@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shapely import LineString, Point, Polygon
 from shapely.affinity import scale as shapely_scale
 
-from qbound.polygon import along_edges, area, centroid, scaled
+from qbound.geometry.polygon import along_edges, area, centroid, scaled
 
 COORDINATES = st.integers(-500, 500).map(lambda k: k / 100)
 

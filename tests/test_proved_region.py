@@ -11,12 +11,13 @@ from test_crossings import stated
 from test_decomposition import EDGES
 from test_region import LIMITS, random_robot
 
-from qbound import find_region, load_robot, paper_rule
+from qbound import find_region, load_robot
 from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import Unproved, prove_region
-from qbound.region import Problem, Region, solve
+from qbound.region import paper_rule
+from qbound.region.region import Problem, Region, solve
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")

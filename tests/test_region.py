@@ -18,11 +18,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from test_decomposition import PP, PR, RP, RR, TURN, forms, pieces
 
-from qbound import load_robot, paper_rule
-from qbound.boundary import clearance
-from qbound.harmonic import HarmonicForm, basis, basis_slope
-from qbound.region import Problem, Region, find_region, solve, violated
-from qbound.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound import load_robot
+from qbound.boundary.functions import clearance
+from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
+from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.region import paper_rule
+from qbound.region.region import Problem, Region, find_region, solve, violated
 
 MINERVA = load_robot("minervabot-v2")
 LIMITS = (("q1.lower", "q1.upper"), ("q2.lower", "q2.upper"))

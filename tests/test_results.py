@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from qbound.results import DIGITS, Results
+from lizarraga2025.results import DIGITS, Results
 
 SCHEMA = {
     "type": "object",

@@ -18,10 +18,11 @@ from oracles import (
     robot_tables,
 )
 
-from qbound import load_robot, paper
-from qbound.boundary import position
-from qbound.robot import joint_symbols, with_symbols
-from qbound.robotfile import parse_robot
+from lizarraga2025 import printed as paper
+from qbound import load_robot
+from qbound.boundary.functions import position
+from qbound.model.robot import joint_symbols, with_symbols
+from qbound.model.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 

@@ -21,12 +21,13 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from oracles import OFFSETS, Table, packaged_table, robot_tables, row_of
 
-from qbound import RobotFileError, load_robot, packaged_robots, paper
-from qbound.boundary import clearance
-from qbound.frames import roll_pitch_yaw
-from qbound.robot import HalfSpace, Pair, Robot, with_symbols
-from qbound.robotfile import parse_robot, save_robot
-from qbound.schema import SENTENCES
+from lizarraga2025 import printed as paper
+from qbound import RobotFileError, load_robot, packaged_robots
+from qbound.boundary.functions import clearance
+from qbound.model.frames import roll_pitch_yaw
+from qbound.model.robot import HalfSpace, Pair, Robot, with_symbols
+from qbound.model.robotfile import parse_robot, save_robot
+from qbound.model.schema import SENTENCES
 
 MINIMAL = """
 schema = 1

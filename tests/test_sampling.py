@@ -8,8 +8,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from oracles import equation_29, packaged_table, point_seen_from, row_of, table_6
 from scipy.integrate import quad
 
-from qbound import load_robot, paper_rule
-from qbound.robotfile import parse_robot
+from qbound import load_robot
+from qbound.model.robotfile import parse_robot
+from qbound.region import paper_rule
 from qbound.sampling import (
     Sample,
     joint_ranges,

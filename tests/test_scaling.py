@@ -10,16 +10,16 @@ from numpy.testing import assert_allclose
 from oracles import equation_29
 
 from qbound import clearance, load_robot
-from qbound.harmonic import HarmonicForm
-from qbound.paper_rule import vertices
-from qbound.polygon import along_edges, centroid, scaled
-from qbound.scaling import (
+from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.polygon import along_edges, centroid, scaled
+from qbound.measures.scaling import (
     first_exit,
     largest_safe_scale,
     least,
     least_along_edges,
     worst_margins,
 )
+from qbound.region.paper_rule import vertices
 
 MINERVA = load_robot("minervabot-v2")
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])

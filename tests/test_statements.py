@@ -14,10 +14,13 @@ import shapely
 from oracles import OFFSETS, equation_29
 from skimage.measure import marching_cubes
 
-from qbound import bodies, clearance, find_region, load_robot, paper_rule, polygon
-from qbound.claims import effort, walks
-from qbound.claims.sentences_outlook import sliding
-from qbound.claims.sentences_workspace import CAPTIONS, NAMED
+from lizarraga2025.ledger import effort, walks
+from lizarraga2025.ledger.sentences_outlook import sliding
+from lizarraga2025.ledger.sentences_workspace import CAPTIONS, NAMED
+from qbound import clearance, find_region, load_robot
+from qbound.geometry import polygon
+from qbound.measures import bodies
+from qbound.region import paper_rule
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicHermiteSpline
 
 from qbound import find_region, load_robot
-from qbound.outline import from_lowest
+from qbound.export.polygons import from_lowest
+from qbound.model.robotfile import parse_robot
 from qbound.paths.trajectory import (
     joint_speeds,
     lasting,
@@ -22,7 +23,6 @@ from qbound.paths.trajectory import (
     top_speeds,
 )
 from qbound.paths.traversal import Leg, follow, traverse
-from qbound.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 STOPS = st.lists(

@@ -17,10 +17,10 @@ from oracles import (
 )
 
 from qbound import load_robot
-from qbound.paper_rule import vertices
+from qbound.geometry.polygon import centroid, scaled
+from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import self_crossings, simple_orders, traverse
-from qbound.polygon import centroid, scaled
-from qbound.robotfile import parse_robot
+from qbound.region.paper_rule import vertices
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

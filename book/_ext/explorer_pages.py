@@ -12,7 +12,7 @@ from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from qbound import find_region, load_robot
-from qbound.explorer import explorer_page
+from qbound.explorer.page import explorer_page
 
 FOLDER = "_static/explorer"
 

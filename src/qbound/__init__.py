@@ -6,12 +6,12 @@ the robot gives boundary functions, and these are harmonic forms.
 
 from importlib.metadata import version
 
-from qbound.boundary import clearance, components, pair_vector
-from qbound.circle import circle_arc, circle_roots
-from qbound.harmonic import HarmonicForm
-from qbound.region import find_region
-from qbound.robot import Robot
-from qbound.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
+from qbound.boundary.functions import clearance, components, pair_vector
+from qbound.forms.circle import circle_arc, circle_roots
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import Robot
+from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
+from qbound.region.region import find_region
 
 __all__ = [
     "HarmonicForm",

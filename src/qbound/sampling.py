@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary import clearance, components, position
-from qbound.harmonic import HarmonicForm
-from qbound.robot import Pair, Robot
+from qbound.boundary.functions import clearance, components, position
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import Pair, Robot
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -7,19 +7,18 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 
 from qbound import __version__
 from qbound.cli import (
     certify,
     check,
-    claims,
     connected,
     contains,
     draw,
     explore,
     pave,
     region,
-    results,
     robots,
     sample,
     traverse,
@@ -39,10 +38,11 @@ COMMANDS = (
     draw,
     explore,
     robots,
-    claims,
-    results,
 )
-"""In the order of the help."""
+"""In the order of the help; after them come those of the entry-point group."""
+
+GROUP = "qbound.commands"
+"""Entry points of this group are modules with an `add_to`, as those above."""
 
 STOPPED, NO_READER = 130, 141
 """Exit status after Ctrl-C, and where nobody reads the output any more, as shells have it."""
@@ -84,7 +84,8 @@ def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentPars
     parser = argparse.ArgumentParser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action="version", version=f"qbound {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in COMMANDS:
+    others = [found.load() for found in sorted(entry_points(group=GROUP), key=lambda e: e.name)]
+    for command in (*COMMANDS, *others):
         command.add_to(commands)
     for subparser in commands.choices.values():
         subparser.formatter_class = argparse.RawDescriptionHelpFormatter  # examples stay in line

@@ -12,10 +12,10 @@ from typing import Any
 from qbound.check import number
 from qbound.cli.chosen import add_robot
 from qbound.cli.values import check_targets, held, joint_value, write_text
+from qbound.model.robot import Joint, Robot
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
-from qbound.robot import Joint, Robot
-from qbound.robotfile import parse_robot, robot_text
 
 SIDES = ("lower", "upper")
 STATUS = {"proved": 0, "refuted": 1, "undecided": 3}

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.model.robotfile import robot_text
 from qbound.proofs import check_arb
-from qbound.robotfile import robot_text
 
 
 def add_to(commands: Any) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from qbound import paper_rule
-from qbound.outline import from_lowest
-from qbound.region import Component, Region, find_region, solve
-from qbound.robot import Robot
+from qbound.export.polygons import from_lowest
+from qbound.model.robot import Robot
+from qbound.region import paper_rule
+from qbound.region.region import Component, Region, find_region, solve
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:

@@ -8,10 +8,10 @@ from typing import Any
 from qbound import __version__
 from qbound.cli.chosen import add_robot
 from qbound.cli.values import configuration, json_text, write_text
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
 from qbound.proofs.connection import Connection, connection, wall
 from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
 
 STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
 

@@ -10,10 +10,10 @@ import numpy as np
 from qbound import __version__
 from qbound.cli.chosen import add_robot
 from qbound.cli.values import configuration, json_text, write_text
-from qbound.measures import BoundaryPoint, nearest_boundary
-from qbound.region import Region, find_region, margins
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
+from qbound.measures.nearest import BoundaryPoint, nearest_boundary
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
+from qbound.region.region import Region, find_region, margins
 
 
 def add_to(commands: Any) -> None:

@@ -8,16 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from qbound.cli.chosen import (
-    add_robot,
-    add_rule,
-    add_slice,
-    component_of,
-    region_by_rule,
-)
+from qbound.cli.chosen import add_robot, add_rule, add_slice, component_of, region_by_rule
 from qbound.cli.values import check_targets, configuration, held, write_all
+from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import plane_of_motion
-from qbound.robotfile import load_robot
 
 
 def add_to(commands: Any) -> None:

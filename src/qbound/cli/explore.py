@@ -7,9 +7,9 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.values import check_targets, held, write_text
-from qbound.explorer import explorer_page
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
+from qbound.explorer.page import explorer_page
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
 
 
 def add_to(commands: Any) -> None:

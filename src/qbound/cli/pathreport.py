@@ -10,6 +10,7 @@ import numpy as np
 
 from qbound.cli.route import Route
 from qbound.cli.values import heading
+from qbound.model.robot import Robot
 from qbound.paths.encounters import (
     Boundary,
     Crossing,
@@ -22,7 +23,6 @@ from qbound.paths.encounters import (
     stated_boundaries,
     tool_crossings,
 )
-from qbound.robot import Robot
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,10 +9,10 @@ from typing import Any
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_slice
 from qbound.cli.values import held, json_text, write_text
+from qbound.model.robotfile import load_robot
 from qbound.proofs.balls import above, below
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave
-from qbound.robotfile import load_robot
 
 
 def add_to(commands: Any) -> None:

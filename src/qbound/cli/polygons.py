@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from qbound.cli.values import csv_text, npz_bytes
-from qbound.outline import Piece, polygons
-from qbound.region import Region
+from qbound.export.polygons import Piece, polygons
+from qbound.region.region import Region
 
 Outlines = list[tuple[list[Piece], float]]
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from qbound import __version__
-from qbound.arcs import Arc
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
 from qbound.cli.values import Content, check_targets, held, joint_units, json_text, write_all
-from qbound.region import Component, Region, violated
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
+from qbound.region.arcs import Arc
+from qbound.region.region import Component, Region, violated
 from qbound.workspace.areas import NoHomeError, find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 

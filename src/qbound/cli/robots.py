@@ -6,7 +6,7 @@ import argparse
 from importlib import resources
 from typing import Any
 
-from qbound.robotfile import packaged_robots
+from qbound.model.robotfile import packaged_robots
 
 
 def add_to(commands: Any) -> None:

@@ -10,13 +10,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound import polygon
-from qbound.arcs import Arc
 from qbound.cli.chosen import component_of, region_by_rule
 from qbound.cli.values import held
+from qbound.geometry import polygon
+from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Traversal, follow, straight
-from qbound.region import Component, Region
-from qbound.robot import Robot
+from qbound.region.arcs import Arc
+from qbound.region.region import Component, Region
 from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from qbound import paper_rule, sampling
+from qbound import sampling
 from qbound.cli.chosen import add_robot, add_rule
 from qbound.cli.progress import progress
 from qbound.cli.values import (
@@ -20,8 +20,9 @@ from qbound.cli.values import (
     npz_bytes,
     write_all,
 )
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
+from qbound.region import paper_rule
 from qbound.sampling import Sample
 
 

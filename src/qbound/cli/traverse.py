@@ -22,6 +22,8 @@ from qbound.cli.values import (
     shown,
     write_all,
 )
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
 from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
@@ -32,8 +34,6 @@ from qbound.paths.trajectory import (
     timed,
 )
 from qbound.paths.traversal import Traversal
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
 
 
 def add_to(commands: Any) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound import __version__
-from qbound.robot import Robot
+from qbound.model.robot import Robot
 
 Content = str | bytes | Callable[[Path], object]
 """A text, bytes, or a function that writes the file at a path."""

@@ -10,8 +10,8 @@ from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.region import loop_content
 from qbound.cli.values import Content, check_targets, held, joint_value, json_text, shown, write_all
-from qbound.robot import Robot
-from qbound.robotfile import load_robot
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
 from qbound.workspace.areas import NoHomeError, Workspace, find_workspace, overlap
 from qbound.workspace.passage import Passage, find_passage
 from qbound.workspace.planar import planar_arm

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.bodies import outline
-from qbound.outline import polygons
+from qbound.export.polygons import polygons
+from qbound.measures.bodies import outline
+from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
-from qbound.region import Region
-from qbound.robot import Robot
+from qbound.region.region import Region
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from qbound import figures
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
+from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region import Component, Region
-from qbound.robot import HalfSpace, Robot
+from qbound.region.region import Component, Region
 from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arcs import Arc
 from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED
+from qbound.region.arcs import Arc
 from qbound.workspace.areas import SINGULAR, Aspect, Workspace
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary import clearance, pair_vector, position, required_distance
-from qbound.curves import meetings
+from qbound.boundary.functions import clearance, pair_vector, position
+from qbound.geometry.polylines import meetings
+from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region import Problem
-from qbound.robot import HalfSpace, Pair, Robot
+from qbound.region.region import Problem
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
@@ -222,7 +222,7 @@ def _leaves(walk: Traversal, boundary: Boundary, grid: Floats) -> Place | None:
 
 def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
     if isinstance(boundary, Pair):
-        vector, needed = pair_vector(robot, boundary), required_distance(robot, boundary)
+        vector, needed = pair_vector(robot, boundary), robot.required_distance(boundary)
         scale = float(np.abs(vector.coefficients).max())
 
         def distance(q: Floats) -> Floats:

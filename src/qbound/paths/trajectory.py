@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
-from qbound.robot import Robot
 
 Floats = NDArray[np.float64]
 

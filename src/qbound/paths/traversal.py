@@ -10,9 +10,9 @@ from itertools import pairwise, permutations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary import position
-from qbound.curves import Curve, flatten, self_crossings
-from qbound.robot import Robot
+from qbound.boundary.functions import position
+from qbound.geometry.polylines import Curve, flatten, self_crossings
+from qbound.model.robot import Robot
 
 __all__ = ["Leg", "Traversal", "follow", "self_crossings", "simple_orders", "straight", "traverse"]
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.harmonic import HarmonicForm, Kind
+from qbound.forms.harmonic import HarmonicForm, Kind
 
 if TYPE_CHECKING:
     from flint import arb

@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import check
-from qbound.boundary import clearance, required_distance
+from qbound.boundary.functions import clearance
+from qbound.model.robot import Pair, Robot
+from qbound.model.robotfile import parse_robot
 from qbound.proofs.minorant import Bound, Waves, longest_edges, second_order, to_waves
 from qbound.proofs.statements import (
     Statement,
@@ -29,8 +31,6 @@ from qbound.proofs.statements import (
     scaled_polygon,
     units,
 )
-from qbound.robot import Pair, Robot
-from qbound.robotfile import parse_robot
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -257,7 +257,7 @@ def _walls(robot: Robot, statement: Statement) -> dict[str, Waves]:
     return {
         wall.name: to_waves(clearance(wider, wall))
         for wall in wider.boundaries
-        if wall.used and not (isinstance(wall, Pair) and required_distance(wider, wall) == 0)
+        if wall.used and not (isinstance(wall, Pair) and wider.required_distance(wall) == 0)
     }
 
 
@@ -332,7 +332,7 @@ def _depth(robot: Robot, name: str, value: float) -> float:
     wall = robot.boundary(name)
     if not isinstance(wall, Pair):
         return -value
-    distance = required_distance(robot, wall)
+    distance = robot.required_distance(wall)
     return distance - math.sqrt(max(0.0, distance**2 + value))
 
 

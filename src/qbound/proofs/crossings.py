@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import along, ball, derivative, gradient, precision, turns, values
 from qbound.proofs.dyadic import Cells, Room
 from qbound.proofs.exact import ExactProblem

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, ball, derivative, factor, gradient, magnitude, precision
 
 if TYPE_CHECKING:

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary import clearance
-from qbound.harmonic import HarmonicForm, Kind
+from qbound.boundary.functions import clearance
+from qbound.forms.harmonic import HarmonicForm, Kind
+from qbound.model.robot import HalfSpace, Joint, Pair, Robot
+from qbound.model.robotfile import load_robot, robot_text
 from qbound.proofs.balls import ball, pi, precision
-from qbound.robot import HalfSpace, Joint, Pair, Robot
-from qbound.robotfile import load_robot, robot_text
 
 if TYPE_CHECKING:
     from flint import arb

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from qbound import paper_rule
-from qbound.boundary import pair_vector
-from qbound.paper_rule import Window
+from qbound.boundary.functions import pair_vector
+from qbound.model.robot import HalfSpace, Robot
 from qbound.proofs.balls import along, ball, pi, precision, turns
 from qbound.proofs.exact import BITS, ExactProblem, exact_state
-from qbound.robot import HalfSpace, Robot
+from qbound.region import paper_rule
+from qbound.region.paper_rule import Window
 
 if TYPE_CHECKING:
     from flint import arb

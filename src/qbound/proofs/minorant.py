@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 
 Floats = NDArray[np.float64]
 Array = NDArray[Any]

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary import position
-from qbound.harmonic import HarmonicForm, Kind
+from qbound.boundary.functions import position
+from qbound.forms.harmonic import HarmonicForm, Kind
+from qbound.model.robot import Robot
 from qbound.proofs.balls import ball, derivative, precision, values
 from qbound.proofs.exact import BITS, ExactProblem
 from qbound.proofs.proved_region import BITS as AREA_BITS
 from qbound.proofs.proved_region import ProvedComponent, prove_region
 from qbound.proofs.runs import area_under
-from qbound.region import Problem, solve
-from qbound.robot import Robot
+from qbound.region.region import Problem, solve
 
 if TYPE_CHECKING:
     from flint import arb

@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arcs import Arc
-from qbound.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import ball, precision, turns
 from qbound.proofs.crossings import (
     Balls,
@@ -36,7 +35,8 @@ from qbound.proofs.crossings import (
 )
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
-from qbound.region import Component, Region
+from qbound.region.arcs import Arc
+from qbound.region.region import Component, Region
 
 if TYPE_CHECKING:
     from flint import arb

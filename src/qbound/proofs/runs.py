@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qbound.harmonic import Kind
+from qbound.forms.harmonic import Kind
 from qbound.proofs.balls import along, ball, derivative, factor, interval, turns, values
 from qbound.proofs.crossings import Balls, line_roots, sides
 from qbound.proofs.exact import ExactProblem

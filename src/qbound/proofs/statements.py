@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound import polygon
+from qbound.geometry import polygon
+from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.proofs.triangulation import triangulate
-from qbound.region import Component, find_region
-from qbound.robot import HalfSpace, Pair, Robot
+from qbound.region.region import Component, find_region
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]

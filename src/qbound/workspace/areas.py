@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arcs import Arc, integrate
-from qbound.region import Component, Problem
+from qbound.region.arcs import Arc, integrate
+from qbound.region.region import Component, Problem
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
 from qbound.workspace.layers import Layers, Ranges

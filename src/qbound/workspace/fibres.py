@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.decomposition import TURN
-from qbound.region import Problem, Region, solve
+from qbound.region.decomposition import TURN
+from qbound.region.region import Problem, Region, solve
 
 Floats = NDArray[np.float64]
 
@@ -55,5 +55,5 @@ class Fibres(Region):
 
 
 def find_fibres(problem: Problem, home: ArrayLike) -> Fibres:
-    """Decompose a problem over its second joint; arguments as `qbound.region.solve`."""
+    """Decompose a problem over its second joint; arguments as `qbound.region.region.solve`."""
     return Fibres(**vars(solve(problem, home, base=1)))

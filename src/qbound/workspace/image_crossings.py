@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import NDArray
 
-from qbound.harmonic import HarmonicForm, basis
+from qbound.forms.harmonic import HarmonicForm, basis
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
 from qbound.workspace.planar import PlanarArm
 

@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arcs import NODES, converged, legendre
+from qbound.region.arcs import NODES, converged, legendre
 from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
 from qbound.workspace.fibres import Fibres

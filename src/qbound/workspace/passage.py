@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound import polygon
-from qbound.arcs import Arc
-from qbound.region import Component
+from qbound.geometry import polygon
+from qbound.region.arcs import Arc
+from qbound.region.region import Component
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.planar import turns_within
 

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary import position
-from qbound.circle import nearest_turn
-from qbound.harmonic import HarmonicForm, Kind, basis
-from qbound.robot import Robot
+from qbound.boundary.functions import position
+from qbound.forms.circle import nearest_turn
+from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.model.robot import Robot
 from qbound.tolerances import NEGLIGIBLE, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]

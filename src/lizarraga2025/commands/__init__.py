@@ -1,0 +1,1 @@
+"""Commands that the companion adds to ``qbound``, by the entry-point group qbound.commands."""

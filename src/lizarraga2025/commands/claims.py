@@ -1,0 +1,85 @@
+"""``qbound claims``: the verdict on every statement of the paper, as recorded or computed anew."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from lizarraga2025 import recorded
+from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.entries import KINDS, SCHEMA, VERDICTS, Claim, claim, from_content
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "claims",
+        help="what holds of the paper, statement by statement",
+        description="Print the ledger's entries: all, some by id, or those of a verdict or a kind.",
+        epilog="example: qbound claims E-34 --recompute",
+    )
+    parser.add_argument("ids", nargs="*", metavar="ID", help="such as E-34, B-2.1.2, T-4, F-4, S-3")
+    parser.add_argument("--verdict", choices=VERDICTS, metavar="VERDICT", help="; ".join(VERDICTS))
+    parser.add_argument("--kind", choices=KINDS)
+    parser.add_argument("--json", action="store_true", help="as in results/claims.json")
+    parser.add_argument("--bibtex", action="store_true", help="how to cite paper, package, entries")
+    parser.add_argument(
+        "--recompute",
+        action="store_true",
+        help="run the computation again; exit status 1 if the outcome is not the recorded one",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the chosen entries; with --recompute, 1 if one comes out otherwise than recorded."""
+    ledger = {content["id"]: from_content(content) for content in recorded.claims()}
+    unknown = [name for name in options.ids if name not in ledger]
+    if unknown:
+        raise ValueError(f"no entry {unknown[0]!r} in the ledger; `qbound claims` lists all")
+    chosen = [one for one in ledger.values() if _is_chosen(one, options)]
+    if options.recompute:
+        chosen = [_again(one.id) for one in chosen]
+    if options.json:
+        content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
+        print(json.dumps(content, indent=1, ensure_ascii=False))
+    elif options.bibtex:
+        print("\n\n".join([cite.PAPER, cite.package(), *(cite.entry(one) for one in chosen)]))
+    else:
+        _say(chosen, whole=bool(options.ids))
+    changed = [one.id for one in chosen if one != ledger[one.id]]
+    if changed and not options.json and not options.bibtex:
+        print(f"differs from what is recorded: {', '.join(changed)}")
+    return 1 if changed else 0
+
+
+def _again(name: str) -> Claim:
+    try:
+        return claim(name)
+    except ModuleNotFoundError as error:
+        raise ImportError(
+            f"to compute {name} again takes {error.name}: pip install 'qbound[notebooks]'"
+        ) from error
+
+
+def _is_chosen(one: Claim, options: argparse.Namespace) -> bool:
+    return (
+        (not options.ids or one.id in options.ids)
+        and (options.verdict in (None, one.verdict))
+        and (options.kind in (None, one.kind))
+    )
+
+
+def _say(chosen: list[Claim], whole: bool) -> None:
+    for one in chosen:
+        if not whole:
+            print(f"{one.id:<10}{one.verdict:<29}{one.where}: {one.says}")
+            continue
+        print(f"{one.id}  {one.where}\n  says      {one.says}\n  verdict   {one.verdict}")
+        print(f"  found     {one.found}")
+        if one.mended:
+            print(f"  mended    {one.mended}")
+        print(f"  evidence  {one.evidence.chapter}, {one.evidence.test}")
+    if not whole:
+        print(f"{len(chosen)} entries")

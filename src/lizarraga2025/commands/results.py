@@ -1,0 +1,51 @@
+"""``qbound results``: the numbers that the book states, as recorded."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from lizarraga2025 import recorded
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "results",
+        help="every number that the book states",
+        description="Print recorded numbers: all, those of a chapter, or those of an id.",
+        epilog="example: qbound results region/vertex.1",
+    )
+    parser.add_argument("ids", nargs="*", metavar="ID", help="vertex.1, region/vertex.1, region/")
+    parser.add_argument("--json", action="store_true", help="as in results/, with the chapter")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the chosen numbers."""
+    entries = recorded.results()
+    names = options.ids or [""]
+    lost = [name for name in names if not any(_is_named(entry, name) for entry in entries)]
+    if lost:
+        raise ValueError(f"no result {lost[0]!r}; `qbound results` lists all")
+    chosen = [entry for entry in entries if any(_is_named(entry, name) for name in names)]
+    if options.json:
+        print(json.dumps(chosen, indent=1, ensure_ascii=False))
+        return 0
+    for entry in chosen:
+        unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
+        print(f"{entry['chapter']}/{entry['id']} = {entry['value']}{unit}{_about(entry)}")
+    return 0
+
+
+def _is_named(entry: dict[str, Any], name: str) -> bool:
+    """Tell whether a name is the entry's id, its chapter with a slash, both, or nothing."""
+    whole = f"{entry['chapter']}/{entry['id']}"
+    return name in ("", entry["id"], whole, f"{entry['chapter']}/")
+
+
+def _about(entry: dict[str, Any]) -> str:
+    rule = "" if entry["rule"] == "none" else f"{entry['rule']}'s rule"
+    words = [word for word in (entry["reference"], rule) if word]
+    return f"  ({', '.join(words)})" if words else ""

@@ -1,0 +1,199 @@
+"""Boundary functions: robot + points -> harmonic forms (Theorem 1, eqs. 9-29, Tables 3-5).
+
+A chain is walked from a point towards an observer; each joint multiplies what is carried so far by
+(1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
+symbols: the formulas of the paper are derived here, never typed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.forms.harmonic import HarmonicForm, add_constant
+from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+
+Array = NDArray[Any]
+
+
+def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicForm:
+    """Return the coordinates of a point seen from a frame that carries it (Table 2, eqs. 20, 21).
+
+    Parameters
+    ----------
+    observer : str, optional
+        Frame; default the base.
+
+    Returns
+    -------
+    HarmonicForm, shape (3,)
+        x, y, z from the observer's origin; length.
+
+    Raises
+    ------
+    ValueError
+        If the observer is no frame between the base and the point.
+    """
+    return _walk(robot, point, observer)[0]
+
+
+def squared_distance(
+    robot: Robot, point: str, observer: str | None = None, centre: ArrayLike = (0, 0, 0)
+) -> HarmonicForm:
+    r"""Return the squared distance of a point from a place `centre` fixed in the observer's frame.
+
+    It has no products such as :math:`\cos^2 q`: a rotation keeps lengths, so a joint only adds
+    twice a dot product. Arguments and errors as in `position`.
+    """
+    coordinates, squared = _walk(robot, point, observer)
+    centre = np.asarray(centre)
+    cross = coordinates.dot(-2 * centre).coefficients
+    return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.asarray(centre @ centre)
+
+
+def observer(robot: Robot, pair: Pair) -> str:
+    """Return the frame a of Theorem 1: that of the pair's point nearer to the base."""
+    return min((robot.point(name).frame for name in pair.points), key=robot.depth)
+
+
+def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
+    r"""Return :math:`B(q) = r_{a,b} + R_{a,b}\,r_{b,b+m} - r_{a,a+n}` (eq. 16), seen from frame a.
+
+    Returns
+    -------
+    HarmonicForm, shape (3,)
+        :math:`\beta_{i,1}, \beta_{i,2}, \beta_{i,3}`, from the first point named to the
+        second; length.
+
+    Notes
+    -----
+    Eq. (25) shows the same vector from the base, turned by :math:`R_{0,a}`.
+    """
+    sign, near, far = _near_far(robot, pair)
+    vector = position(robot, far.name, near.frame) - near.at
+    return vector if sign > 0 else -vector
+
+
+def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
+    r"""Return the form that is positive exactly where the boundary is respected (eqs. 9, 11, 12).
+
+    Returns
+    -------
+    HarmonicForm, shape ()
+        A pair: :math:`|B|^2 - d_{\min}^2` in length squared, where :math:`d_{\min}` is the two
+        radii plus the clearance.
+        A half-space: ``normal . r - offset - radius`` in length.
+    """
+    if isinstance(boundary, Pair):
+        _, near, far = _near_far(robot, boundary)
+        squared = squared_distance(robot, far.name, near.frame, near.at)
+        return squared - robot.required_distance(boundary) ** 2
+    radius = robot.point(boundary.point).radius
+    return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
+
+
+def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
+    """Return the joint value at which a pair's points come closest, and their distance there.
+
+    The squared distance is ``c0 + a cos q + b sin q``, least opposite to the direction (a, b).
+
+    Returns
+    -------
+    q : float
+        Value of the one joint between the points, rad, in (-pi, pi].
+    distance : float
+        Length. Where it is not 0, B = 0 (eq. 17) has no solution at all.
+
+    Raises
+    ------
+    ValueError
+        If the distance does not depend on exactly one joint, a revolute one.
+    """
+    form = clearance(robot, pair)
+    joints = form.joints()
+    if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
+        raise ValueError(
+            f"{pair.name}: its distance depends on {len(joints)} joints, not on one turn"
+        )
+    q = np.array(robot.home)
+    _, a, b = form.along(joints[0], q)
+    q[joints[0]] = np.arctan2(-b, -a)
+    return float(q[joints[0]]), float(np.linalg.norm(pair_vector(robot, pair)(q)))
+
+
+def geometric_vector(robot: Robot, boundary: HalfSpace) -> HarmonicForm:
+    r"""Return the vector of a half-space (Table 5): the selected component, zeros elsewhere.
+
+    It is :math:`B(q) = S\,r_{0,i} - w\,n` with the point i, the wall's offset w and its normal n.
+    The selection matrix is :math:`S = n\,n^T`, the paper's :math:`S_x` or :math:`S_z` where n is an
+    axis.
+
+    Returns
+    -------
+    HarmonicForm, shape (3,)
+        :math:`\beta_{i,1}, \beta_{i,2}, \beta_{i,3}`; length.
+    """
+    n = boundary.normal
+    return position(robot, boundary.point).dot(np.outer(n, n)) - boundary.offset * n
+
+
+def components(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
+    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,)."""
+    if isinstance(boundary, Pair):
+        return pair_vector(robot, boundary)
+    return geometric_vector(robot, boundary)
+
+
+def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
+    """Return the sign of "first to second" and the two points, the one nearer to the base first."""
+    first, second = (robot.point(name) for name in pair.points)
+    if robot.depth(first.frame) <= robot.depth(second.frame):
+        return 1, first, second
+    return -1, second, first
+
+
+def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
+    """Carry the position u of a point, and |u|^2, from its frame to the observer's."""
+    point = robot.point(name)
+    u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
+    u = add_constant(u, point.at)
+    squared = add_constant(np.zeros_like(u[0]), point.at @ point.at)
+    last = robot.depth(point.frame)
+    first = 0 if observer is None else robot.depth(observer)
+    if first > last:
+        raise ValueError(f"frame {observer!r} does not carry the point {name!r}")
+    for j in reversed(range(first, last)):
+        u, squared = _pass_joint(robot.joints[j], j, u, squared)
+    return HarmonicForm(u, robot.kinds), HarmonicForm(squared, robot.kinds)
+
+
+def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+    """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
+    still = np.take(u, 0, axis=j + 1)
+    if joint.kind == "revolute":
+        moved = np.stack(_rodrigues(joint.axis, still), axis=j + 1)
+    else:
+        moved, squared = _slide(joint.axis, j, u, squared)
+    moved = np.tensordot(joint.mount, moved, axes=1)
+    squared = squared + 2 * np.tensordot(joint.origin, moved, axes=1)
+    squared = add_constant(squared, joint.origin @ joint.origin)
+    return add_constant(moved, joint.origin), squared
+
+
+def _rodrigues(axis: Array, u: Array) -> tuple[Array, Array, Array]:
+    """Return constant, cosine and sine part of `u` turned about a unit axis."""
+    along = np.multiply.outer(axis, np.tensordot(axis, u, axes=1))
+    return along, u - along, np.cross(axis, u, axisb=0, axisc=0)
+
+
+def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+    """Add q times a unit axis to u; |u|^2 gains 2 q axis . u + q^2."""
+    along = np.take(np.tensordot(axis, u, axes=1), 0, axis=j)
+    constant = np.take(squared, 0, axis=j)
+    square = add_constant(np.zeros_like(along), 1)
+    squared = np.stack([constant, 2 * along, square], axis=j)
+    still = np.take(u, 0, axis=j + 1)
+    slope = add_constant(np.zeros_like(still), axis)
+    return np.stack([still, slope, np.zeros_like(still)], axis=j + 1), squared

@@ -1,0 +1,1 @@
+"""Regions as others read them: polygons of a stated deviation."""

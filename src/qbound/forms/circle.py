@@ -1,0 +1,134 @@
+"""Theorem 2 on the circle: where a cos q + b sin q meets c and where it is above (eqs. 30-39)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.tolerances import TANGENT, ZERO_AMPLITUDE
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+ALL: Final = -1
+"""Count of roots where every angle is one (a = b = c = 0)."""
+
+
+@dataclass(frozen=True)
+class CircleRoots:
+    """Roots of ``a cos q + b sin q = c`` within one turn, shape (...) a field.
+
+    Attributes
+    ----------
+    count : ndarray of int, shape (...)
+        Number of different roots: 0, 1 (double), 2, or `ALL`.
+    q : ndarray, shape (2, ...)
+        ``theta - alpha`` and ``theta + alpha``, rad, not wrapped. Where there is no root both are
+        the angle of closest approach; `count` tells.
+    slope : ndarray of int, shape (2, ...)
+        Sign of the derivative of ``a cos q + b sin q`` at each root: +1, -1; 0 where double.
+    theta : ndarray, shape (...)
+        Direction of (a, b), rad, in (-pi, pi].
+    alpha : ndarray, shape (...)
+        Half-width arccos(c / d), rad, in [0, pi].
+    """
+
+    count: Ints
+    q: Floats
+    slope: Ints
+    theta: Floats
+    alpha: Floats
+
+    @property
+    def multiplicity(self) -> Ints:
+        """Multiplicity of each root, 2 at a tangency; 0 where there is none or all are."""
+        return np.select([self.count == 2, self.count == 1], [1, 2], 0)
+
+
+def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
+    r"""Solve :math:`a\cos q + b\sin q = c` for every entry (Theorem 2, eqs. 30-38).
+
+    Parameters
+    ----------
+    a, b, c : array_like, shape (...)
+        Coefficients in one length unit; broadcast against each other.
+
+    Raises
+    ------
+    ValueError
+        If a coefficient is NaN or infinite.
+
+    Notes
+    -----
+    ``theta = atan2(b, a)``: the printed arctan(b / a) loses the quadrant when a < 0 and is
+    undefined when a = 0. Both signs of the arccos are roots: the printed proof keeps one.
+    """
+    a, b, c = (np.asarray(x, dtype=float) for x in np.broadcast_arrays(a, b, c))
+    if not (np.isfinite(a).all() and np.isfinite(b).all() and np.isfinite(c).all()):
+        raise ValueError("a, b and c must be finite numbers")
+    theta, alpha, ratio = polar(a, b, c)
+    everywhere = (a == 0) & (b == 0) & (c == 0)
+    crossing = ~everywhere & (np.abs(ratio) < 1)
+    count = np.select([everywhere, np.abs(ratio) == 1, crossing], [ALL, 1, 2], 0)
+    # Equal to theta +- pi where double below: one angle modulo a full turn, so both keep +pi.
+    q = np.stack([np.where(crossing, theta - alpha, theta + alpha), theta + alpha])
+    slope = np.stack([np.where(crossing, 1, 0), np.where(crossing, -1, 0)])
+    return CircleRoots(count.astype(np.int64), q, slope, theta, alpha)
+
+
+def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36), as they come: nothing is checked.
+
+    c / d is exactly 1 or -1 at a tangency, and as good as infinite where there is no amplitude.
+    """
+    d = np.hypot(a, b)
+    moves = d > ZERO_AMPLITUDE * np.abs(c)
+    ratio = np.divide(c, d, out=np.array(np.sign(c) / ZERO_AMPLITUDE), where=moves)
+    ratio = np.where(np.abs(np.abs(ratio) - 1) <= TANGENT, np.sign(ratio), ratio)
+    return np.arctan2(b, a), np.arccos(np.clip(ratio, -1.0, 1.0)), ratio
+
+
+@dataclass(frozen=True)
+class CircleArc:
+    """Where ``a cos q + b sin q >= c``: ``|q - centre| <= half_width`` modulo a full turn.
+
+    Attributes
+    ----------
+    centre : ndarray, shape (...)
+        rad.
+    half_width : ndarray, shape (...)
+        rad: pi where every angle satisfies it, 0 where one does.
+    empty : ndarray of bool, shape (...)
+        True where no angle does; `half_width` is 0 there.
+    """
+
+    centre: Floats
+    half_width: Floats
+    empty: NDArray[np.bool_]
+
+
+def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
+    r"""Solve the inequality :math:`a\cos q + b\sin q \ge c` (Theorem 2 as it is needed).
+
+    The solution is the closed arc between the two roots around ``theta``, of length
+    ``2 arccos(c / d)``; not the full turn of eq. (39) and not the longer interval of eq. (31).
+
+    Parameters
+    ----------
+    a, b, c : array_like, shape (...)
+        As in `circle_roots`, with its errors.
+    """
+    roots = circle_roots(a, b, c)
+    above = np.broadcast_to(np.asarray(c, dtype=float), roots.theta.shape) > 0
+    empty = (roots.count == 0) & above
+    half_width = np.where(roots.count == ALL, np.pi, roots.alpha)
+    return CircleArc(roots.theta, half_width, empty)
+
+
+def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
+    """Shift angles by full turns into (centre - pi, centre + pi]."""
+    q, centre = np.asarray(q, dtype=float), np.asarray(centre, dtype=float)
+    return np.asarray(q - 2 * np.pi * np.ceil((q - centre) / (2 * np.pi) - 0.5))

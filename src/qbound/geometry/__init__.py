@@ -1,0 +1,1 @@
+"""Plane geometry that knows no robot: polygons, and curves as polylines."""

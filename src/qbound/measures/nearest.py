@@ -1,0 +1,289 @@
+"""Measures of a region: moments and the nearest boundary point.
+
+Not in the paper. Everything is taken on the exact arcs. For the nearest point each piece between
+two of an arc's points is parametrised by its chord, from which the form gives the curve's distance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.region.arcs import Arc, integrate
+from qbound.region.decomposition import TURN
+from qbound.region.region import Component, Problem, Region
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Area, centroid and second moments of a component.
+
+    Attributes
+    ----------
+    area : float
+        Product of the two joints' units.
+    centroid : ndarray, shape (2,)
+        Of the area; rad or length.
+    second : ndarray, shape (2, 2)
+        Second moments about the centroid, the integral of (q - centroid) (q - centroid)^T.
+    """
+
+    area: float
+    centroid: Floats
+    second: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryPoint:
+    """The point of a boundary that is nearest to a configuration.
+
+    Attributes
+    ----------
+    q : ndarray, shape (2,)
+        On the turn of the configuration asked for.
+    boundary : str
+        Name of the boundary or of the joint limit.
+    component : int
+        Index of the component that the boundary belongs to.
+    distance : float
+        In the metric asked for.
+    """
+
+    q: Floats
+    boundary: str
+    component: int
+    distance: float
+
+
+# --- on an arc ------------------------------------------------------------------------------------
+
+
+def along(problem: Problem, arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
+    """Return exact points of an arc and the derivatives along it, piece by piece.
+
+    Parameters
+    ----------
+    fractions : array_like, shape (m,) or (k - 1, m)
+        Fractions in [0, 1] of each of the k - 1 chords between the arc's points.
+
+    Returns
+    -------
+    q, dq : ndarray, shape (k - 1, m, 2)
+        Where the normal of the chord at the fraction meets the arc, rad or length, and the
+        derivative of that point by the fraction. A fold is as smooth as any other place.
+    """
+    ends = arc.points[:-1], arc.points[1:]
+    pieces = len(ends[0])
+    u = np.broadcast_to(fractions, (pieces, np.shape(fractions)[-1]))
+    return _over_chords(problem, arc.boundary, *ends, u)
+
+
+def _over_chords(
+    problem: Problem, boundary: str, start: Floats, end: Floats, u: Floats
+) -> tuple[Floats, Floats]:
+    """Points and derivatives as in `along`, over chords (n, 2) at fractions (n, m)."""
+    chord = (end - start)[:, None]
+    q = start[:, None] + u[..., None] * chord
+    if boundary not in problem.names:  # a limit is straight
+        return q, np.broadcast_to(chord, q.shape)
+    form = problem.forms[problem.names.index(boundary)]
+    normal = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
+    for _ in range(3):
+        rise = _quotient(form(q), _dot(form.gradient(q), normal))
+        q = q - np.clip(rise, -0.5, 0.5)[..., None] * normal
+    gradient = form.gradient(q)
+    turn = _quotient(_dot(gradient, chord), _dot(gradient, normal))
+    return q, chord - turn[..., None] * normal
+
+
+def _quotient(a: Floats, b: Floats) -> Floats:
+    """Return a / b, 0 where b is 0: the gradient vanishes only at the end of an arc."""
+    return np.divide(a, b, out=np.zeros_like(b), where=b != 0)
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+# --- moments --------------------------------------------------------------------------------------
+
+
+def moments(problem: Problem, component: Component) -> Moments:
+    """Return area, centroid and second moments of a component by Green on its arcs.
+
+    Raises
+    ------
+    ValueError
+        If the component goes round a joint: it has no inside in the plane, hence no centroid.
+
+    """
+    if any(component.wraps) or not component.loops:
+        raise ValueError("a component that goes round a joint has no moments in the plane")
+    origin = component.loops[0][0].points[0]
+    arcs = [arc for loop in component.loops for arc in loop]
+    area, x, y, xx, xy, yy = integrate(arcs, lambda q, dq: _green(q - origin, dq))
+    mean = np.array([x, y]) / area
+    second = np.array([[xx, xy], [xy, yy]]) - area * np.outer(mean, mean)
+    return Moments(float(area), origin + mean, second)
+
+
+def _green(q: Floats, dq: Floats) -> Floats:
+    """Return what sums up, round a boundary, to the integrals of 1, x, y, x^2, xy, y^2 inside."""
+    (x, y), (dx, dy) = q.T, dq.T
+    parts = [
+        (x * dy - y * dx) / 2,
+        x * x / 2 * dy,
+        -y * y / 2 * dx,
+        x**3 / 3 * dy,
+        x * x * y / 2 * dy,
+        -(y**3) / 3 * dx,
+    ]
+    return np.stack(parts, axis=-1)
+
+
+def vertex_centroid(component: Component) -> Floats:
+    """Return the mean of a component's vertices, shape (2,): the other reading of "centroid".
+
+    Raises
+    ------
+    ValueError
+        If the component has no vertex or goes round a joint.
+    """
+    if any(component.wraps) or not component.vertices:
+        raise ValueError("the component has no vertices, or goes round a joint")
+    return np.asarray(np.mean([vertex.q for vertex in component.vertices], axis=0))
+
+
+# --- the nearest boundary point -------------------------------------------------------------------
+
+
+def nearest_boundary(
+    region: Region,
+    q: ArrayLike,
+    component: int | None = None,
+    weights: Sequence[float] = (1.0, 1.0),
+) -> BoundaryPoint:
+    r"""Return the point of the boundary nearest to a configuration, and the boundary's name.
+
+    The distance is :math:`\sqrt{\sum_j (w_j \Delta q_j)^2}`. With the weights 1 it is in rad for
+    two revolute joints and a length for two prismatic ones; for one of each it adds unlike units,
+    so give weights, such as the length of the arm for the joint that turns.
+
+    Parameters
+    ----------
+    q : array_like, shape (2,)
+        rad or length; feasible or not.
+    component : int, optional
+        Take the boundary of this component alone; default: of all.
+    weights : sequence of two float
+        Above zero.
+
+    Raises
+    ------
+    ValueError
+        If there is no boundary, or a weight or joint value is unfit.
+    """
+    q, w = np.asarray(q, dtype=float), np.asarray(weights, dtype=float)
+    if q.shape != (2,) or not np.isfinite(q).all():
+        raise ValueError("a configuration is two finite joint values")
+    if w.shape != (2,) or not (np.isfinite(w).all() and (w > 0).all()):
+        raise ValueError("weights are two finite numbers above zero")
+    chosen = range(len(region.components)) if component is None else [component]
+    best: BoundaryPoint | None = None
+    arcs = [(i, arc) for i in chosen for loop in region.components[i].loops for arc in loop]
+    arcs.sort(key=lambda item: _point_gap(region.problem, item[1], q, w))
+    for i, arc in arcs:
+        limit = math.inf if best is None else best.distance
+        place, distance = _nearest_on(region.problem, arc, q, w, limit)
+        if distance < limit:
+            best = BoundaryPoint(place, arc.boundary, i, distance)
+    if best is None:
+        raise ValueError("there is no boundary: every configuration is feasible, or none is")
+    return best
+
+
+def _point_gap(problem: Problem, arc: Arc, q: Floats, w: Floats) -> float:
+    """Distance from the nearest of the arc's points, on any turn."""
+    rounds = [limits is None for limits in problem.ranges]
+    gaps = arc.points - q
+    gaps = np.where(rounds, (gaps + math.pi) % TURN - math.pi, gaps)
+    return float(np.hypot(*(w * gaps).T).min())
+
+
+def _nearest_on(
+    problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float = math.inf
+) -> tuple[Floats, float]:
+    """Return the nearest point of an arc, on the turn of q, and its distance, if below a limit."""
+    place, best = q, limit
+    for shift in _turns(problem, arc, q, w, limit):
+        for p in _candidates(problem, arc, q + shift, w, best):
+            distance = float(np.hypot(*(w * (p - q - shift))))
+            if distance < best:
+                place, best = p - shift, distance
+    return place, best
+
+
+def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Iterator[Floats]:
+    """Yield the shifts by full turns that bring q near enough to the box around an arc."""
+    low, high = arc.points.min(axis=0), arc.points.max(axis=0)
+    steps = [
+        [0.0]
+        if limits is not None or kind == "prismatic"
+        else TURN * np.arange(math.floor((a - x) / TURN), math.ceil((b - x) / TURN) + 1)
+        for limits, kind, a, b, x in zip(
+            problem.ranges, problem.forms.kinds, low, high, q, strict=True
+        )
+    ]
+    for shift in np.array(list(product(*steps))):
+        beyond = np.maximum(np.maximum(low - q - shift, q + shift - high), 0)
+        slack = np.abs(np.diff(arc.points, axis=0)).max()  # the curve may leave the box by this
+        if np.hypot(*(w * np.maximum(beyond - slack, 0))) < limit:
+            yield shift
+
+
+def _candidates(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
+    """Return the nearest of the arc's points, and where the distance stops falling between two."""
+    gaps = np.hypot(*(w * (arc.points - q)).T)
+    reach = np.hypot(*(w * np.diff(arc.points, axis=0)).T)
+    nearest = arc.points[[gaps.argmin()]]
+    near = np.minimum(gaps[:-1], gaps[1:]) - 2 * reach <= min(limit, float(gaps.min()))
+    start, end = arc.points[:-1][near], arc.points[1:][near]
+    if not len(start):
+        return nearest
+    slope = _slope(problem, arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
+    falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
+    return np.concatenate([nearest, _flat(problem, arc, start[falls], end[falls], q, w)])
+
+
+def _flat(problem: Problem, arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
+    """Return where the distance stops falling over each chord: false position (Illinois)."""
+    low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
+    ends = np.broadcast_to([[0.0, 1.0]], (len(start), 2))
+    below, above = np.split(_slope(problem, arc, start, end, ends, q, w)[1], 2, axis=1)
+    falls = above < below  # nowhere
+    for _ in range(60):
+        u = (low * above - high * below) / (above - below)
+        p, slope = _slope(problem, arc, start, end, u, q, w)
+        if (np.abs(slope) <= 2.0**-50 * (above - below)).all():
+            break
+        before, falls = falls, slope < 0  # an end that stays twice loses half its weight
+        below = np.where(falls, slope, np.where(~falls & ~before, below / 2, below))
+        above = np.where(falls, np.where(falls & before, above / 2, above), slope)
+        low, high = np.where(falls, u, low), np.where(falls, high, u)
+    return np.asarray(p[:, 0])
+
+
+def _slope(
+    problem: Problem, arc: Arc, start: Floats, end: Floats, u: Floats, q: Floats, w: Floats
+) -> tuple[Floats, Floats]:
+    """Points over chords, and the derivative of half the squared distance from q there."""
+    u = np.broadcast_to(u, (len(start), u.shape[1]))
+    p, dp = _over_chords(problem, arc.boundary, start, end, u)
+    return p, _dot(w * w * (p - q), dp)

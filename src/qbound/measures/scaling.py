@@ -1,0 +1,373 @@
+"""Scaling a polygon about a point until it is safe, and how far is far enough (Figure 6).
+
+Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
+the scale found is covered by triangles on each of which every form is shown to be positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.boundary.functions import clearance
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.tolerances import PROVED_SCALE, TANGENT
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+ROUNDS, PLACES = 14, 33
+MOST_TRIANGLES = 2_000_000
+"""Triangles looked at before a proof gives up; the paper's polygon takes about a thousand."""
+
+
+@dataclass(frozen=True, eq=False)
+class SafeScale:
+    """The largest safe scale and what binds it.
+
+    Attributes
+    ----------
+    scale : float
+        Here the scaled polygon touches; no smaller scale that touches was found.
+    proved : float
+        Up to this scale no point of the polygon violates a form: shown by subdivision.
+    q : ndarray, shape (2,)
+        Where the scaled polygon touches.
+    edge : int
+        Index of the edge (from vertex `edge` to the next) that touches.
+    form : int
+        Index of the form that it touches; -1 where none binds below the scale searched.
+    """
+
+    scale: float
+    proved: float
+    q: Floats
+    edge: int
+    form: int
+
+
+def largest_safe_scale(
+    vertices: ArrayLike, centre: ArrayLike, forms: Sequence[HarmonicForm], *, highest: float = 1.0
+) -> SafeScale:
+    """Return the largest scale up to which a polygon stays where every form is >= 0 (Figure 6).
+
+    Parameters
+    ----------
+    vertices : array_like, shape (m, 2)
+        rad or length; convex or not.
+    centre : array_like, shape (2,)
+        Every form must be positive there.
+    forms : sequence of HarmonicForm of two joints
+    highest : float
+        Scales above it are not searched.
+
+    Raises
+    ------
+    ValueError
+        If a form is not positive at the centre, or a number is not finite.
+    ArithmeticError
+        If subdivision comes to no end: a form touches zero along a line inside the polygon.
+
+    Notes
+    -----
+    A local search over the edges gives a scale that touches. Then the polygon, scaled by it less
+    `PROVED_SCALE`, is subdivided until each triangle is shown to be safe by a bound of second
+    order, in floating point. A violation found on the way starts the search anew from there.
+    """
+    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
+    if not (np.isfinite(p).all() and np.isfinite(g).all()):
+        raise ValueError("vertices and centre must be finite numbers")
+    walls = _Walls.around(forms, g + highest * (p - g), g)
+    if not (walls.values(g) > 0).all():
+        raise ValueError("a boundary is violated at the centre already")
+    best = _coarse(walls, p, g, highest)
+    while True:
+        best = _touch(walls, p, g, best, highest)
+        proved = best.scale * (1 - PROVED_SCALE)
+        witness = _violation(walls, _fan(g + proved * (p - g), g))
+        if witness is None:
+            if best.form < 0:
+                return SafeScale(best.scale, proved, best.q, -1, -1)
+            q = _contact(forms[best.form], p, best)
+            return SafeScale(best.scale, proved, q, best.edge, best.form)
+        best = _ray_through(p, g, witness)
+
+
+def first_exit(
+    forms: Sequence[HarmonicForm], centre: ArrayLike, rays: ArrayLike, highest: float = 1.0
+) -> tuple[Floats, NDArray[np.intp]]:
+    """Return how far along each ray every form stays positive, and which form stops it.
+
+    Parameters
+    ----------
+    rays : array_like, shape (n, 2)
+        Joint values added to the centre at scale 1.
+
+    Returns
+    -------
+    scale : ndarray, shape (n,)
+        The first zero of any form along ``centre + scale ray``, at most `highest`.
+    form : ndarray of int, shape (n,)
+        Its index; -1 where none stops the ray.
+    """
+    g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
+    return _exits(_Walls.around(forms, g + highest * rays, g), g, rays, highest)
+
+
+def least(
+    form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike, tolerance: float = 1e-9
+) -> tuple[float, Floats]:
+    """Return the least value of a form over a polygon, and where, to within a tolerance.
+
+    The polygon is the fan of triangles from `centre` to its edges; each is halved until no part
+    of it can hold a value below the least one found less `tolerance` of the form's size.
+    """
+    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
+    walls = _Walls.around([form], p, g)
+    slack = tolerance * np.abs(form.coefficients).max()
+    triangles, best, where = _fan(p, g), np.inf, g
+    while len(triangles):
+        corners = walls.values(triangles)[..., 0]
+        i = np.unravel_index(corners.argmin(), corners.shape)
+        if corners[i] < best:
+            best, where = float(corners[i]), triangles[i]
+        open_ = walls.bounds(triangles)[:, 0] < best - slack
+        triangles = walls.halved(triangles[open_], np.zeros(open_.sum(), dtype=np.intp))
+    return best, np.asarray(where)
+
+
+def worst_margins(
+    robot: Robot, vertices: ArrayLike, centre: ArrayLike
+) -> dict[str, tuple[float, Floats]]:
+    """Return the least margin of every boundary in use over a polygon, and where (eqs. 11, 12).
+
+    Returns
+    -------
+    dict
+        Boundary name to margin (a length, ``|B| - d_min`` or the depth inside a wall) and joint
+        values, shape (2,).
+    """
+    used = [boundary for boundary in robot.boundaries if boundary.used]
+    return {b.name: _worst(robot, b, vertices, centre) for b in used}
+
+
+def _worst(
+    robot: Robot, boundary: Pair | HalfSpace, vertices: ArrayLike, centre: ArrayLike
+) -> tuple[float, Floats]:
+    value, q = least(clearance(robot, boundary), vertices, centre)
+    if isinstance(boundary, HalfSpace):
+        return value, q
+    d_min = robot.required_distance(boundary)
+    return float(np.sqrt(max(value + d_min**2, 0.0))) - d_min, q
+
+
+def least_along_edges(
+    form: HarmonicForm, vertices: ArrayLike, tolerance: float = 1e-12
+) -> tuple[float, Floats]:
+    """Return the least value of a form on a polygon's edges and where, to within a tolerance."""
+    p = np.asarray(vertices, dtype=float)
+    start, end = p, np.roll(p, -1, axis=0)
+    walls = _Walls.around([form], p, p[0])
+    slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, p[0]
+    while len(start):
+        ends = walls.values(np.stack([start, end]))[..., 0]
+        i = np.unravel_index(ends.argmin(), ends.shape)
+        if ends[i] < best:
+            best, where = float(ends[i]), np.stack([start, end])[i]
+        thin = np.stack([start, (start + end) / 2, end], axis=1)
+        open_ = walls.bounds(thin)[:, 0] < best - slack
+        start, end = start[open_], end[open_]
+        middle = (start + end) / 2
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+    return best, np.asarray(where)
+
+
+# --- bounds of second order -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Walls:
+    """Forms with bounds within a box: second derivatives along each joint, and rounding."""
+
+    forms: HarmonicForm
+    bend: Floats
+    noise: Floats
+
+    @classmethod
+    def around(cls, forms: Sequence[HarmonicForm], points: Floats, centre: Floats) -> _Walls:
+        """Bound the second derivatives within the box around some points and the centre."""
+        kinds = forms[0].kinds if forms else ("revolute", "revolute")
+        table = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
+        every = np.concatenate([points.reshape(-1, 2), centre[None]])
+        far, spread = np.abs(every).max(axis=0), np.ptp(every, axis=0) + 1e-300
+        (a0, a1, a2), (b0, b1, b2) = (_largest(kind, x) for kind, x in zip(kinds, far, strict=True))
+        size = np.abs(table)
+        first, mixed, second = (
+            np.einsum("mij,i,j->m", size, one, other)
+            for one, other in ((a2, b0), (a1, b1), (a0, b2))
+        )
+        # 2 |d1 d2| <= t d1^2 + d2^2 / t: what is left is convex, and bounds lie at corners
+        t = spread[1] / spread[0]
+        bend = np.stack([first + t * mixed, second + mixed / t], axis=-1)
+        noise = 2.0**-50 * np.einsum("mij,i,j->m", size, a0, b0)
+        return cls(HarmonicForm(table, kinds), bend, noise)
+
+    def values(self, q: Floats) -> Floats:
+        """Every form at configurations, shape (..., m)."""
+        return np.asarray(self.forms(q))
+
+    def bounds(self, triangles: Floats) -> Floats:
+        """Return a value below which no form falls on each triangle (n, 3, 2), shape (n, m)."""
+        middle = triangles.mean(axis=1)
+        d = triangles - middle[:, None]
+        slope = np.einsum("nmj,nkj->nkm", self.forms.gradient(middle), d)
+        drop = np.einsum("mj,nkj->nkm", self.bend, d * d) / 2
+        return np.asarray(self.values(middle) + (slope - drop).min(axis=1))
+
+    def halved(self, triangles: Floats, worst: NDArray[np.intp]) -> Floats:
+        """Halve triangles across the side along which the bound of their worst form loses most."""
+        sides = np.roll(triangles, -1, axis=1) - triangles
+        loss = np.einsum("nj,nkj->nk", self.bend[worst] + 1e-12 * self.bend.max(), sides**2)
+        k = loss.argmax(axis=1)
+        rows = np.arange(len(triangles))
+        a, b, c = (triangles[rows, (k + i) % 3] for i in range(3))
+        middle = (a + b) / 2
+        return np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
+
+
+def _largest(kind: str, far: float) -> Floats:
+    """Bounds of (1, cos, sin) or (1, q, q^2) and of their first and second derivatives."""
+    if kind == "revolute":
+        return np.array([[1.0, 1, 1], [0, 1, 1], [0, 1, 1]])
+    return np.array([[1.0, far, far * far], [0, 1, 2 * far], [0, 0, 2]])
+
+
+def _fan(p: Floats, g: Floats) -> Floats:
+    """Triangles from a centre to the edges of a closed polygon, shape (m, 3, 2)."""
+    return np.stack([np.broadcast_to(g, p.shape), p, np.roll(p, -1, axis=0)], axis=1)
+
+
+def _violation(walls: _Walls, triangles: Floats) -> Floats | None:
+    """Return a point of the triangles at which a form is negative; None: shown to be nowhere."""
+    looked_at = 0
+    while len(triangles):
+        looked_at += len(triangles)
+        if looked_at > MOST_TRIANGLES:
+            raise ArithmeticError("subdivision comes to no end: a form is zero along a line")
+        values = walls.values(triangles)
+        if len(walls.bend) and values.min() < 0:
+            return np.asarray(
+                triangles[np.unravel_index(values.min(axis=-1).argmin(), (len(triangles), 3))]
+            )
+        bounds = walls.bounds(triangles)
+        doubtful = (bounds <= 0).any(axis=1)
+        triangles = (
+            walls.halved(triangles[doubtful], bounds[doubtful].argmin(axis=1))
+            if doubtful.any()
+            else triangles[:0]
+        )
+    return None
+
+
+# --- the scale that touches -----------------------------------------------------------------------
+
+
+def _exits(
+    walls: _Walls, g: Floats, rays: Floats, highest: float
+) -> tuple[Floats, NDArray[np.intp]]:
+    """Step along rays by what a bound of second order allows; the root is never jumped over."""
+    s = np.zeros((len(rays), len(walls.bend)))
+    bend = np.maximum(rays**2 @ walls.bend.T, 1e-300)
+    rows = np.arange(len(walls.bend))
+    for _ in range(400):
+        q = g + s[..., None] * rays[:, None]
+        value = walls.values(q)[:, rows, rows]
+        value = np.where(value <= walls.noise, 0.0, value)
+        slope = np.einsum("nmj,nj->nm", walls.forms.gradient(q)[:, rows, rows], rays)
+        root = np.sqrt(slope**2 + 2 * bend * value)
+        # (slope + root) / bend, without the difference of near numbers where it falls
+        step = np.where(
+            slope > 0, (slope + root) / bend, 2 * value / np.maximum(root - slope, 1e-300)
+        )
+        before, s = s, np.minimum(s + step, highest)
+        if (s - before <= 2.0**-50 * highest).all():
+            break
+    if not len(rows):
+        return np.full(len(rays), highest), np.full(len(rays), -1)
+    form = s.argmin(axis=1)
+    least_s = s.min(axis=1)
+    return least_s, np.where(least_s < highest, form, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Touch:
+    scale: float
+    q: Floats
+    edge: int
+    form: int
+    low: float
+    high: float
+
+
+def _coarse(walls: _Walls, p: Floats, g: Floats, highest: float) -> _Touch:
+    """Return the best of a few rays to every edge."""
+    tries = [_on_edge(walls, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
+    return min(tries, key=lambda touch: touch.scale)
+
+
+def _touch(walls: _Walls, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
+    """Narrow the place of an edge at which it touches first."""
+    for _ in range(ROUNDS):
+        found = _on_edge(walls, p, g, best.edge, best.low, best.high, highest)
+        best = found if found.scale <= best.scale else best
+        if best.high - best.low < 1e-12 or found is not best:
+            break
+    return best
+
+
+def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
+    """Return the place of contact to all digits: the form and its slope along the edge vanish.
+
+    Where the scale is least it is flat, so narrowing finds the place to half the digits only. A
+    scaled edge keeps its direction: the place is the same for every centre.
+    """
+    along = p[(best.edge + 1) % len(p)] - p[best.edge]
+    q = best.q
+    for _ in range(6):
+        slope = form.gradient(q)
+        h = 1e-5 * along
+        bend = (form.gradient(q + h) - form.gradient(q - h)) / 2e-5
+        matrix = np.stack([slope, bend])
+        if abs(np.linalg.det(matrix)) <= TANGENT * np.abs(matrix).max() ** 2:
+            return best.q
+        q = q - np.linalg.solve(matrix, [float(form(q)), float(slope @ along)])
+    return q if np.linalg.norm(q - best.q) <= 1e-5 * np.linalg.norm(along) else best.q
+
+
+def _on_edge(
+    walls: _Walls, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
+) -> _Touch:
+    t = np.linspace(low, high, PLACES)
+    start, end = p[edge], p[(edge + 1) % len(p)]
+    rays = start + t[:, None] * (end - start) - g
+    scales, forms = _exits(walls, g, rays, highest)
+    i = int(scales.argmin())
+    nearby = float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])
+    return _Touch(float(scales[i]), g + scales[i] * rays[i], edge, int(forms[i]), *nearby)
+
+
+def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:
+    """Start again at the edge, and the place on it, that a violation lies behind."""
+    ends = np.stack([p - g, np.roll(p, -1, axis=0) - g], axis=-1)  # columns: both ends of an edge
+    inside = np.abs(np.linalg.det(ends)) > 0
+    share = np.full((len(p), 2), -np.inf)
+    share[inside] = np.linalg.solve(
+        ends[inside], np.broadcast_to((witness - g)[:, None], (int(inside.sum()), 2, 1))
+    )[..., 0]
+    edge = int(share.min(axis=1).argmax())
+    t = float(share[edge, 1] / share[edge].sum())
+    return _Touch(np.inf, witness, edge, -1, max(t - 0.02, 0.0), min(t + 0.02, 1.0))

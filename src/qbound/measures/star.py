@@ -1,0 +1,206 @@
+"""The exact region scaled about a point, its star shape, and polygons that are inside it for sure.
+
+A region that is star-shaped about its centroid contains every copy of itself that is scaled down
+about it: then the largest safe scale is 1, and each smaller scale buys clearance (Figure 6).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.polylines import tangent_corners
+from qbound.measures.scaling import first_exit, least_along_edges
+from qbound.region.arcs import Arc
+from qbound.region.region import Component, Problem
+from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
+
+Floats = NDArray[np.float64]
+
+PLACES, ROUNDS = 129, 12
+
+
+@dataclass(frozen=True, eq=False)
+class ExactScale:
+    """The largest safe scale of a component itself, arcs and all.
+
+    Attributes
+    ----------
+    scale : float
+        1 where the component is star-shaped about the centre.
+    q : ndarray, shape (2,)
+        Where the scaled component touches first; at scale 1 a point of its own boundary.
+    arc : Arc or None
+        The arc whose scaled copy touches there; None at scale 1.
+    boundary : str
+        What it touches; empty at scale 1, where every boundary is touched.
+    hidden : tuple of Arc
+        The arcs of which some part cannot be seen from the centre; none: star-shaped.
+    """
+
+    scale: float
+    q: Floats
+    arc: Arc | None
+    boundary: str
+    hidden: tuple[Arc, ...]
+
+    @property
+    def star_shaped(self) -> bool:
+        """Whether every point of the component is seen from the centre."""
+        return not self.hidden
+
+
+def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> ExactScale:
+    """Return the largest scale up to which a component, scaled about a point, stays in itself.
+
+    Parameters
+    ----------
+    centre : array_like, shape (2,)
+        A point of the component; rad or length.
+
+    Raises
+    ------
+    ValueError
+        If the component goes round a joint, or the centre violates a boundary.
+
+    Notes
+    -----
+    Each ray from the centre to a point of an arc is followed without jumping over a root; the
+    points of the arcs are many (`PLACES` on each piece) and the worst is refined. Where an arc
+    turns away from the centre between two of these points by less than their spacing shows,
+    that is not seen: a computation, not a proof.
+    """
+    g = np.asarray(centre, dtype=float)
+    if any(component.wraps):
+        raise ValueError("a component that goes round a joint has no centre to scale it about")
+    if not (problem.forms(g) > 0).all():
+        raise ValueError("a boundary is violated at the centre already")
+    arcs = [arc for loop in component.loops for arc in loop]
+    found = [_least(problem, arc, g) for arc in arcs]
+    hidden = tuple(
+        arc for arc, (scale, _, _) in zip(arcs, found, strict=True) if scale < 1 - PROVED_SCALE
+    )
+    best = int(np.argmin([scale for scale, _, _ in found]))
+    scale, s, form = found[best]
+    q = arcs[best].at([s])[0]
+    if not hidden:
+        return ExactScale(1.0, q, None, "", ())
+    return ExactScale(scale, g + scale * (q - g), arcs[best], problem.names[form], hidden)
+
+
+def _least(problem: Problem, arc: Arc, g: Floats) -> tuple[float, float, int]:
+    """Least scale at which a ray to the arc is stopped, the arc's parameter there, and the form."""
+    forms = [problem.forms[i] for i in range(len(problem.names))]
+    low, high = 0.0, 1.0
+    n = (PLACES - 1) * len(arc.pieces.roots) + 1
+    for _ in range(ROUNDS):
+        s = np.linspace(low, high, n)
+        scales, stopped = first_exit(forms, g, arc.at(s) - g)
+        i = int(scales.argmin())
+        low, high, n = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 17
+        if scales[i] >= 1 - PROVED_SCALE or high - low < 1e-12:
+            break
+    return float(scales[i]), float(s[i]), int(stopped[i])
+
+
+# --- polygons inside ------------------------------------------------------------------------------
+
+
+def inner_polygon(problem: Problem, component: Component, n: int) -> list[Floats]:
+    """Return polygons that stay inside a component: the first remedy done right (Section 4).
+
+    Where an arc bends into the region its tangents are inside: neighbouring ones are cut with each
+    other. Where it bends outwards the chords are inside. Inflections part the two.
+
+    Parameters
+    ----------
+    n : int
+        Points that are touched on each piece of an arc between two folds or critical values, both
+        ends included; at least 2.
+
+    Returns
+    -------
+    list of ndarray, shape (m, 2)
+        One polygon a loop, anticlockwise; a hole is clockwise. Joint values.
+
+    Raises
+    ------
+    ValueError
+        If the component goes round a joint, `n` is below 2, or so few tangents, cut with each other
+        far from their points, would leave the component: the edges are checked, all of each.
+    """
+    if any(component.wraps):
+        raise ValueError("a component that goes round a joint has no polygon")
+    if n < 2:
+        raise ValueError(f"a piece has at least its 2 ends, found {n}")
+    rings = [
+        np.concatenate([corners for arc in loop for corners in _corners(problem, arc, n)])
+        for loop in component.loops
+    ]
+    if not all(_within(problem, ring) for ring in rings):
+        raise ValueError(f"{n} points a piece are too few for a polygon inside: take more")
+    return rings
+
+
+def _within(problem: Problem, ring: Floats) -> bool:
+    """Show that no edge of a polygon leaves the forms' closed region or the ranges."""
+    for limits, values in zip(problem.ranges, ring.T, strict=True):
+        if limits is not None and not (
+            limits[0] - SAME_PLACE <= values.min() and values.max() <= limits[1] + SAME_PLACE
+        ):
+            return False
+    forms = [problem.forms[i] for i in range(len(problem.names))]
+    sizes = [ON_BOUNDARY * float(np.abs(form.coefficients).max()) for form in forms]
+    return all(
+        least_along_edges(form, ring, ON_BOUNDARY / 4)[0] >= -size
+        for form, size in zip(forms, sizes, strict=True)
+    )
+
+
+def _corners(problem: Problem, arc: Arc, n: int) -> Iterator[Floats]:
+    """Yield the start of an arc, then what stands for it: corners of tangents or points."""
+    if arc.boundary not in problem.names:
+        yield arc.points[:1]
+        return
+    form = problem.forms[problem.names.index(arc.boundary)]
+    marks = _inflections(form, arc)
+    for low, high in pairwise(marks):
+        parts = math.ceil((high - low) * len(arc.pieces.roots) - ON_BOUNDARY)
+        q = arc.at(np.linspace(low, high, parts * (n - 1) + 1))
+        yield q[:1]
+        inside = _bends_in(form, arc.at([(low + high) / 2]))[0]
+        yield tangent_corners(q, form.gradient(q)) if inside else q[1:-1]
+
+
+def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
+    """Tell where the tangent of a level curve stays on the side on which the form is larger."""
+    return np.asarray(_curving(form, q) > 0)
+
+
+def _curving(form: HarmonicForm, q: Floats) -> Floats:
+    """Return the second derivative of a form along its level curves, by central differences."""
+    slope = form.gradient(q)
+    tangent = np.stack([-slope[..., 1], slope[..., 0]], axis=-1)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-300)
+    h = 1e-5 * (1 + np.abs(q).max())
+    change = form.gradient(q + h * tangent) - form.gradient(q - h * tangent)
+    return np.asarray((change * tangent).sum(axis=-1) / (2 * h))
+
+
+def _inflections(form: HarmonicForm, arc: Arc) -> Floats:
+    """Parameters at which an arc changes the side to which it bends, with 0 and 1."""
+    s = np.linspace(0, 1, (PLACES - 1) * len(arc.pieces.roots) + 1)
+    turns = _bends_in(form, arc.at(s))
+    low, high = s[:-1][turns[1:] != turns[:-1]], s[1:][turns[1:] != turns[:-1]]
+    first = _bends_in(form, arc.at(low)) if len(low) else np.zeros(0, dtype=bool)
+    for _ in range(40 if len(low) else 0):
+        middle = (low + high) / 2
+        same = _bends_in(form, arc.at(middle)) == first
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.concatenate([[0.0], low, [1.0]])

@@ -1,0 +1,1 @@
+"""What is the robot? Joints, points, boundaries as data; frames; robot files."""

@@ -1,0 +1,181 @@
+"""What a table must fulfil to be a robot: types and keys by the JSON Schema, meaning by hand.
+
+Meaning is what a schema cannot say: finite numbers, unique names, one chain, references and so on.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from qbound.model.schema import Place, first_fault, one_line, place, shown
+
+Table = Mapping[str, Any]
+
+LARGEST = 1e100
+"""Largest number of a file: squares of lengths, and their products, must stay within floats."""
+
+MOST_TURNS = 100
+"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
+
+TURN = {"deg": 360.0, "rad": math.tau}
+
+
+class RobotFileError(ValueError):
+    """A robot file that is wrong: names the file, the key, what was found, what is allowed."""
+
+
+def check_table(table: Table) -> None:
+    """Check the content of a robot file.
+
+    Raises
+    ------
+    RobotFileError
+        With the first fault, its place, and what is allowed there.
+    """
+    _check_finite(table)  # first: a schema library cannot even print an integer of any length
+    if fault := first_fault("robot", table):
+        raise _fault(table, *fault)
+    for check in (
+        _check_names,
+        _check_chain,
+        _check_references,
+        _check_home,
+        _check_directions,
+        _check_limits,
+    ):
+        check(table)
+
+
+def _fault(table: Table, path: Place, text: str) -> RobotFileError:
+    where = place(table, path)
+    return RobotFileError(f"{where}: {text}" if where else text)
+
+
+def _check_finite(table: Table) -> None:
+    for path, value in _leaves(table):
+        if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
+            raise _fault(table, path, f"{shown(value)} is not a finite number")
+        size = abs(value) if isinstance(value, int | float) else 0
+        if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
+            raise _fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
+
+
+def _check_names(table: Table) -> None:
+    """Refuse a name that its list, a frame or a joint limit has already."""
+    for kind in ("joint", "point", "boundary"):
+        first: dict[str, int] = {}
+        for i, row in enumerate(_rows(table, kind)):
+            if (j := first.setdefault(row["name"], i)) != i:
+                text = f"{shown(row['name'])} is used twice, first by {kind}[{j}]; names are unique"
+                raise _fault(table, (kind, i, "name"), text)
+    limits = [f"{j['name']}.{side}" for j in table["joint"] for side in ("lower", "upper")]
+    _check_free(table, "point", "frame", _frames(table))
+    _check_free(table, "boundary", "joint limit", limits)
+
+
+def _check_free(table: Table, kind: str, other: str, taken: Sequence[str]) -> None:
+    for i, row in enumerate(_rows(table, kind)):
+        if row["name"] in taken:
+            text = (
+                f"{shown(row['name'])} is the name of a {other}; a {kind} needs a name of its own"
+            )
+            raise _fault(table, (kind, i, "name"), text)
+
+
+def _check_chain(table: Table) -> None:
+    """Refuse what is not one chain from the base outwards, each frame moved once."""
+    frame = table["joint"][0]["parent"]
+    seen = {frame}
+    for i, joint in enumerate(table["joint"]):
+        if joint["parent"] != frame:
+            found, wanted = shown(joint["parent"]), shown(frame)
+            text = f"{found} found, {wanted} wanted; joints form one chain from the base"
+            raise _fault(table, ("joint", i, "parent"), text)
+        frame = joint["frame"]
+        if frame in seen:
+            text = f"{shown(frame)} closes a cycle; every joint moves a frame of its own"
+            raise _fault(table, ("joint", i, "frame"), text)
+        seen.add(frame)
+
+
+def _check_references(table: Table) -> None:
+    """Refuse a name that nothing has."""
+    points = [p["name"] for p in table["point"]]
+    _check_known(table, ("tool",), "point", points)
+    for kind in ("point", "body"):
+        for i in range(len(_rows(table, kind))):
+            _check_known(table, (kind, i, "frame"), "frame", _frames(table))
+    for i, row in enumerate(_rows(table, "boundary")):
+        keys = [("points", 0), ("points", 1)] if row["type"] == "pair" else [("point",)]
+        for key in keys:
+            _check_known(table, ("boundary", i, *key), "point", points)
+
+
+def _check_known(table: Table, path: Place, what: str, names: Sequence[str]) -> None:
+    name: Any = table
+    for step in path:
+        name = name[step]
+    if name not in names:
+        raise _fault(table, path, f"no {what} {shown(name)}; there are {_listed(names)}")
+
+
+def _check_home(table: Table) -> None:
+    """Refuse a home that has not one value for each joint."""
+    joints = [j["name"] for j in table["joint"]]
+    for name in table["home"]:
+        if name not in joints:
+            text = f"no joint {shown(name)}; there are {_listed(joints)}"
+            raise _fault(table, ("home", name), text)
+    for name in joints:
+        if name not in table["home"]:
+            raise _fault(table, ("home",), f"{shown(name)} is missing; every joint needs a value")
+
+
+def _check_directions(table: Table) -> None:
+    for kind, key in (("joint", "axis"), ("boundary", "normal")):
+        for i, row in enumerate(_rows(table, kind)):
+            if key in row and not any(row[key]):
+                text = f"{shown(row[key])} has no direction; one number must not be 0"
+                raise _fault(table, (kind, i, key), text)
+
+
+def _check_limits(table: Table) -> None:
+    for i, joint in enumerate(table["joint"]):
+        path = ("joint", i, "limits")
+        if "limits" not in joint:
+            if joint["type"] == "prismatic":
+                raise _fault(table, path, "missing; a prismatic joint needs [lowest, highest]")
+        elif not joint["limits"][0] < joint["limits"][1]:
+            text = f"{shown(joint['limits'])} does not rise; wanted: [lowest, highest]"
+            raise _fault(table, path, text)
+        elif joint["type"] == "revolute":
+            turns = (joint["limits"][1] - joint["limits"][0]) / TURN[table["angle_unit"]]
+            if turns > MOST_TURNS:
+                text = f"{shown(joint['limits'])} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+                raise _fault(table, path, text)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(map(one_line, names))
+
+
+def _frames(table: Table) -> list[str]:
+    return [table["joint"][0]["parent"], *(j["frame"] for j in table["joint"])]
+
+
+def _rows(table: Table, key: str) -> Sequence[Table]:
+    rows: Sequence[Table] = table.get(key, [])
+    return rows
+
+
+def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, Any]]:
+    """Yield every number and text of a file, with its place."""
+    if isinstance(value, Mapping | list):
+        items = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for step, item in items:
+            yield from _leaves(item, (*path, step))
+    else:
+        yield path, value

@@ -1,0 +1,213 @@
+"""Arcs of a boundary, exact: places along them, and line integrals to machine precision.
+
+An arc is a walk along roots of one form (or one end of a joint's range), piece by piece between
+critical values. Along a piece the base is ``middle + half sin(angle)``: where a root folds back its
+square root is smooth in the angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.region.decomposition import Plane, Root
+from qbound.tolerances import QUADRATURE, SAME_POINT
+
+Floats = NDArray[np.float64]
+
+NODES: Final = (24, 48, 96, 192, 384, 768)
+"""Numbers of Gauss-Legendre nodes that are tried in turn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces of boundary, in the order in which they are walked.
+
+    Attributes
+    ----------
+    plane : Plane
+    base : int
+        Which joint is the base; places are given in the order of the joints.
+    roots : list of (Root or None)
+        What each piece follows; None for a piece of a fibre, straight along the lift.
+    start, end : ndarray, shape (k, 2)
+        Base and lift value at both ends.
+    turns : ndarray, shape (k, 2)
+        What was added to the base and lift values of the plane, rad.
+    """
+
+    plane: Plane
+    base: int
+    roots: list[Root | None]
+    start: Floats
+    end: Floats
+    turns: Floats
+
+    def __getitem__(self, chosen: slice) -> Pieces:
+        """Return some of the pieces."""
+        return Pieces(
+            self.plane,
+            self.base,
+            self.roots[chosen],
+            self.start[chosen],
+            self.end[chosen],
+            self.turns[chosen],
+        )
+
+    def straight(self) -> list[bool]:
+        """Tell of each piece whether it is straight: along a fibre, or at an end."""
+        return [root is None or root.form < 0 for root in self.roots]
+
+    def places(self, angle: Floats) -> Floats:
+        """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
+        part = (1 + np.sin(angle))[:, None] / 2
+        start, end = self.start[:, None], self.end[:, None]
+        q = np.where(part < 1, start + (end - start) * part, end)
+        curved = [k for k, root in enumerate(self.roots) if root is not None]
+        roots = [root for root in self.roots if root is not None]
+        turns = self.turns[curved][:, None]
+        values = self.plane.follow(roots, q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
+        inside = np.abs(angle) < math.pi / 2  # the ends are given
+        q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
+        return ordered(q, self.base)
+
+    def nodes(self, n: int) -> tuple[Floats, Floats]:
+        """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
+
+        The steps are those of the polynomial through nodes and ends: no slope, infinite at a fold,
+        is asked for, and the steps of a piece add up to its end minus its start.
+        """
+        x, steps = _steps(n)
+        q = self.places(x * math.pi / 2)
+        return q[:, 1:-1], steps @ q
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """A piece of boundary on which one form vanishes, or one joint is at its limit.
+
+    Attributes
+    ----------
+    boundary : str
+    branch : int or None
+        -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
+    pieces : Pieces
+        What the arc is made of, the region on its left.
+    """
+
+    boundary: str
+    branch: int | None
+    pieces: Pieces
+
+    @property
+    def start(self) -> Floats:
+        """Joint values at the start, shape (2,)."""
+        return ordered(self.pieces.start[0], self.pieces.base)
+
+    @property
+    def end(self) -> Floats:
+        """Joint values at the end, shape (2,)."""
+        return ordered(self.pieces.end[-1], self.pieces.base)
+
+    @cached_property
+    def points(self) -> Floats:
+        """Joint values along the arc, exact, its two ends first and last, shape (k, 2)."""
+        places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 33))
+        ends_suffice = self.pieces.straight()
+        parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
+        line = np.concatenate(parts)
+        moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_POINT
+        return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])
+
+    def at(self, s: ArrayLike) -> Floats:
+        """Return joint values at parameters in [0, 1], shape (n,) -> (n, 2); exact, ends included.
+
+        Pieces between critical values take equal parts of [0, 1].
+        """
+        x = np.clip(np.asarray(s, dtype=float), 0, 1) * len(self.pieces.roots)
+        piece = np.minimum(x.astype(np.int64), len(self.pieces.roots) - 1)
+        q = np.empty((len(x), 2))
+        for k in np.unique(piece):
+            mine = piece == k
+            q[mine] = self.pieces[k : k + 1].places((x[mine] - k - 0.5) * math.pi)[0]
+        return q
+
+    def nodes(self, n: int = 48) -> tuple[Floats, Floats]:
+        """Return Gauss-Legendre nodes q and weighted steps dq, each of shape (n pieces, 2).
+
+        The sum of ``P(q) dq_1 + Q(q) dq_2`` is the integral of P dq_1 + Q dq_2 along the arc.
+        """
+        q, dq = self.pieces.nodes(n)
+        return q.reshape(-1, 2), dq.reshape(-1, 2)
+
+
+def ordered(place: Floats, base: int) -> Floats:
+    """Bring places, shape (..., 2), from (base, lift) to the order of the joints, or back."""
+    return place if base == 0 else place[..., ::-1]
+
+
+def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
+    """Integrate along arcs, nodes doubled until nothing changes.
+
+    Parameters
+    ----------
+    form : callable
+        (q, dq), both of shape (n, 2) -> the integrand's contributions, shape (n, ...).
+
+    Returns
+    -------
+    ndarray, shape (...)
+        The sum over all arcs.
+    """
+    return sum((_integral(arc, form) for arc in arcs), start=np.zeros(()))
+
+
+def _integral(arc: Arc, form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
+    return converged(lambda n: np.asarray(form(*arc.nodes(n))).sum(axis=0))
+
+
+def converged(sums: Callable[[int], Floats], smallest: float | None = None) -> Floats:
+    """Return sums over n nodes, n doubled until they change by rounding or by `smallest`."""
+    before = sums(NODES[0])
+    for n in NODES[1:]:
+        now = sums(n)
+        rounding = QUADRATURE * (1 + np.abs(now)) if smallest is None else smallest
+        if (np.abs(now - before) <= rounding).all():
+            break
+        before = now
+    return now
+
+
+@cache
+def legendre(n: int) -> tuple[Floats, Floats]:
+    """Return nodes and weights of Gauss-Legendre quadrature on [-1, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(n)
+    return nodes, weights
+
+
+@cache
+def _steps(n: int) -> tuple[Floats, Floats]:
+    """Return -1, n Gauss-Legendre nodes and 1, and the matrix of weighted steps, (n, n + 2).
+
+    Rows times values at the n + 2 places are the derivatives of the polynomial through them at the
+    nodes, times the weights (barycentric form; the factors are 1 / P_n' at the nodes, from the
+    quadrature's weights).
+    """
+    nodes, weights = legendre(n)
+    signs = (-1.0) ** np.arange(n + 2)
+    inner = np.sqrt(weights / (2 * (1 - nodes**2)))
+    factors = signs * np.concatenate([[0.5], inner, [0.5]])
+    x = np.concatenate([[-1.0], nodes, [1.0]])
+    gaps = x[1:-1, None] - x
+    rows, same = np.arange(n), np.arange(1, n + 1)
+    gaps[rows, same] = 1
+    slopes = factors / factors[1:-1, None] / gaps
+    slopes[rows, same] = 0
+    slopes[rows, same] = -slopes.sum(axis=1)
+    return x, weights[:, None] * slopes

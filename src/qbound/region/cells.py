@@ -1,0 +1,378 @@
+"""From cells to components and their boundaries: which cells hang together, and what encloses them.
+
+Two neighbouring cells are joined across a critical line only over an open interval on which every
+form is positive on that line. The boundary of a component is walked with the component on the left:
+along the lower root of a cell, up or down a critical line where nothing is joined, back along the
+upper root.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.region.decomposition import TURN, Cell, Decomposition, Plane, Root
+from qbound.tolerances import POSITIVE, SAME_POINT, TOUCH
+
+Floats = NDArray[np.float64]
+
+
+SIDES: Final = ("lower", "upper")
+
+
+class Step(NamedTuple):
+    """One piece of a boundary: along a root of a cell, or along an element of a critical line.
+
+    Attributes
+    ----------
+    kind : {"lower", "upper", "up", "down"}
+    cell : int
+        The cell on its left.
+    line, element : int
+        Of a vertical piece; -1 otherwise.
+    """
+
+    kind: Literal["lower", "upper", "up", "down"]
+    cell: int
+    line: int = -1
+    element: int = -1
+
+
+@dataclass(eq=False)
+class Line:
+    """What meets at one critical line.
+
+    Attributes
+    ----------
+    points : list of float
+        Ends of cells on the line, ascending (within one turn where the lift is a circle).
+    left, right : list of (int or None)
+        For the element above each point: the cell on that side that owns it.
+    joined : list of bool
+        Whether the two owners hang together over that element.
+    """
+
+    points: list[float] = field(default_factory=list)
+    left: list[int | None] = field(default_factory=list)
+    right: list[int | None] = field(default_factory=list)
+    joined: list[bool] = field(default_factory=list)
+
+
+class Complex:
+    """The cells of a decomposition and how they hang together."""
+
+    def __init__(self, decomposition: Decomposition) -> None:
+        self.plane: Plane = decomposition.plane
+        self.abscissae = decomposition.lines
+        self.cells: list[Cell] = decomposition.cells
+        self.wrapped = self.plane.base_range is None
+        self.circle = self.plane.lift_range is None
+        self.touch = TOUCH * self.plane.lift_unit
+        self.n_lines = len(self.abscissae) - (1 if self.wrapped else 0)
+        self.whole = [self.circle and cell.lower.form < 0 for cell in self.cells]
+        self.ends: list[list[list[float]]] = self._ends().tolist()
+        self.lines = self._lines()
+
+    # --- places ---------------------------------------------------------------------------------
+
+    def left_line(self, cell: int) -> int:
+        """Return the critical line at which a cell begins."""
+        return self.cells[cell].slab
+
+    def right_line(self, cell: int) -> int:
+        """Return the critical line at which a cell ends; a base that turns round closes."""
+        after = self.cells[cell].slab + 1
+        return after % self.n_lines if self.wrapped else after
+
+    def interval(self, chosen: Sequence[int], t: Floats) -> Floats:
+        """Return lower and upper root of chosen cells, each over its own row of t; (2, k, n)."""
+        lower, upper = self._roots(chosen, t)
+        return np.stack([lower, np.maximum(lower, upper)])
+
+    def _roots(self, chosen: Sequence[int], t: Floats) -> Floats:
+        return self.plane.follow(self._bounding(chosen), np.tile(t, (2, 1))).reshape(2, *t.shape)
+
+    def _bounding(self, chosen: Sequence[int]) -> list[Root]:
+        return [self.cells[k].lower for k in chosen] + [self.cells[k].upper for k in chosen]
+
+    def spans(self, chosen: Sequence[int]) -> Floats:
+        """Return the base values between which chosen cells lie, shape (k, 2)."""
+        slabs = np.array([self.cells[k].slab for k in chosen], dtype=np.int64)
+        return np.stack([self.abscissae[slabs], self.abscissae[slabs + 1]], axis=-1)
+
+    def holding(self, place: Floats) -> tuple[int, Floats] | None:
+        """Return the cell that holds base and lift values, where every form must be positive.
+
+        Returns
+        -------
+        tuple of int and ndarray, shape (2,), or None
+            The cell, and the place in the cell's own turns; None beyond the ranges.
+        """
+        t, v = place
+        if self.wrapped:
+            t = t - TURN * math.floor((t - self.plane.ends[0]) / TURN)
+        start, end = self.spans(range(len(self.cells))).T
+        chosen = np.flatnonzero((start <= t) & (t <= end))
+        inset = SAME_POINT * (end - start)[chosen]  # on a line an angle may jump by a turn
+        inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
+        lower, upper = self.interval(chosen.tolist(), inside[:, None])[..., 0]
+        turns = TURN * np.ceil((lower - v) / TURN) * self.circle
+        for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
+            return int(chosen[k]), np.array([t, v + turns[k]])
+        return None
+
+    def _ends(self) -> Floats:
+        """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).
+
+        There an angle may jump by a turn, and where a form vanishes on a whole fibre it has no
+        roots to speak of: their limit from inside the slab is meant.
+        """
+        chosen = range(len(self.cells))
+        spans = self.spans(chosen)
+        start, width = spans[:, :1], np.diff(spans)
+        inset = 1e-4 * np.array([0, 1, 2, 3])
+        t = start + width * np.concatenate([inset, 1 - inset])
+        values = self._roots(chosen, t).reshape(2, -1, 2, 4)
+        at, near, far, farther = np.moveaxis(values, -1, 0)
+        if self.plane.lift_kind == "revolute":
+            at = at + TURN * np.round((near - at) / TURN)
+        blank = self.plane.blank(self._bounding(chosen), np.tile(t[:, [0, 4]], (2, 1)))
+        lower, upper = np.where(blank.reshape(at.shape), 3 * near - 3 * far + farther, at)
+        return np.stack([lower, np.maximum(lower, upper)], axis=-1)
+
+    # --- lines ----------------------------------------------------------------------------------
+
+    def _lines(self) -> list[Line]:
+        left: list[list[int]] = [[] for _ in range(self.n_lines)]
+        right: list[list[int]] = [[] for _ in range(self.n_lines)]
+        for k in range(len(self.cells)):
+            left[self.right_line(k)].append(k)
+            right[self.left_line(k)].append(k)
+        lines = [self._line(*sides) for sides in zip(left, right, strict=True)]
+        self._join(lines)
+        return lines
+
+    def _line(self, left: list[int], right: list[int]) -> Line:
+        places = [self.ends[k][1] for k in left if not self.whole[k]]
+        places += [self.ends[k][0] for k in right if not self.whole[k]]
+        line = Line(_clustered(chain.from_iterable(places), self.circle, self.touch))
+        for e in range(self.n_elements(line)):
+            middle = self._middle(line, e)
+            line.left.append(self._owner(left, 1, middle))
+            line.right.append(self._owner(right, 0, middle))
+            line.joined.append(False)
+        return line
+
+    def _join(self, lines: list[Line]) -> None:
+        """Join owners over elements on an open part of which every form is positive."""
+        shared = [
+            (i, e, *self.bounds(line, e))
+            for i, line in enumerate(lines)
+            for e in range(len(line.joined))
+            if line.left[e] is not None and line.right[e] is not None
+        ]
+        where, low, high = np.array([(i, a, b) for i, _, a, b in shared]).reshape(-1, 3).T
+        free = self.plane.open(self.abscissae[where.astype(np.int64)], low, high, POSITIVE)
+        for (i, e, *_), joined in zip(shared, free.tolist(), strict=True):
+            lines[i].joined[e] = joined
+
+    def n_elements(self, line: Line) -> int:
+        """Elements between points; a circle closes, and without points is one element."""
+        return max(len(line.points), 1) if self.circle else max(len(line.points) - 1, 0)
+
+    def bounds(self, line: Line, e: int) -> tuple[float, float]:
+        """Lower and upper end of an element."""
+        if not line.points:
+            return -math.pi, math.pi
+        low = line.points[e]
+        return low, line.points[e + 1] if e + 1 < len(line.points) else line.points[0] + TURN
+
+    def _middle(self, line: Line, e: int) -> float:
+        return sum(self.bounds(line, e)) / 2
+
+    def _owner(self, cells: list[int], side: int, v: float) -> int | None:
+        return next((k for k in cells if self.turns_into(k, side, v) is not None), None)
+
+    def turns_into(self, cell: int, side: int, v: float) -> int | None:
+        """Full turns that bring v into a cell's interval at its left (0) or right (1) line."""
+        low, high = self.ends[cell][side]
+        turns = math.ceil((low - v) / TURN) if self.circle else 0
+        if self.whole[cell]:  # a full circle holds every v
+            return turns
+        return turns if low < v + TURN * turns < high else None
+
+    # --- components -----------------------------------------------------------------------------
+
+    def joins(self) -> Iterator[tuple[int, int, int, int]]:
+        """Yield left cell, right cell, and the base and lift turns between their sheets."""
+        for i, line in enumerate(self.lines):
+            for e, joined in enumerate(line.joined):
+                a, b, v = line.left[e], line.right[e], self._middle(line, e)
+                if joined and a is not None and b is not None:
+                    lift = (self.turns_into(a, 1, v) or 0) - (self.turns_into(b, 0, v) or 0)
+                    yield a, b, int(self.wrapped and i == 0), lift
+
+    def components(self) -> list[tuple[dict[int, tuple[int, int]], tuple[bool, bool]]]:
+        """Return each component: every cell's sheet (turns), and which joints it goes round."""
+        neighbours: dict[int, list[tuple[int, int, int]]] = {k: [] for k in range(len(self.cells))}
+        for a, b, base, lift in self.joins():
+            neighbours[a].append((b, base, lift))
+            neighbours[b].append((a, -base, -lift))
+        found, seen = [], set[int]()
+        for start in neighbours:
+            if start not in seen:
+                found.append(self._spread(start, neighbours))
+                seen |= found[-1][0].keys()
+        return found
+
+    def _spread(
+        self, start: int, neighbours: dict[int, list[tuple[int, int, int]]]
+    ) -> tuple[dict[int, tuple[int, int]], tuple[bool, bool]]:
+        sheets = {start: (0, 0)}
+        base_goes_round = lift_goes_round = False
+        queue = [start]
+        while queue:
+            a = queue.pop()
+            lift_goes_round |= self.whole[a]
+            for b, base, lift in neighbours[a]:
+                sheet = sheets[a][0] + base, sheets[a][1] + lift
+                if b not in sheets:
+                    sheets[b] = sheet
+                    queue.append(b)
+                base_goes_round |= sheets[b][0] != sheet[0]
+                lift_goes_round |= sheets[b][1] != sheet[1] and not self.whole[b]
+        return sheets, (base_goes_round, lift_goes_round)
+
+    # --- boundaries -----------------------------------------------------------------------------
+
+    def loops(self, cells: Collection[int]) -> list[list[Step]]:
+        """Return the closed walks that bound a component, the component on the left.
+
+        A hole shorter round than TOUCH is a point at which a form touches zero: it bounds nothing.
+        """
+        steps = [Step(kind, k) for k in cells for kind in SIDES if not self.whole[k]]
+        for i, line in enumerate(self.lines):
+            for e, joined in enumerate(line.joined):
+                if not joined and line.left[e] in cells:
+                    steps.append(Step("up", line.left[e] or 0, i, e))
+                if not joined and line.right[e] in cells:
+                    steps.append(Step("down", line.right[e] or 0, i, e))
+        loops, left_over = [], set(steps)
+        for first in steps:
+            if first in left_over:
+                loops.append(self._walk(first))
+                left_over -= set(loops[-1])
+        tiny = all(self._size(k) <= TOUCH for k in cells)
+        return [walk for walk in loops if tiny or sum(map(self._length, walk)) > TOUCH]
+
+    def _size(self, k: int) -> float:
+        """Width or height of a cell, whichever is more, in the units of base and lift."""
+        left, right = self.abscissae[self.cells[k].slab :][:2]
+        height = max(high - low for low, high in self.ends[k])
+        return float(max((right - left) / self.plane.base_unit, height / self.plane.lift_unit))
+
+    def _length(self, step: Step) -> float:
+        """Length of a step between its ends, in the units of base and lift together."""
+        if step.line >= 0:
+            low, high = self.bounds(self.lines[step.line], step.element)
+            return (high - low) / self.plane.lift_unit
+        slab, k = self.cells[step.cell].slab, SIDES.index(step.kind)
+        (left, right), ends = self.abscissae[slab : slab + 2], self.ends[step.cell]
+        along = (right - left) / self.plane.base_unit
+        return float(along + abs(ends[1][k] - ends[0][k]) / self.plane.lift_unit)
+
+    def _walk(self, first: Step) -> list[Step]:
+        walk = [first]
+        while (step := self._next(walk[-1])) != first:
+            walk.append(step)
+            if len(walk) > 8 * len(self.cells) + 8 * len(self.lines) + 64:
+                raise ArithmeticError("the boundary of a component does not close")
+        return walk
+
+    def _next(self, step: Step) -> Step:
+        if step.kind == "lower":
+            return self._after_lower(step.cell)
+        if step.kind == "upper":
+            return self._after_upper(step.cell)
+        line = self.lines[step.line]
+        if not line.points:  # a full circle closes on itself
+            return step
+        n = len(line.points)
+        if step.kind == "up":
+            top = (step.element + 1) % n
+            if (
+                not self.whole[step.cell]
+                and self._point(step.line, self.ends[step.cell][1][1]) == top
+            ):
+                return Step("upper", step.cell)
+            return self._turn_right_side(step.line, top)
+        if (
+            not self.whole[step.cell]
+            and self._point(step.line, self.ends[step.cell][0][0]) == step.element
+        ):
+            return Step("lower", step.cell)
+        return self._turn_left_side(step.line, step.element)
+
+    def _after_lower(self, a: int) -> Step:
+        i = self.right_line(a)
+        low, high = (self._point(i, v) for v in self.ends[a][1])
+        if low == high and self.ends[a][1][1] - self.ends[a][1][0] < math.pi:
+            return Step("upper", a)
+        return self._turn_right_side(i, low)
+
+    def _after_upper(self, b: int) -> Step:
+        i = self.left_line(b)
+        low, high = (self._point(i, v) for v in self.ends[b][0])
+        if low == high and self.ends[b][0][1] - self.ends[b][0][0] < math.pi:
+            return Step("lower", b)
+        return self._turn_left_side(i, high)
+
+    def _turn_right_side(self, i: int, p: int) -> Step:
+        """Turn clockwise about point p from above on the left: over the line, down, and back."""
+        line, below = self.lines[i], (p - 1) % len(self.lines[i].points)
+        b = line.right[p]
+        if not line.joined[p] or b is None:
+            return Step("up", line.left[p] or 0, i, p)
+        if not self.whole[b] and self._point(i, self.ends[b][0][0]) == p:
+            return Step("lower", b)
+        if not line.joined[below]:
+            return Step("down", b, i, below)
+        return Step("upper", line.left[below] or 0)
+
+    def _turn_left_side(self, i: int, p: int) -> Step:
+        """Turn clockwise about point p from below on the right: over the line, up, and back."""
+        line, below = self.lines[i], (p - 1) % len(self.lines[i].points)
+        a = line.left[below]
+        if not line.joined[below] or a is None:
+            return Step("down", line.right[below] or 0, i, below)
+        if not self.whole[a] and self._point(i, self.ends[a][1][1]) == p:
+            return Step("upper", a)
+        if not line.joined[p]:
+            return Step("up", a, i, p)
+        return Step("lower", line.right[p] or 0)
+
+    def _point(self, i: int, v: float) -> int:
+        """Index of the point of a line nearest to v, on the circle where the lift is one."""
+        points = self.lines[i].points
+        if not self.circle:
+            return min(range(len(points)), key=lambda p: abs(points[p] - v))
+        return min(range(len(points)), key=lambda p: abs(math.remainder(points[p] - v, TURN)))
+
+
+def _clustered(values: Iterable[float], circle: bool, touch: float) -> list[float]:
+    """Sort values and keep one of each group closer than `touch`; on a circle within (-pi, pi]."""
+    kept: list[float] = []
+    before = -math.inf
+    for v in sorted(math.pi - (math.pi - v) % TURN for v in values) if circle else sorted(values):
+        if v - before > touch:
+            kept.append(v)
+        before = v
+    if circle and len(kept) > 1 and kept[0] + TURN - kept[-1] <= touch:
+        kept.pop()
+    return kept

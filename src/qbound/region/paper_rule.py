@@ -1,0 +1,354 @@
+"""The paper's rule for the region: the windows of Table 6 make a box, geometric functions cut it.
+
+Every component of a point boundary function allows a joint one full turn, from one meeting of
+that component to the next (eq. 39). What all these windows leave is a box in joint space; the
+half-spaces in use cut its corners. Nothing here asks whether the two points really meet: that is
+the clearance rule's question, and the two rules are kept apart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.boundary.functions import clearance, pair_vector
+from qbound.forms.circle import CircleRoots, circle_roots
+from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.polylines import tangent_corners
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.region.region import Problem, state
+from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
+
+Floats = NDArray[np.float64]
+
+UPPER: Final = 1
+LOWER: Final = 2
+
+
+@dataclass(frozen=True)
+class Bound:
+    r"""The bound :math:`\beta_{i,j,k}` of boundary i.
+
+    Component j is 1, 2, 3 for x, y, z; k is 1 for the upper bound, 2 for the lower.
+    """
+
+    boundary: str
+    component: int
+    k: int
+
+    @property
+    def label(self) -> str:
+        """The paper's label, such as ``beta_{1,3,1}`` for component 3 of B1, upper."""
+        index = self.boundary.removeprefix("B")
+        return f"beta_{{{index},{self.component},{self.k}}}"
+
+
+@dataclass(frozen=True)
+class Window:
+    """The values that one component leaves to one joint: a full turn, rad (Table 6)."""
+
+    boundary: str
+    component: int
+    joint: int
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """What all windows leave: lowest and highest joint values (rad) and the bounds that bind."""
+
+    lower: Floats
+    upper: Floats
+    lower_bounds: tuple[Bound, ...]
+    upper_bounds: tuple[Bound, ...]
+
+    def contains(self, q: ArrayLike) -> NDArray[np.bool_]:
+        """Tell which configurations, shape (..., n), lie in the box."""
+        q = np.asarray(q)
+        return np.asarray(((q >= self.lower) & (q <= self.upper)).all(axis=-1))
+
+
+@dataclass(frozen=True, eq=False)
+class Vertex:
+    """A corner of the region: joint values (rad) and the two bounds that meet there."""
+
+    q: Floats
+    bounds: tuple[Bound, Bound]
+
+
+def windows(robot: Robot) -> list[Window]:
+    """Return the window of every component of every point pair in use that reaches zero (Table 6).
+
+    Of all turns the one that holds the home pose is taken; the printed k is that one.
+
+    Raises
+    ------
+    ValueError
+        If a pair has not exactly one joint, a revolute one, between its points.
+    """
+    return [
+        window
+        for boundary in robot.boundaries
+        if isinstance(boundary, Pair) and boundary.used
+        for window in _pair_windows(robot, boundary)
+    ]
+
+
+def box(robot: Robot) -> Box:
+    """Intersect all windows.
+
+    Raises
+    ------
+    ValueError
+        If a joint has no window: the paper's rule then says nothing about it.
+    """
+    sides = [_sides(robot, joint) for joint in range(len(robot.joints))]
+    lower, upper = ([side[i] for side in sides] for i in (0, 1))
+    return Box(
+        lower=np.array([w.lower for w in lower]),
+        upper=np.array([w.upper for w in upper]),
+        lower_bounds=tuple(Bound(w.boundary, w.component, LOWER) for w in lower),
+        upper_bounds=tuple(Bound(w.boundary, w.component, UPPER) for w in upper),
+    )
+
+
+def feasible(robot: Robot, q: ArrayLike) -> NDArray[np.bool_]:
+    """Tell which configurations, shape (..., n), the paper's rule allows."""
+    inside = box(robot).contains(q)
+    for _, form in _cuts(robot):
+        inside &= form(q) >= 0
+    return np.asarray(inside)
+
+
+def problem(robot: Robot) -> Problem:
+    """State the paper's rule for the general engine: the box as limits, half-spaces as forms."""
+    region, cuts = box(robot), [wall for wall, _ in _cuts(robot)]
+    ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
+    sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
+    return state(robot, cuts, ranges, [(low.boundary, high.boundary) for low, high in sides])
+
+
+def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
+    """Return both roots of a half-space along the last joint, others held at `q` (Table 6, row 7).
+
+    Returns
+    -------
+    ndarray, shape (2, ...)
+        Lower and upper end of the arc of feasible values, rad, around a centre in (-pi, pi];
+        NaN where the half-space does not cut the circle.
+    """
+    roots = _roots_along_last(robot, boundary, q)
+    return np.where(roots.count > 0, roots.q, np.nan)
+
+
+def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bound, Floats]]:
+    """Return every bound of Table 6 as a curve of two joints, for drawing (Figure 4).
+
+    Windows are straight lines; a half-space is its two roots along the second joint, turned
+    into the range, with NaN where it has none or leaves the range.
+
+    Parameters
+    ----------
+    ranges : array_like, shape (2, 2)
+        Lowest and highest value of each joint, rad.
+
+    Returns
+    -------
+    list of (Bound, ndarray of shape (m, 2))
+    """
+    ranges = np.asarray(ranges, dtype=float)
+    curves = []
+    for window in windows(robot):
+        for k, value in ((UPPER, window.upper), (LOWER, window.lower)):
+            line = ranges.T.copy()
+            line[:, window.joint] = value
+            curves.append((Bound(window.boundary, window.component, k), line))
+    for wall in robot.boundaries:
+        if isinstance(wall, HalfSpace):
+            curves += _wall_curves(robot, wall, ranges, n)
+    return curves
+
+
+def vertices(robot: Robot) -> list[Vertex]:
+    """Return the corners of the region of two joints in closed form, anticlockwise (Figure 5).
+
+    They are the corners of the box that no half-space removes, and the points where a half-space
+    crosses an edge of the box: Theorem 2 along that edge.
+
+    Raises
+    ------
+    ValueError
+        If the robot has not two joints, or two neighbouring vertices share no bound: a half-space
+        then folds, or meets another, inside the box, and the paper's rule names no vertex there.
+    """
+    if len(robot.joints) != 2:
+        raise ValueError(f"the paper's rule draws two joints; {robot.name} has {len(robot.joints)}")
+    corners = [vertex for edge in _edges(box(robot)) for vertex in _on_edge(robot, *edge)]
+    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
+        if not set(one.bounds) & set(other.bounds):
+            names = [bound.label for vertex in (one, other) for bound in vertex.bounds]
+            raise ValueError(f"neighbouring vertices share no bound: {', '.join(names)}")
+    return corners
+
+
+def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
+    """Replace every edge that cuts across a half-space's curve (Section 4, the first remedy).
+
+    Parameters
+    ----------
+    n : int
+        Points of each curve, its two ends included; at least 2.
+    tangents : bool
+        Whether to put the corners of the tangents at these points in place of the edge, or
+        the points themselves, joined by chords.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        Joint values, rad, anticlockwise; errors as in `vertices`.
+    """
+    corners = vertices(robot)
+    result = []
+    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
+        result.append(one.q)
+        (bound,) = set(one.bounds) & set(other.bounds)
+        if isinstance(robot.boundary(bound.boundary), HalfSpace):
+            curve = _curve_between(robot, bound, one.q, other.q, n)
+            normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
+            result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
+    return np.array(result)
+
+
+def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: int) -> Floats:
+    """Return `n` points of a half-space's bound, evenly spaced in the first joint."""
+    q1 = np.linspace(start[0], end[0], n)
+    lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
+    q2 = np.unwrap(upper if bound.k == UPPER else lower)
+    return np.stack([q1, q2 + start[1] - q2[0]], -1)
+
+
+def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
+    vector = pair_vector(robot, pair)
+    joints = vector.joints()
+    if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
+        raise ValueError(
+            f"{pair.name}: the paper's rule needs one joint between its points, and a revolute one"
+        )
+    (joint,) = joints
+    rounding = ZERO_AMPLITUDE * np.abs(vector.coefficients).max()
+    for component in range(3):
+        c0, a, b = vector[component].along(joint, robot.home)
+        if np.hypot(a, b) <= rounding:
+            continue
+        roots = circle_roots(a, b, -c0)
+        if roots.count > 0:
+            upper = float(_turn_after(roots.q[1], robot.home[joint]))
+            yield Window(pair.name, component + 1, joint, upper - 2 * math.pi, upper)
+
+
+def _turn_after(q: Any, home: Any) -> Any:
+    """Return the first value of q, modulo full turns, that is not below home."""
+    return q + 2 * math.pi * np.ceil((home - q) / (2 * math.pi))
+
+
+def _sides(robot: Robot, joint: int) -> tuple[Window, Window]:
+    """Return the windows with the highest lower end and with the lowest upper end."""
+    own = [window for window in windows(robot) if window.joint == joint]
+    if not own:
+        raise ValueError(f"no point pair bounds joint {robot.joints[joint].name!r}")
+    return max(own, key=lambda w: w.lower), min(own, key=lambda w: w.upper)
+
+
+def _cuts(robot: Robot) -> list[tuple[HalfSpace, HarmonicForm]]:
+    return [
+        (boundary, clearance(robot, boundary))
+        for boundary in robot.boundaries
+        if isinstance(boundary, HalfSpace) and boundary.used
+    ]
+
+
+def _edges(region: Box) -> Iterator[tuple[Floats, Floats, Bound, Bound]]:
+    """Each edge of the box anticlockwise: start, end, its own bound, the bound before it."""
+    low, high = region.lower, region.upper
+    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+    (left, bottom), (right, top) = region.lower_bounds, region.upper_bounds
+    bounds = [bottom, right, top, left]
+    for i in range(4):
+        yield corners[i], corners[(i + 1) % 4], bounds[i], bounds[i - 1]
+
+
+def _on_edge(
+    robot: Robot, start: Floats, end: Floats, own: Bound, before: Bound
+) -> Iterator[Vertex]:
+    """Yield the vertices on an edge in its order, the start included and the end not."""
+    cuts = _cuts(robot)
+    found = [(0.0, Vertex(start, (before, own)))]
+    for wall, form in cuts:
+        for t in _crossings(form, start, end):
+            q = start + t * (end - start)
+            found.append((t, Vertex(q, (own, _wall_bound(wall, form, q)))))
+    for _, vertex in sorted(found, key=lambda item: item[0]):
+        if all(
+            form(vertex.q) >= -ON_BOUNDARY * np.abs(form.coefficients).max() for _, form in cuts
+        ):
+            yield vertex
+
+
+def _crossings(form: HarmonicForm, start: Floats, end: Floats) -> list[float]:
+    """Places 0 < t < 1 of an edge at which a form vanishes: Theorem 2 along the edge's joint."""
+    joint = int(np.argmax(np.abs(end - start)))
+    c0, a, b = form.along(joint, start)
+    roots = circle_roots(a, b, -c0)
+    if roots.count <= 0:
+        return []
+    low, high = sorted((start[joint], end[joint]))
+    turned = _turn_after(np.unique(roots.q), low)
+    return [float((q - start[joint]) / (end - start)[joint]) for q in turned if low < q < high]
+
+
+def _roots_along_last(robot: Robot, boundary: str, q: ArrayLike) -> CircleRoots:
+    form = clearance(robot, robot.boundary(boundary))
+    c0, a, b = np.moveaxis(form.along(len(robot.joints) - 1, q), -1, 0)
+    return circle_roots(a, b, -c0)
+
+
+def _wall_curves(
+    robot: Robot, wall: HalfSpace, ranges: Floats, n: int
+) -> Iterator[tuple[Bound, Floats]]:
+    """Yield both roots of a half-space over the first joint's range, once per turn in range."""
+    component = int(np.argmax(np.abs(wall.normal))) + 1
+    q1 = np.linspace(ranges[0, 0], ranges[0, 1], n)
+    for _ in range(3):  # closer and closer to where the roots appear, so that a curve meets itself
+        there = np.isfinite(geometric_bounds(robot, wall.name, np.stack([q1, q1], -1))[0])
+        fold = np.nonzero(there[1:] != there[:-1])[0]
+        q1 = np.sort(np.concatenate([q1, np.linspace(q1[fold], q1[fold + 1], 42)[1:-1].ravel()]))
+    roots = _roots_along_last(robot, wall.name, np.stack([q1, q1], -1))
+    alpha = np.where(roots.count > 0, roots.alpha, np.nan)
+    centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn
+    for k, sign in ((LOWER, -1), (UPPER, +1)):
+        for q2 in _turns_within(centre + sign * alpha, *ranges[1]):
+            yield Bound(wall.name, component, k), np.stack([q1, q2], -1)
+
+
+def _turns_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
+    """Yield a curve of angles once per full turn that brings it into a range, NaN outside."""
+    if np.isnan(q).all():
+        return
+    first = math.ceil((low - np.nanmax(q)) / math.tau)
+    last = math.floor((high - np.nanmin(q)) / math.tau)
+    for turn in range(first, last + 1):
+        shifted = q + turn * math.tau
+        yield np.where((shifted >= low) & (shifted <= high), shifted, np.nan)
+
+
+def _wall_bound(wall: HalfSpace, form: HarmonicForm, q: Floats) -> Bound:
+    """Upper bound of the last joint where the form falls along it, lower where it rises."""
+    component = int(np.argmax(np.abs(wall.normal))) + 1
+    falls = form.gradient(q)[-1] < 0
+    return Bound(wall.name, component, UPPER if falls else LOWER)
