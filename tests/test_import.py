@@ -35,7 +35,8 @@ def test_numbers_never_call_sympy() -> None:
     """From the file to the vertices and a sample: the schema is checked, no symbol is made."""
     modules = loaded_by(
         "import qbound, numpy\n"
-        "from qbound import sampling\nfrom qbound.region import paper_rule\nfrom qbound.paths import traversal\n"
+        "from qbound import sampling\nfrom qbound.region import paper_rule\n"
+        "from qbound.paths import traversal\n"
         "robot = qbound.load_robot('minervabot-v2')\n"
         "q = [v.q for v in paper_rule.vertices(robot)]\n"
         "traversal.traverse(robot, q)\n"
