@@ -16,8 +16,7 @@ from oracles import PACKAGED, frame_matrix
 from qbound import clearance, load_robot
 from qbound.measures import bodies
 from qbound.model.robot import Body
-from qbound.region import paper_rule
-from qbound.region.region import solve, state
+from qbound.region import paper_rule, solve, state
 
 PRINTED, MENDED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-mended", "-symmetric")

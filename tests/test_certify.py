@@ -24,7 +24,7 @@ from qbound.proofs import certify as prover
 from qbound.proofs import check_arb, minorant, statements
 from qbound.proofs.certify import bracket_scale, certify
 from qbound.proofs.triangulation import triangulate
-from qbound.region.region import find_region
+from qbound.region import find_region
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
 """Random robots; a longer run is written down in docs/decisions/0233."""

@@ -17,7 +17,7 @@ from qbound.cli import main
 from qbound.proofs.connection import connection, outer_groups, separated, wall
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
-from qbound.region.region import solve
+from qbound.region import solve
 
 PAPER = exact_problem(exact_robot("minervabot-v2"))
 REGION = find_region(load_robot("minervabot-v2"))

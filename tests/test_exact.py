@@ -16,8 +16,7 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.balls import precision, values
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.region import paper_rule
-from qbound.region.region import clearance_problem
+from qbound.region import clearance_problem, paper_rule
 
 
 def holds(ball, value: mpmath.mpf) -> bool:

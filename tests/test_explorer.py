@@ -22,8 +22,7 @@ from qbound.explorer.page import explorer_data, explorer_page
 from qbound.measures.scaling import least_along_edges
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region import paper_rule
-from qbound.region.region import solve, violated
+from qbound.region import paper_rule, solve, violated
 from qbound.workspace.planar import planar_arm, postures
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"

@@ -14,7 +14,7 @@ from test_explorer import ROBOTS, SPATIAL
 
 from qbound import find_region, load_robot
 from qbound.explorer.page import explorer_page
-from qbound.region.region import violated
+from qbound.region import violated
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}

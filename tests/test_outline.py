@@ -12,8 +12,7 @@ from shapely.geometry import Point, Polygon
 from qbound import find_region, load_robot
 from qbound.export.polygons import area, from_lowest, polygons
 from qbound.model.robotfile import parse_robot
-from qbound.region import paper_rule
-from qbound.region.region import solve
+from qbound.region import paper_rule, solve
 
 MINERVA = load_robot("minervabot-v2")
 PILLARS = [

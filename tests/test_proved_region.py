@@ -16,8 +16,7 @@ from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import Unproved, prove_region
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, solve
+from qbound.region import Problem, Region, paper_rule, solve
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")

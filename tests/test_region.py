@@ -22,8 +22,7 @@ from qbound import load_robot
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, find_region, solve, violated
+from qbound.region import Problem, Region, find_region, paper_rule, solve, violated
 
 MINERVA = load_robot("minervabot-v2")
 LIMITS = (("q1.lower", "q1.upper"), ("q2.lower", "q2.upper"))

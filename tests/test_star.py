@@ -11,8 +11,7 @@ from test_measures import plate
 from qbound import find_region, load_robot
 from qbound.geometry import polygon
 from qbound.measures.star import exact_scale, inner_polygon
-from qbound.region import paper_rule
-from qbound.region.region import solve
+from qbound.region import paper_rule, solve
 
 MINERVA = load_robot("minervabot-v2")
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from qbound.cli.values import csv_text, npz_bytes
 from qbound.export.polygons import Piece, polygons
-from qbound.region.region import Region
+from qbound.region import Region
 
 Outlines = list[tuple[list[Piece], float]]
 

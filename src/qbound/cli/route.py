@@ -15,8 +15,8 @@ from qbound.cli.values import held
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Traversal, follow, straight
+from qbound.region import Component, Region
 from qbound.region.arcs import Arc
-from qbound.region.region import Component, Region
 from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]

@@ -8,8 +8,8 @@ from typing import Any
 
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.region import loop_content
 from qbound.cli.values import Content, check_targets, held, joint_value, json_text, shown, write_all
+from qbound.export.document import loop_content
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.workspace.areas import NoHomeError, Workspace, find_workspace, overlap

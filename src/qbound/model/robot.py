@@ -140,6 +140,13 @@ class Robot:
         """Return the joints that are not held, by index."""
         return [j for j in range(len(self.joints)) if j not in held]
 
+    def held_indices(
+        self, held: Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
+    ) -> dict[int, float]:
+        """Return held joints by index."""
+        names = [joint.name for joint in self.joints]
+        return {names.index(k) if isinstance(k, str) else k: float(v) for k, v in held.items()}
+
     def with_held(self, q: ArrayLike, held: Mapping[int, float]) -> NDArray[np.float64]:
         """Put the held joints' values beside those of the free ones, (..., free) to (..., n)."""
         values = np.asarray(q, dtype=float)

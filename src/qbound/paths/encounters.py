@@ -16,7 +16,7 @@ from qbound.boundary.functions import clearance, pair_vector, position
 from qbound.geometry.polylines import meetings
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Problem
+from qbound.region import Problem
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 

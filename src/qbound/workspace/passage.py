@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry import polygon
+from qbound.region import Component
 from qbound.region.arcs import Arc
-from qbound.region.region import Component
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.planar import turns_within
 
@@ -72,7 +72,7 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
         rad or length. Joints without limits may turn on: full turns do not count.
     """
     a, b = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    one, other = region.holding(a), region.holding(b)
+    one, other = region.component_of(a), region.component_of(b)
     possible = one is not None and one == other
     loops: tuple[Loop, ...] = ()
     if one is not None and other is not None and not possible:
