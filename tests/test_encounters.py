@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 from qbound import find_region, load_robot
 from qbound.export.polygons import from_lowest
@@ -21,6 +20,7 @@ from qbound.paths.encounters import (
 )
 from qbound.paths.traversal import Leg, follow, traverse
 from qbound.region import paper_rule
+from support.oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

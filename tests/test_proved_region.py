@@ -7,9 +7,6 @@ import numpy as np
 import pytest
 from flint import arb
 from numpy.testing import assert_allclose
-from test_crossings import stated
-from test_decomposition import EDGES
-from test_region import LIMITS, random_robot
 
 from qbound import find_region, load_robot
 from qbound.proofs.balls import precision
@@ -18,6 +15,9 @@ from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import Unproved, prove_region
 from qbound.region import paper_rule
 from qbound.region.region import Problem, Region, solve
+from support.exact import stated
+from support.forms import EDGES, LIMITS
+from support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")
