@@ -8,17 +8,6 @@ import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import (
-    ANGLES,
-    VECTORS,
-    equation_29,
-    frame_matrix,
-    in_unit,
-    packaged_table,
-    point_seen_from,
-    robot_tables,
-    row_of,
-)
 from scipy.optimize import minimize_scalar
 
 from lizarraga2025 import printed as paper
@@ -32,6 +21,17 @@ from qbound.boundary.functions import (
 )
 from qbound.model.robot import joint_symbols, with_symbols
 from qbound.model.robotfile import parse_robot
+from support.oracles import (
+    ANGLES,
+    VECTORS,
+    equation_29,
+    frame_matrix,
+    in_unit,
+    packaged_table,
+    point_seen_from,
+    robot_tables,
+    row_of,
+)
 
 MINERVA = load_robot("minervabot-v2")
 COMPONENTS = list(paper.EQUATION_29)

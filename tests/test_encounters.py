@@ -5,10 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 from qbound import find_region, load_robot
-from qbound.export.polygons import from_lowest
 from qbound.geometry.polygon import centroid, scaled
 from qbound.model.robotfile import parse_robot
 from qbound.paths.encounters import (
@@ -21,6 +19,7 @@ from qbound.paths.encounters import (
 )
 from qbound.paths.traversal import Leg, follow, traverse
 from qbound.region import paper_rule
+from support.oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()
@@ -119,7 +118,7 @@ def test_an_edge_of_the_six_points_leaves_the_region_at_the_floor() -> None:
 
 
 def test_a_path_along_the_boundary_is_not_outside() -> None:
-    component = from_lowest(find_region(MINERVA).components[0])
+    component = find_region(MINERVA).components[0]
     legs = [Leg(arc.at, parts=len(arc.pieces.roots)) for arc in component.loops[0]]
     walk = follow(MINERVA, legs, 0.01)
     found = [least_margin(walk, boundary) for boundary in boundaries(MINERVA)]

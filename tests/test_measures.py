@@ -7,25 +7,16 @@ from math import hypot, pi
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from test_region import inside_limits, random_robot
 
 from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.measures.nearest import along, moments, nearest_boundary, vertex_centroid
 from qbound.region import Problem, Region, paper_rule, solve
+from support.forms import LIMITS
+from support.regions import inside_limits, plate
+from support.robots import random_robot
 
-LIMITS = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
 TURN = 2 * pi
-
-
-def plate(*holes: tuple[float, float, float], ranges=((-3.0, 5.0), (-2.0, 4.0))) -> Problem:
-    """A rectangle of two slides with round holes (x, y, radius)."""
-    table = np.zeros((len(holes), 3, 3))
-    for row, (x, y, r) in zip(table, holes, strict=True):
-        row[0] = [x * x + y * y - r * r, -2 * y, 1]
-        row[1, 0], row[2, 0] = -2 * x, 1
-    names = tuple(f"hole {i}" for i in range(len(holes)))
-    return Problem(HarmonicForm(table, ("prismatic", "prismatic")), names, ranges, LIMITS)
 
 
 def only(region: Region):

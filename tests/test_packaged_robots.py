@@ -9,13 +9,13 @@ from importlib import resources
 import fcl
 import numpy as np
 import pytest
-from oracles import frame_matrix, row_of
 from skimage.measure import label
-from test_region import check_arcs, check_grid, check_roles
 
 from qbound import find_region, load_robot, packaged_robots
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.region import margins, violated
+from support.oracles import frame_matrix, row_of
+from support.regions import check_arcs, check_grid, check_roles
 
 KINDS = {
     "two-joint-arm-with-walls": ("revolute", "revolute"),

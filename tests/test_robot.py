@@ -8,7 +8,13 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import (
+
+from lizarraga2025 import printed as paper
+from qbound import load_robot
+from qbound.boundary.functions import position
+from qbound.model.robot import joint_symbols, with_symbols
+from qbound.model.robotfile import parse_robot
+from support.oracles import (
     ANGLES,
     QUARTER_TURNS,
     UNIT_AXES,
@@ -17,12 +23,6 @@ from oracles import (
     point_seen_from,
     robot_tables,
 )
-
-from lizarraga2025 import printed as paper
-from qbound import load_robot
-from qbound.boundary.functions import position
-from qbound.model.robot import joint_symbols, with_symbols
-from qbound.model.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 

@@ -13,7 +13,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
-from test_region import in_centimetres, mirror, random_robot, turned
 
 from qbound import load_robot
 from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
@@ -22,6 +21,7 @@ from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, o
 from qbound.workspace.fibres import find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
+from support.robots import in_centimetres, mirror, random_robot, turned
 
 MINERVA = load_robot("minervabot-v2")
 seeds = st.integers(0, 10_000)
