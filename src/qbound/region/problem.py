@@ -23,11 +23,10 @@ from qbound.boundary.evaluator import (
     stacked,
 )
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import HalfSpace, Held, Pair, Robot
 
 Floats = NDArray[np.float64]
 Rule = Literal["clearance", "paper"]
-Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
 
 
 @dataclass(frozen=True, eq=False)

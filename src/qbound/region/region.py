@@ -14,13 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
 from qbound.forms.angles import TURN
-from qbound.model.robot import Robot
+from qbound.model.robot import Held, Robot
 from qbound.region import paper_rule
 from qbound.region.arcs import NODES, Arc, legendre, ordered
 from qbound.region.cells import Complex, Placed
 from qbound.region.decomposition import Decomposition, Plane, decompose
 from qbound.region.loops import Layout, Sheets, Walk, behind
-from qbound.region.problem import Held, Problem, Rule, clearance_problem
+from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import QUADRATURE
 
 if TYPE_CHECKING:
