@@ -13,7 +13,14 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import (
+from robots_at_random import robot_file
+
+from lizarraga2025 import printed as paper
+from qbound import load_robot, packaged_robots
+from qbound.boundary.functions import position
+from qbound.model.robot import joint_symbols, with_symbols
+from qbound.model.robotfile import parse_robot
+from support.oracles import (
     ANGLES,
     QUARTER_TURNS,
     UNIT_AXES,
@@ -22,13 +29,6 @@ from oracles import (
     point_seen_from,
     robot_tables,
 )
-from robots_at_random import robot_file
-
-from lizarraga2025 import printed as paper
-from qbound import load_robot, packaged_robots
-from qbound.boundary.functions import position
-from qbound.model.robot import joint_symbols, with_symbols
-from qbound.model.robotfile import parse_robot
 
 MINERVA = load_robot("minervabot-v2")
 
