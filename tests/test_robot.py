@@ -13,7 +13,6 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from robots_at_random import robot_file
 
 from lizarraga2025 import printed as paper
 from qbound import load_robot, packaged_robots
@@ -29,6 +28,7 @@ from support.oracles import (
     point_seen_from,
     robot_tables,
 )
+from support.robot_files import robot_file
 
 MINERVA = load_robot("minervabot-v2")
 
