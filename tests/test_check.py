@@ -227,6 +227,8 @@ CORRUPTED = {
     "a corner of one value": put((*LOOP, 1), ["1"]),
     "a corner left out": drop(*LOOP, 2),
     "a loop walked backwards": put(LOOP, lambda loop: loop[::-1]),
+    "a loop with a spike": put(LOOP, lambda loop: [*loop, ["0", "-170"], loop[-1]]),
+    "a loop of two points": put(LOOP[:2], lambda loops: [*loops, [["0", "0"], ["0", "-170"]]]),
     "no corners": put(LOOP, []),
     "a triangle left out": drop("statement", "triangles", 0),
     "a triangle twice": put(("statement", "triangles"), lambda t: [*t, t[0]]),

@@ -16,7 +16,6 @@ from operator import add, mul, sub
 
 BITS, MAX_FILE, MAX_WORK, MAX_JOINTS, MAX_DEPTH = 128, 2_000_000, 1_000_000, 6, 120
 DECIMAL = r"[+-]?\d[\d_]{0,40}(\.\d[\d_]{0,40})?([eE][+-]?\d{1,2})?"
-
 def demand(condition, text):
     if not condition: raise ValueError(text)
 def number(value) -> Fraction:
@@ -147,6 +146,7 @@ def read_cells(statement) -> list:  # of simplices, each a list of corners
     free = [j for j, values in enumerate(zip(*points)) if len({*values}) > 1]
     cells = [[points[i] for i in triangle] for triangle in statement["triangles"]]
     edges = collections.Counter(edge for loop in loops for edge in pairwise([*loop, loop[0]]))
+    demand(all((b, a) not in edges for a, b in edges), "a loop goes back along itself")
     for a, b, c in cells:  # anticlockwise, their edges adding up to the loops: they tile the inside
         (x, y), (u, v) = ([p[j] - a[j] for j in free] for p in (b, c))
         demand(x * v > y * u, "a triangle is not anticlockwise")

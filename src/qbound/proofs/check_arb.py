@@ -266,6 +266,8 @@ def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
     for loop in loops:
         for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
             ring[a, b] = ring.get((a, b), 0) + 1
+    if any((b, a) in ring for a, b in ring):
+        raise ValueError("a loop goes back along itself")
     for triangle in statement["triangles"]:
         a, b, c = (points[i] for i in triangle)
         (x, y), (u, v) = ([p[j] - a[j] for j in flat] for p in (b, c))
