@@ -157,7 +157,7 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
-                f"{axis}label": f"${figures.tex(joint.name)}$ / {unit}",
+                f"{axis}label": f"{figures.symbol(joint.name)} / {unit}",
             }
         )
     if len({robot.joints[j].kind for j in chart.joints}) == 1:
@@ -191,7 +191,7 @@ def _written(robot: Robot, q: Floats) -> str:
         for joint, value in zip(robot.joints, q, strict=True)
     )
     return ", ".join(
-        f"${figures.tex(joint.name)}$ = {value:.4g}"
+        f"{figures.symbol(joint.name)} = {value:.4g}"
         + ("°" if joint.kind == "revolute" else f" {robot.length_unit}")
         for joint, value in values
     )
@@ -206,6 +206,6 @@ def _wall(ax: Axes, wall: HalfSpace, normal: Floats) -> None:
         if abs(along[0]) > 0.5:  # its name at the right edge
             height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
             ax.annotate(
-                wall.name, (ax.get_xlim()[1], height), (-3, 3), textcoords="offset points",
-                ha="right", color=figures.COLLIDING,
+                figures.as_text(wall.name), (ax.get_xlim()[1], height), (-3, 3),
+                textcoords="offset points", ha="right", color=figures.COLLIDING,
             )  # fmt: skip
