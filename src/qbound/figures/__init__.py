@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.export.polygons import polygons
+from qbound.extras import require
 from qbound.measures.bodies import outline
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
@@ -65,6 +66,8 @@ STYLE: Final[dict[str, Any]] = {
 
 def use_style() -> None:
     """Set the book's style and, inside Jupyter, SVG figures with the same bytes on every run."""
+    require("matplotlib")
+    require("matplotlib_inline")
     import matplotlib as mpl
     from matplotlib_inline.backend_inline import set_matplotlib_formats
 
@@ -308,6 +311,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
 
     A hyphen before the digits of a plain number becomes a minus sign.
     """
+    require("IPython")
     from IPython.display import Markdown
 
     minus = re.compile(r"^-(?=[\d.]+\D{0,3}$)")

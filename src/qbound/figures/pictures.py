@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.model.robot import HalfSpace, Robot
@@ -130,6 +131,7 @@ def _picture(
     size: tuple[float, float] = PANEL,
 ) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
+    require("matplotlib")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

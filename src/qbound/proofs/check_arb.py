@@ -16,6 +16,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from qbound.extras import require
+
 BITS = 160
 """Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
 
@@ -44,14 +46,11 @@ def verify(text: str) -> str:
     ValueError
         If it does not prove what it says.
     ImportError
-        Without python-flint (the extra `proofs`).
+        If python-flint is missing.
     """
-    try:
-        import flint
-    except ImportError as error:
-        raise ImportError(
-            "python-flint is missing: install qbound with the extra 'proofs'"
-        ) from error
+    require("flint")
+    import flint
+
     with _precision(flint.ctx):
         content = json.loads(text)
         robot = tomllib.loads(content["robot"], parse_float=str)
