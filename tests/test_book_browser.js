@@ -68,15 +68,17 @@ function wideBoxesWithoutHint() {
 // A stop that begins a line, or a bracket that ends one, beside a formula or a badge.
 function tornPunctuation() {
   const held = [...document.querySelectorAll(".bd-article :is(span.math, .verdict)")];
-  return held.filter((e) => e.checkVisibility()).flatMap((element) => {
-    const boxes = [...element.getClientRects()];
-    const before = besides(element.previousSibling, /[([]$/);
-    const after = besides(element.nextSibling, /^[,.;:!?)\]°]/);
-    const torn = [];
-    if (before && before.bottom <= boxes.at(0).top + 2) torn.push(`before ${beginning(element)}`);
-    if (after && after.top >= boxes.at(-1).bottom - 2) torn.push(`after ${beginning(element)}`);
-    return torn;
-  });
+  return held
+    .filter((e) => e.checkVisibility())
+    .flatMap((element) => {
+      const boxes = [...element.getClientRects()];
+      const before = besides(element.previousSibling, /[([]$/);
+      const after = besides(element.nextSibling, /^[,.;:!?)\]°]/);
+      const torn = [];
+      if (before && before.bottom <= boxes.at(0).top + 2) torn.push(`before ${beginning(element)}`);
+      if (after && after.top >= boxes.at(-1).bottom - 2) torn.push(`after ${beginning(element)}`);
+      return torn;
+    });
 }
 
 // Where the mark stands with which a text ends, or begins, beside an element.
@@ -95,14 +97,18 @@ function cutFormulas() {
 }
 
 function brokenWords() {
-  return [...document.querySelectorAll(".prev-next-title")].flatMap((title) => {
-    return [...textsOf(title)].flatMap((text) => [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
-      const range = document.createRange();
-      range.setStart(text, word.index);
-      range.setEnd(text, word.index + word[0].length);
-      return range.getClientRects().length > 1 ? word[0] : "";
-    }));
-  }).filter(Boolean);
+  return [...document.querySelectorAll(".prev-next-title")]
+    .flatMap((title) => {
+      return [...textsOf(title)].flatMap((text) =>
+        [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
+          const range = document.createRange();
+          range.setStart(text, word.index);
+          range.setEnd(text, word.index + word[0].length);
+          return range.getClientRects().length > 1 ? word[0] : "";
+        }),
+      );
+    })
+    .filter(Boolean);
 }
 
 function smallPanels() {
@@ -127,7 +133,9 @@ function faintText(theme) {
     if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue;
     const ratio = contrast(element);
     if (ratio < (isLarge(element) ? 3 : 4.5))
-      faint.add(`${ratio.toFixed(1)} to 1: ${element.className} "${text.data.trim().slice(0, 40)}"`);
+      faint.add(
+        `${ratio.toFixed(1)} to 1: ${element.className} "${text.data.trim().slice(0, 40)}"`,
+      );
   }
   return [...faint];
 }

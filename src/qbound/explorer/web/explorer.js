@@ -38,23 +38,38 @@ function findSlice() {
   const regular = map.planar && sweepsAnArea(arm, robot.reach);
   const inside = cells.filter((cell) => cell.piece === home);
   return {
-    cells, home, exact, map, arm, regular,
-    arcs: exact ? exactArcs() : cellEdges(problem, cells).map((edge) => ({ ...edge, branch: "", home: edge.piece === home })),
+    cells,
+    home,
+    exact,
+    map,
+    arm,
+    regular,
+    arcs: exact
+      ? exactArcs()
+      : cellEdges(problem, cells).map((edge) => ({
+          ...edge,
+          branch: "",
+          home: edge.piece === home,
+        })),
     images: regular ? postureImages(map, arm, inside, problem.ranges[1]) : {},
-    lines: regular ? singularValues(arm).flatMap((value) => turnsWithin(map.kinds[1], value, robot.views[1])) : [],
+    lines: regular
+      ? singularValues(arm).flatMap((value) => turnsWithin(map.kinds[1], value, robot.views[1]))
+      : [],
     largest: largestDeterminant(map),
   };
 }
 
 function exactArcs() {
-  return robot.components.flatMap((component) => component.loops.flatMap((loop) => loop.map(
-    (arc) => ({ ...arc, home: component.home }))));
+  return robot.components.flatMap((component) =>
+    component.loops.flatMap((loop) => loop.map((arc) => ({ ...arc, home: component.home }))),
+  );
 }
 
 function largestDeterminant(map) {
   const steps = Array.from({ length: 37 }, (_, i) => i / 36);
   const [a, b] = robot.views;
-  const value = (s, t) => Math.abs(determinant(map, [a.low + s * (a.high - a.low), b.low + t * (b.high - b.low)]));
+  const value = (s, t) =>
+    Math.abs(determinant(map, [a.low + s * (a.high - a.low), b.low + t * (b.high - b.low)]));
   return Math.max(...steps.flatMap((s) => steps.map((t) => value(s, t))));
 }
 
@@ -71,7 +86,9 @@ function judgeSample() {
 function inView(pair) {
   return pair.map((value, k) => {
     const { low, high, wraps } = robot.views[k];
-    return wraps ? value - TURN * Math.floor((value - low) / TURN) : Math.min(high, Math.max(low, value));
+    return wraps
+      ? value - TURN * Math.floor((value - low) / TURN)
+      : Math.min(high, Math.max(low, value));
   });
 }
 
@@ -96,13 +113,14 @@ function moveTool(target) {
   const now = pairOf(state.q);
   const side = determinant(slice.map, now) >= 0;
   const found = possible(robot, slice.arm, target);
-  const same = found.filter((pair) => (determinant(slice.map, pair) >= 0) === side);
+  const same = found.filter((pair) => determinant(slice.map, pair) >= 0 === side);
   const best = nearest(same.length > 0 ? same : found, now);
   if (best) movePose(best);
 }
 
 function nearest(pairs, now) {
-  const far = (pair) => pair.reduce((sum, value, k) => sum + Math.abs(shortWay(k, value - now[k])), 0);
+  const far = (pair) =>
+    pair.reduce((sum, value, k) => sum + Math.abs(shortWay(k, value - now[k])), 0);
   return pairs.reduce((best, pair) => (best === null || far(pair) < far(best) ? pair : best), null);
 }
 
@@ -116,14 +134,18 @@ function otherPosture() {
   const now = pairOf(state.q);
   const side = determinant(slice.map, now) >= 0;
   const found = possible(robot, slice.arm, toolAt(slice.map, now)).filter(
-    (pair) => (determinant(slice.map, pair) >= 0) !== side);
+    (pair) => determinant(slice.map, pair) >= 0 !== side,
+  );
   return nearest(found, now);
 }
 
 /* --- words ------------------------------------------------------------------------------------- */
 
 function number(value, digits) {
-  return (value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1")).replace("-", "−");
+  return value
+    .toFixed(digits)
+    .replace(/^-(0(\.0+)?)$/, "$1")
+    .replace("-", "−");
 }
 
 function length(value) {
@@ -141,20 +163,30 @@ function jointText(j, value) {
 
 function betweenText(row) {
   const limit = robot.limits[row - robot.boundaries.length]; // they follow the boundaries
-  if (limit) return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
+  if (limit)
+    return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
   const wall = robot.boundaries[row];
   const points = wall.points.map((i) => robot.points[i].name);
-  return wall.kind === "pair" ? `points ${points[0]} and ${points[1]}` : `point ${points[0]} and a wall`;
+  return wall.kind === "pair"
+    ? `points ${points[0]} and ${points[1]}`
+    : `point ${points[0]} and a wall`;
 }
 
 /** Whether the pose is safe, and whether the home pose can be reached from it. */
 function statusText(found) {
   const bad = found.filter((one) => one.used && one.value < 0);
   if (bad.length > 0) {
-    return ["Not safe.", bad.map((one) => `${one.name} is violated by ${marginText({ ...one, value: -one.value })}`).join(", ") + "."];
+    return [
+      "Not safe.",
+      bad
+        .map((one) => `${one.name} is violated by ${marginText({ ...one, value: -one.value })}`)
+        .join(", ") + ".",
+    ];
   }
   const close = tightest(robot, found);
-  const nearby = close ? `Closest: ${close.name}, ${marginText(close)} to spare.` : "Nothing bounds this arm.";
+  const nearby = close
+    ? `Closest: ${close.name}, ${marginText(close)} to spare.`
+    : "Nothing bounds this arm.";
   const away = slice.home !== null && pieceAt(slice.cells, inView(pairOf(state.q))) !== slice.home;
   return [away ? "Safe, but cut off from home." : "Safe.", nearby];
 }
@@ -163,10 +195,15 @@ function postureText() {
   if (!slice.regular) return "The tool leaves the plane: move the arm in joint space.";
   const det = determinant(slice.map, pairOf(state.q));
   if (slice.lines.length === 0) return "One posture only: det J is never 0.";
-  if (Math.abs(det) <= NEAR_SINGULAR * slice.largest) return "Singular: det J = 0. Here one posture turns into the other.";
+  if (Math.abs(det) <= NEAR_SINGULAR * slice.largest)
+    return "Singular: det J = 0. Here one posture turns into the other.";
   const other = otherPosture();
-  const there = other === null ? "beyond a limit"
-    : isSafe(margins(robot, withPair(robot, state.q, other))) ? "safe" : "not safe";
+  const there =
+    other === null
+      ? "beyond a limit"
+      : isSafe(margins(robot, withPair(robot, state.q, other)))
+        ? "safe"
+        : "not safe";
   return `Posture ${det > 0 ? "A (det J > 0)" : "B (det J < 0)"}. The other one at this place is ${there}.`;
 }
 
@@ -191,34 +228,65 @@ function redraw() {
   state.sample = state.show.sample ? judgeSample() : [];
   joints = drawJointSpace(robot, state, slice);
   plane = drawPlane(robot, state, slice, reachable);
-  byId("joints-legend").replaceChildren(...legend([
-    ["home", "safe, with home"],
-    ["away", "safe, cut off", slice.cells.some((cell) => cell.piece !== slice.home)],
-    ["singular", slice.arm.kind === "rr" ? "arm stretched or folded: det J = 0" : "singular curve: det J = 0", slice.lines.length > 0],
-    ["polygon", `polygon of the vertices, at scale ${number(state.scale, 4)}`, state.show.polygon && slice.exact],
-    ["dots", "random, safe", state.show.sample],
-    ["crosses", "random, not safe", state.show.sample],
-  ]));
-  byId("plane-legend").replaceChildren(...legend([
-    ["workspace", "one safe posture", state.show.workspace && slice.regular],
-    ["workspace twice", "both postures safe", state.show.workspace && slice.lines.length > 0],
-    ["beyond", "behind a wall", robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used)],
-  ]));
+  byId("joints-legend").replaceChildren(
+    ...legend([
+      ["home", "safe, with home"],
+      ["away", "safe, cut off", slice.cells.some((cell) => cell.piece !== slice.home)],
+      [
+        "singular",
+        slice.arm.kind === "rr"
+          ? "arm stretched or folded: det J = 0"
+          : "singular curve: det J = 0",
+        slice.lines.length > 0,
+      ],
+      [
+        "polygon",
+        `polygon of the vertices, at scale ${number(state.scale, 4)}`,
+        state.show.polygon && slice.exact,
+      ],
+      ["dots", "random, safe", state.show.sample],
+      ["crosses", "random, not safe", state.show.sample],
+    ]),
+  );
+  byId("plane-legend").replaceChildren(
+    ...legend([
+      ["workspace", "one safe posture", state.show.workspace && slice.regular],
+      ["workspace twice", "both postures safe", state.show.workspace && slice.lines.length > 0],
+      [
+        "beyond",
+        "behind a wall",
+        robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used),
+      ],
+    ]),
+  );
   byId("area").textContent = areaText();
   if (robot.polygon) byId("show-polygon").disabled = !slice.exact;
   refresh();
 }
 
 function legend(rows) {
-  return rows.filter(([, , shows]) => shows !== false).map(([name, text]) => {
-    const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
-    const shapes = { singular: "M0 7H22", polygon: "M1 12L11 2L21 12Z", dots: "M5 7h0M15 7h0", crosses: "M9 5l4 4m0 -4l-4 4" };
-    const d = shapes[name] || "M0 0H22V14H0Z";
-    for (const part of name === "workspace twice" ? [0, 1] : [0]) key.append(make("path", { class: name, d, "data-part": part }));
-    const row = document.createElement("li");
-    row.append(key, text);
-    return row;
-  });
+  return rows
+    .filter(([, , shows]) => shows !== false)
+    .map(([name, text]) => {
+      const key = make("svg", {
+        width: 22,
+        height: 14,
+        viewBox: "0 0 22 14",
+        "aria-hidden": "true",
+      });
+      const shapes = {
+        singular: "M0 7H22",
+        polygon: "M1 12L11 2L21 12Z",
+        dots: "M5 7h0M15 7h0",
+        crosses: "M9 5l4 4m0 -4l-4 4",
+      };
+      const d = shapes[name] || "M0 0H22V14H0Z";
+      for (const part of name === "workspace twice" ? [0, 1] : [0])
+        key.append(make("path", { class: name, d, "data-part": part }));
+      const row = document.createElement("li");
+      row.append(key, text);
+      return row;
+    });
 }
 
 /** What moves with the pose. */
@@ -247,9 +315,13 @@ function litParts(found) {
   const used = found.filter((one) => one.used);
   const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
   const bold = new Set([...violated, ...(state.hover ? [state.hover] : [])]);
-  const near = used.filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach).map((one) => one.name);
+  const near = used
+    .filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach)
+    .map((one) => one.name);
   const boundaries = new Set([...bold, ...near]);
-  const points = new Set(robot.boundaries.filter((wall) => bold.has(wall.name)).flatMap((wall) => wall.points));
+  const points = new Set(
+    robot.boundaries.filter((wall) => bold.has(wall.name)).flatMap((wall) => wall.points),
+  );
   return { violated, bold, boundaries, points };
 }
 
@@ -258,7 +330,10 @@ function drawPaths() {
   joints.path.setAttribute("d", pathText(path.map(joints.at)));
   const count = 30 * Math.max(1, path.length - 1);
   const steps = Array.from({ length: count + 1 }, (_, i) => i / count);
-  const tool = path.length > 1 && slice.map.planar ? steps.map((s) => plane.at(toolAt(slice.map, alongPath(robot, path, s)))) : [];
+  const tool =
+    path.length > 1 && slice.map.planar
+      ? steps.map((s) => plane.at(toolAt(slice.map, alongPath(robot, path, s))))
+      : [];
   plane.path.setAttribute("d", pathText(tool));
   joints.ghost.toggleAttribute("hidden", state.mirror === null);
   plane.ghost.toggleAttribute("hidden", state.mirror === null);
@@ -275,13 +350,17 @@ function showStatus(found) {
   byId("status").classList.toggle("violated", !isSafe(found));
   byId("posture").textContent = postureText();
   byId("flip").disabled = otherPosture() === null;
-  say(`${robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`).join(", ")}. ${verdict} ${reason} ${postureText()}`);
+  say(
+    `${robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`).join(", ")}. ${verdict} ${reason} ${postureText()}`,
+  );
 }
 
 /** Tell a screen reader, once the arm rests. */
 function say(text) {
   window.clearTimeout(say.timer);
-  say.timer = window.setTimeout(() => { byId("live").textContent = text; }, 600);
+  say.timer = window.setTimeout(() => {
+    byId("live").textContent = text;
+  }, 600);
 }
 
 function showMargins(found, lit) {
@@ -298,7 +377,8 @@ function showPose() {
     const digits = joint.kind === "revolute" ? 1 : 4;
     for (const id of [`value-${j}`, `slide-${j}`]) {
       const input = byId(id);
-      if (document.activeElement !== input || input.type === "range") input.value = Number((state.q[j] / unit).toFixed(digits));
+      if (document.activeElement !== input || input.type === "range")
+        input.value = Number((state.q[j] / unit).toFixed(digits));
     }
     byId(`slide-${j}`).setAttribute("aria-valuetext", jointText(j, state.q[j]));
   });
@@ -314,8 +394,10 @@ function showScale() {
   showScale.scale = state.scale;
   const least = smallestClearance(robot, robot.q, vertices, state.scale, centroid);
   const safe = state.scale <= largest;
-  byId("clearance").textContent = least.name === null ? "No boundary has a length."
-    : `${safe ? "Safe everywhere inside" : "Not safe everywhere"}. Smallest clearance ${length(least.value)} (${least.name}).`;
+  byId("clearance").textContent =
+    least.name === null
+      ? "No boundary has a length."
+      : `${safe ? "Safe everywhere inside" : "Not safe everywhere"}. Smallest clearance ${length(least.value)} (${least.name}).`;
   byId("clearance").classList.toggle("lit", !safe);
 }
 
@@ -340,20 +422,25 @@ function showTask() {
   if (Math.sign(det) !== state.sides) state.crossed = true;
   const gap = Math.max(...now.map((value, k) => Math.abs(shortWay(k, state.mirror[k] - value))));
   const bent = (i) => Math.abs(shortWay(1, now[1] - slice.lines[i])) > 45 * DEGREE;
-  joints.singular.forEach((line, i) => line.classList.toggle("lit", Math.abs(det) <= NEAR_SINGULAR * slice.largest && !bent(i)));
+  joints.singular.forEach((line, i) =>
+    line.classList.toggle("lit", Math.abs(det) <= NEAR_SINGULAR * slice.largest && !bent(i)),
+  );
   const text = taskText(det, gap < 6 * DEGREE);
   if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
 }
 
 function taskText(det, there) {
   if (there) {
-    return "There. On the way you crossed the dashed line, where the arm is stretched or folded. A mirrored pose bends "
-      + "the other way, it is the other posture; so every way to it crosses that line.";
+    return (
+      "There. On the way you crossed the dashed line, where the arm is stretched or folded. A mirrored pose bends " +
+      "the other way, it is the other posture; so every way to it crosses that line."
+    );
   }
   if (Math.abs(det) <= NEAR_SINGULAR * slice.largest) {
     return "Now both links lie in one line: det J = 0. The arm can go on and bend to either side.";
   }
-  if (state.crossed) return "You are on the other side of the dashed line: the arm bends the other way. Go on to the dotted pose.";
+  if (state.crossed)
+    return "You are on the other side of the dashed line: the arm bends the other way. Go on to the dotted pose.";
   return "Bring the arm to its mirror image, the dotted arm. Can you get there without crossing the dashed line?";
 }
 
@@ -390,7 +477,12 @@ function playCalmly(stops, from, each) {
   const pieces = pieceLengths(robot, stops);
   const whole = pieces.reduce((sum, piece) => sum + piece, 0);
   let reached = 0;
-  const places = pieces.map((piece) => { reached += piece / whole; return reached; }).filter((s) => s > from + 1e-6);
+  const places = pieces
+    .map((piece) => {
+      reached += piece / whole;
+      return reached;
+    })
+    .filter((s) => s > from + 1e-6);
   const step = () => {
     const next = Math.min(1, places.shift() ?? 1);
     setPair(alongPath(robot, stops, next));
@@ -416,7 +508,10 @@ function isPlaying() {
 }
 
 function playWalk() {
-  if (isPlaying()) { stop(); return; }
+  if (isPlaying()) {
+    stop();
+    return;
+  }
   play(walkStops(), state.progress >= 1 ? 0 : state.progress, (done) => {
     state.progress = done;
     byId("progress").value = done;
@@ -432,7 +527,10 @@ function showProgress() {
 
 /** A straight way in joint space to the mirrored pose. */
 function playTask() {
-  if (isPlaying()) { stop(); return; }
+  if (isPlaying()) {
+    stop();
+    return;
+  }
   const now = inView(pairOf(state.q));
   play([now, state.mirror], 0, () => {});
 }
@@ -453,7 +551,9 @@ function hashOf() {
     at: Number(state.progress.toFixed(3)),
     show: shown.join(","),
   };
-  return `#${Object.entries(values).map(([key, value]) => `${key}=${value}`).join("&")}`;
+  return `#${Object.entries(values)
+    .map(([key, value]) => `${key}=${value}`)
+    .join("&")}`;
 }
 
 function remember() {
@@ -506,10 +606,19 @@ function buildPose() {
     const [low, high] = rangeShown(joint, j).map((value) => (turn ? value / DEGREE : value));
     const step = turn ? 0.1 : (high - low) / 1000;
     const slide = element("input", { type: "range", id: `slide-${j}`, min: low, max: high, step });
-    const value = element("input", { type: "number", id: `value-${j}`, min: low, max: high, step: "any" });
+    const value = element("input", {
+      type: "number",
+      id: `value-${j}`,
+      min: low,
+      max: high,
+      step: "any",
+    });
     const held = robot.free.includes(j) ? "" : " (held)";
     slide.setAttribute("aria-label", `${joint.name}${held}`);
-    value.setAttribute("aria-label", `${joint.name}${held}, ${turn ? "degrees" : robot.length_unit}`);
+    value.setAttribute(
+      "aria-label",
+      `${joint.name}${held}, ${turn ? "degrees" : robot.length_unit}`,
+    );
     for (const input of [slide, value]) {
       input.addEventListener("input", () => {
         if (input.value === "" || !Number.isFinite(Number(input.value))) return;
@@ -518,7 +627,13 @@ function buildPose() {
     }
     value.addEventListener("blur", showPose);
     const unit = element("span", { className: "unit" }, value, turn ? "°" : robot.length_unit);
-    return element("div", { className: "slider" }, element("span", {}, `${joint.name}${held}`), slide, unit);
+    return element(
+      "div",
+      { className: "slider" },
+      element("span", {}, `${joint.name}${held}`),
+      slide,
+      unit,
+    );
   });
   byId("pose").replaceChildren(...rows);
 }
@@ -545,11 +660,22 @@ function setJoint(j, value) {
 function buildMargins() {
   const rows = margins(robot, state.q).map((one, i) => {
     const name = element("th", { scope: "row" }, one.name);
-    const row = element("tr", {}, name, element("td", {}, betweenText(i) + (one.used ? "" : ", not used")),
-      element("td", { className: "number" }));
+    const row = element(
+      "tr",
+      {},
+      name,
+      element("td", {}, betweenText(i) + (one.used ? "" : ", not used")),
+      element("td", { className: "number" }),
+    );
     row.classList.toggle("unused", !one.used);
-    row.addEventListener("pointerenter", () => { state.hover = one.name; refresh(); });
-    row.addEventListener("pointerleave", () => { state.hover = null; refresh(); });
+    row.addEventListener("pointerenter", () => {
+      state.hover = one.name;
+      refresh();
+    });
+    row.addEventListener("pointerleave", () => {
+      state.hover = null;
+      refresh();
+    });
     return row;
   });
   byId("margins").replaceChildren(...rows);
@@ -561,17 +687,29 @@ function buildScale() {
   const { largest, walks, binds } = robot.polygon;
   const top = binds === null ? 1 : 1.05; // no larger scale was searched
   byId("scale").max = top;
-  byId("largest").textContent = `Largest safe scale: ${number(largest, 4)}${binds === null ? " or more" : ""}`;
+  byId("largest").textContent =
+    `Largest safe scale: ${number(largest, 4)}${binds === null ? " or more" : ""}`;
   byId("scale-mark").style.left = `${(100 * largest) / top}%`;
   byId("largest").addEventListener("click", () => setScale(largest));
   byId("scale").addEventListener("input", () => setScale(Number(byId("scale").value)));
-  byId("walk").replaceChildren(...walks.map((walk, i) => (
-    element("option", { value: i }, walk.map((k) => k + 1).join(" – ")))));
+  byId("walk").replaceChildren(
+    ...walks.map((walk, i) => element("option", { value: i }, walk.map((k) => k + 1).join(" – "))),
+  );
   byId("walk").value = state.walk;
   byId("progress").value = state.progress;
-  byId("walk").addEventListener("change", () => { state.walk = Number(byId("walk").value); state.progress = 0; byId("progress").value = 0; showProgress(); });
-  byId("progress").addEventListener("input", () => { state.progress = Number(byId("progress").value); showProgress(); });
-  byId("speed").addEventListener("change", () => { state.speed = Number(byId("speed").value); });
+  byId("walk").addEventListener("change", () => {
+    state.walk = Number(byId("walk").value);
+    state.progress = 0;
+    byId("progress").value = 0;
+    showProgress();
+  });
+  byId("progress").addEventListener("input", () => {
+    state.progress = Number(byId("progress").value);
+    showProgress();
+  });
+  byId("speed").addEventListener("change", () => {
+    state.speed = Number(byId("speed").value);
+  });
   byId("play").addEventListener("click", playWalk);
 }
 
@@ -591,11 +729,20 @@ function buildShow() {
     sample: `${robot.sample.length} random poses`,
     names: "Names of all points",
   };
-  const boxes = Object.keys(words).filter((name) => name !== "polygon" || robot.polygon).map((name) => {
-    const box = element("input", { type: "checkbox", id: `show-${name}`, checked: state.show[name] });
-    box.addEventListener("change", () => { state.show[name] = box.checked; redraw(); });
-    return element("label", { className: "check" }, box, words[name]);
-  });
+  const boxes = Object.keys(words)
+    .filter((name) => name !== "polygon" || robot.polygon)
+    .map((name) => {
+      const box = element("input", {
+        type: "checkbox",
+        id: `show-${name}`,
+        checked: state.show[name],
+      });
+      box.addEventListener("change", () => {
+        state.show[name] = box.checked;
+        redraw();
+      });
+      return element("label", { className: "check" }, box, words[name]);
+    });
   byId("show").replaceChildren(...boxes);
 }
 
@@ -610,7 +757,10 @@ function goHome() {
 function pixelOf(svg, event) {
   const box = svg.getBoundingClientRect();
   const view = svg.viewBox.baseVal;
-  return [((event.clientX - box.left) * view.width) / box.width, ((event.clientY - box.top) * view.height) / box.height];
+  return [
+    ((event.clientX - box.left) * view.width) / box.width,
+    ((event.clientY - box.top) * view.height) / box.height,
+  ];
 }
 
 /** Drag from a handle, or with a mouse from anywhere; a tap moves at once. */
@@ -626,9 +776,16 @@ function draggable(svg, move) {
     event.preventDefault();
     if (!onHandle) move(pixelOf(svg, event));
   });
-  svg.addEventListener("pointermove", (event) => { if (event.pointerId === held) move(pixelOf(svg, event)); });
-  for (const name of ["pointerup", "pointercancel"]) svg.addEventListener(name, () => { held = null; });
-  svg.addEventListener("click", (event) => { if (event.pointerType === "touch") move(pixelOf(svg, event)); });
+  svg.addEventListener("pointermove", (event) => {
+    if (event.pointerId === held) move(pixelOf(svg, event));
+  });
+  for (const name of ["pointerup", "pointercancel"])
+    svg.addEventListener(name, () => {
+      held = null;
+    });
+  svg.addEventListener("click", (event) => {
+    if (event.pointerType === "touch") move(pixelOf(svg, event));
+  });
 }
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -646,7 +803,8 @@ function onKeys(svg, step) {
 }
 
 function stepJoints(direction, large) {
-  const size = (k) => (slice.map.kinds[k] === "revolute" ? DEGREE : (robot.views[k].high - robot.views[k].low) / 200);
+  const size = (k) =>
+    slice.map.kinds[k] === "revolute" ? DEGREE : (robot.views[k].high - robot.views[k].low) / 200;
   movePose(pairOf(state.q).map((value, k) => value + direction[k] * size(k) * (large ? 10 : 1)));
 }
 
@@ -664,9 +822,16 @@ function listen() {
   byId("home").addEventListener("click", goHome);
   byId("flip").addEventListener("click", playFlip);
   byId("task-go").addEventListener("click", playTask);
-  byId("task-again").addEventListener("click", () => { setMirror(); refresh(); });
+  byId("task-again").addEventListener("click", () => {
+    setMirror();
+    refresh();
+  });
   byId("copy").addEventListener("click", copyLink);
-  window.addEventListener("hashchange", () => { restore(); buildShow(); rebuild(); });
+  window.addEventListener("hashchange", () => {
+    restore();
+    buildShow();
+    rebuild();
+  });
   new ResizeObserver(redraw).observe(byId("joints").parentElement);
 }
 
@@ -681,10 +846,12 @@ function copyLink() {
 function embed() {
   if (window.parent === window) return;
   document.documentElement.classList.add("embedded");
-  const tell = () => window.parent.postMessage({ explorerHeight: document.documentElement.offsetHeight }, "*");
+  const tell = () =>
+    window.parent.postMessage({ explorerHeight: document.documentElement.offsetHeight }, "*");
   new ResizeObserver(tell).observe(document.body);
   window.addEventListener("message", ({ data }) => {
-    if (data && ["light", "dark"].includes(data.theme)) document.documentElement.style.colorScheme = data.theme;
+    if (data && ["light", "dark"].includes(data.theme))
+      document.documentElement.style.colorScheme = data.theme;
   });
 }
 

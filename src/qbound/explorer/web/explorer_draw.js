@@ -38,7 +38,10 @@ function pathText(points, closed = false) {
 
 /** A clipped layer inside a picture's box. */
 function layer(drawn, name, clipped = true) {
-  const group = make("g", clipped ? { class: name, "clip-path": `url(#${drawn.svg.id}-clip)` } : { class: name });
+  const group = make(
+    "g",
+    clipped ? { class: name, "clip-path": `url(#${drawn.svg.id}-clip)` } : { class: name },
+  );
   drawn.svg.append(group);
   return group;
 }
@@ -60,7 +63,8 @@ function drawJointSpace(robot, state, slice) {
   clear(drawn);
   drawJointAxes(robot, drawn);
   drawCells(drawn, robot, slice);
-  if (state.show.sample) drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
+  if (state.show.sample)
+    drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
   drawSingular(drawn, slice);
   drawArcs(drawn, robot, slice);
   if (state.show.polygon && slice.exact && robot.polygon) drawPolygon(drawn, robot, state);
@@ -78,16 +82,21 @@ function drawJointAxes(robot, drawn) {
     const turn = joint.kind === "revolute";
     for (const value of ticks(view, turn)) {
       const [x, y] = drawn.at(k === 0 ? [value, 0] : [0, value]);
-      const ends = k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
+      const ends =
+        k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
       group.append(make("line", { class: "grid", ...ends }));
-      const place = k === 0 ? { x, y: bottom + 16, "text-anchor": "middle" }
-        : { x: left - 6, y: y + 4, "text-anchor": "end" };
+      const place =
+        k === 0
+          ? { x, y: bottom + 16, "text-anchor": "middle" }
+          : { x: left - 6, y: y + 4, "text-anchor": "end" };
       group.append(make("text", place, shown(joint, value, robot)));
     }
     const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
-    group.append(k === 0
-      ? make("text", { x: right, y: bottom + 33, "text-anchor": "end" }, title)
-      : make("text", { x: 4, y: bottom + 33 }, `↑ ${title}`));
+    group.append(
+      k === 0
+        ? make("text", { x: right, y: bottom + 33, "text-anchor": "end" }, title)
+        : make("text", { x: 4, y: bottom + 33 }, `↑ ${title}`),
+    );
   });
 }
 
@@ -95,10 +104,13 @@ function drawJointAxes(robot, drawn) {
 function ticks(view, turn) {
   const span = view.high - view.low;
   const unit = 10 ** Math.floor(Math.log10(span / 3));
-  const step = turn && span > 1 ? Math.PI / (span > 4 ? 3 : 6)
-    : [1, 2, 5].map((k) => k * unit).find((size) => span / size <= 8) || 10 * unit;
+  const step =
+    turn && span > 1
+      ? Math.PI / (span > 4 ? 3 : 6)
+      : [1, 2, 5].map((k) => k * unit).find((size) => span / size <= 8) || 10 * unit;
   const found = [];
-  for (let k = Math.ceil(view.low / step - 1e-9); k * step <= view.high + 1e-9; k += 1) found.push(k * step);
+  for (let k = Math.ceil(view.low / step - 1e-9); k * step <= view.high + 1e-9; k += 1)
+    found.push(k * step);
   return found;
 }
 
@@ -112,7 +124,10 @@ function drawCells(drawn, robot, slice) {
   const group = layer(drawn, "cells");
   const outlines = { home: "", away: "" };
   for (const cell of slice.cells) {
-    outlines[cell.piece === slice.home ? "home" : "away"] += pathText(outline(cell.rows).map(drawn.at), true);
+    outlines[cell.piece === slice.home ? "home" : "away"] += pathText(
+      outline(cell.rows).map(drawn.at),
+      true,
+    );
   }
   for (const [name, d] of Object.entries(outlines)) group.append(make("path", { class: name, d }));
 }
@@ -121,13 +136,25 @@ function drawSingular(drawn, slice) {
   const group = layer(drawn, "singular-lines");
   drawn.singular = slice.lines.map((value) => {
     const [, y] = drawn.at([0, value]);
-    const line = make("line", { class: "singular", x1: drawn.box.left, x2: drawn.box.right, y1: y, y2: y });
+    const line = make("line", {
+      class: "singular",
+      x1: drawn.box.left,
+      x2: drawn.box.right,
+      y1: y,
+      y2: y,
+    });
     group.append(line);
     return line;
   });
   slice.lines.slice(0, 1).forEach((value) => {
     const [, y] = drawn.at([0, value]);
-    group.append(make("text", { class: "line-name", x: drawn.box.right - 6, y: y - 6, "text-anchor": "end" }, "det J = 0"));
+    group.append(
+      make(
+        "text",
+        { class: "line-name", x: drawn.box.right - 6, y: y - 6, "text-anchor": "end" },
+        "det J = 0",
+      ),
+    );
   });
 }
 
@@ -139,7 +166,8 @@ function drawArcs(drawn, robot, slice) {
   for (const arc of slice.arcs) {
     let d = "";
     for (const a of shifts[0]) {
-      for (const b of shifts[1]) d += pathText(arc.points.map(([x, y]) => drawn.at([x + a, y + b])));
+      for (const b of shifts[1])
+        d += pathText(arc.points.map(([x, y]) => drawn.at([x + a, y + b])));
     }
     const path = make("path", { class: arc.home ? "arc" : "arc of-away", d });
     path.dataset.boundary = arc.boundary;
@@ -154,25 +182,34 @@ function nameArcs(drawn, slice) {
   const longest = new Map();
   for (const arc of slice.arcs.filter((one) => one.home)) {
     const points = arc.points.map(drawn.at);
-    const size = points.slice(1).reduce((sum, p, i) => sum + Math.hypot(p[0] - points[i][0], p[1] - points[i][1]), 0);
+    const size = points
+      .slice(1)
+      .reduce((sum, p, i) => sum + Math.hypot(p[0] - points[i][0], p[1] - points[i][1]), 0);
     const key = `${arc.boundary} ${arc.branch}`;
-    if (size > 26 && (!longest.has(key) || longest.get(key).size < size)) longest.set(key, { arc, points, size });
+    if (size > 26 && (!longest.has(key) || longest.get(key).size < size))
+      longest.set(key, { arc, points, size });
   }
   const group = layer(drawn, "arc-names", false);
-  const names = [...longest.values()].sort((a, b) => b.size - a.size).map(({ arc, points }) => {
-    const [[x, y], [nx, ny]] = middleOf(points);
-    const half = 4 * arc.boundary.length; // of the word's width, about
-    const { left, top, right, bottom } = drawn.box;
-    const text = make("text", {
-      class: "arc-name",
-      x: between(x + (half + 7) * nx, left + half, right - half),
-      y: between(y + 15 * ny + 4, top + 14, bottom - 5),
-      "text-anchor": "middle",
-    }, arc.boundary);
-    text.dataset.boundary = arc.boundary;
-    group.append(text);
-    return text;
-  });
+  const names = [...longest.values()]
+    .sort((a, b) => b.size - a.size)
+    .map(({ arc, points }) => {
+      const [[x, y], [nx, ny]] = middleOf(points);
+      const half = 4 * arc.boundary.length; // of the word's width, about
+      const { left, top, right, bottom } = drawn.box;
+      const text = make(
+        "text",
+        {
+          class: "arc-name",
+          x: between(x + (half + 7) * nx, left + half, right - half),
+          y: between(y + 15 * ny + 4, top + 14, bottom - 5),
+          "text-anchor": "middle",
+        },
+        arc.boundary,
+      );
+      text.dataset.boundary = arc.boundary;
+      group.append(text);
+      return text;
+    });
   thin(names, drawn.width);
   return names;
 }
@@ -186,11 +223,17 @@ function middleOf(points) {
   const steps = points.slice(1).map((p, i) => Math.hypot(p[0] - points[i][0], p[1] - points[i][1]));
   let rest = steps.reduce((sum, step) => sum + step, 0) / 2;
   let i = 0;
-  while (i < steps.length - 1 && rest > steps[i]) { rest -= steps[i]; i += 1; }
+  while (i < steps.length - 1 && rest > steps[i]) {
+    rest -= steps[i];
+    i += 1;
+  }
   const [a, b] = [points[i], points[i + 1]];
   const share = steps[i] === 0 ? 0 : rest / steps[i];
   const [dx, dy] = [(b[0] - a[0]) / (steps[i] || 1), (b[1] - a[1]) / (steps[i] || 1)];
-  return [[a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])], [-dy, dx]];
+  return [
+    [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])],
+    [-dy, dx],
+  ];
 }
 
 function drawPolygon(drawn, robot, state) {
@@ -198,14 +241,32 @@ function drawPolygon(drawn, robot, state) {
   const group = layer(drawn, "scaled");
   const corners = scaledPolygon(vertices, state.scale, centroid);
   const unsafe = state.scale > largest;
-  group.append(make("path", { class: unsafe ? "polygon unsafe" : "polygon", d: pathText(corners.map(drawn.at), true) }));
+  group.append(
+    make("path", {
+      class: unsafe ? "polygon unsafe" : "polygon",
+      d: pathText(corners.map(drawn.at), true),
+    }),
+  );
   const [gx, gy] = drawn.at(centroid);
-  group.append(make("path", { class: "centroid", d: `M${gx - 6} ${gy}H${gx + 6}M${gx} ${gy - 6}V${gy + 6}` }));
+  group.append(
+    make("path", { class: "centroid", d: `M${gx - 6} ${gy}H${gx + 6}M${gx} ${gy - 6}V${gy + 6}` }),
+  );
   corners.forEach((corner, i) => {
     const [x, y] = drawn.at(corner);
     const [dx, dy] = [gx - x, gy - y];
     const size = Math.hypot(dx, dy) || 1;
-    group.append(make("text", { class: "vertex-name", x: x + (16 * dx) / size, y: y + (16 * dy) / size + 4, "text-anchor": "middle" }, i + 1));
+    group.append(
+      make(
+        "text",
+        {
+          class: "vertex-name",
+          x: x + (16 * dx) / size,
+          y: y + (16 * dy) / size + 4,
+          "text-anchor": "middle",
+        },
+        i + 1,
+      ),
+    );
   });
 }
 
@@ -217,7 +278,8 @@ function drawMarks(group, sample, place) {
     if (one.safe) d.dots += `M${x} ${y}h0`;
     else d.crosses += `M${x - 2} ${y - 2}l4 4m0 -4l-4 4`;
   }
-  for (const [name, text] of Object.entries(d)) group.append(make("path", { class: name, d: text }));
+  for (const [name, text] of Object.entries(d))
+    group.append(make("path", { class: name, d: text }));
 }
 
 /** A handle to drag, with room around it for a finger. */
@@ -234,7 +296,10 @@ function handle(svg, mark) {
 /** The part of the plane that the arm can reach, its bodies included, whatever joint moves. */
 function planeBox(robot) {
   const [xs, ys] = [[0], [0]];
-  const note = ([x, y]) => { xs.push(x); ys.push(y); };
+  const note = ([x, y]) => {
+    xs.push(x);
+    ys.push(y);
+  };
   const steps = Array.from({ length: 17 }, (_, i) => i / 16);
   for (const q of posesOfHeld(robot)) {
     for (const a of steps) {
@@ -245,7 +310,10 @@ function planeBox(robot) {
     }
   }
   const pad = 0.04 * Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
-  return [[Math.min(...xs) - pad, Math.max(...xs) + pad], [Math.min(...ys) - pad, Math.max(...ys) + pad]];
+  return [
+    [Math.min(...xs) - pad, Math.max(...xs) + pad],
+    [Math.min(...ys) - pad, Math.max(...ys) + pad],
+  ];
 }
 
 /** The pose that the page opens with, and each held joint on its own at places of its range. */
@@ -253,7 +321,9 @@ function posesOfHeld(robot) {
   const others = robot.joints.flatMap((joint, j) => {
     if (robot.free.includes(j)) return [];
     const [low, high] = joint.limits || [-Math.PI, Math.PI];
-    return [0, 0.25, 0.5, 0.75, 1].map((s) => robot.q.map((value, i) => (i === j ? low + s * (high - low) : value)));
+    return [0, 0.25, 0.5, 0.75, 1].map((s) =>
+      robot.q.map((value, i) => (i === j ? low + s * (high - low) : value)),
+    );
   });
   return [robot.q, ...others];
 }
@@ -261,14 +331,18 @@ function posesOfHeld(robot) {
 /** Everything of the arm that takes room in the plane. */
 function planePlaces(robot, q) {
   const [found, axes] = [frames(robot, q), viewAxes(robot, q)];
-  const corners = robot.bodies.flatMap((body) => body.outline.map((p) => placeIn(found[body.frame], p)));
+  const corners = robot.bodies.flatMap((body) =>
+    body.outline.map((p) => placeIn(found[body.frame], p)),
+  );
   const points = robot.points.map((point) => placeIn(found[point.frame], point.at));
   return [...corners, ...points, ...found.map((frame) => frame.place)].map((p) => project(axes, p));
 }
 
 function withPair(robot, q, pair) {
   const pose = [...q];
-  robot.free.forEach((j, k) => { pose[j] = pair[k]; });
+  robot.free.forEach((j, k) => {
+    pose[j] = pair[k];
+  });
   return pose;
 }
 
@@ -280,11 +354,15 @@ function drawPlane(robot, state, slice, box) {
   drawScaleBar(robot, drawn);
   if (state.show.workspace) drawWorkspace(drawn, slice);
   drawWalls(robot, drawn, state);
-  if (state.show.sample) drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.tool));
+  if (state.show.sample)
+    drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.tool));
   drawn.path = layer(drawn, "tool-path").appendChild(make("path", { class: "path" }));
   drawn.ghost = layer(drawn, "arm-ghost").appendChild(make("path", { class: "ghost" }));
   addArm(robot, drawn);
-  Object.assign(drawn, handle(svg, make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 })));
+  Object.assign(
+    drawn,
+    handle(svg, make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 })),
+  );
   return drawn;
 }
 
@@ -297,7 +375,13 @@ function drawScaleBar(robot, drawn) {
   const pixels = drawn.at([length, 0])[0] - drawn.at([0, 0])[0];
   const y = drawn.height - 10;
   group.append(make("path", { class: "wall", d: `M12 ${y - 4}v8M12 ${y}h${pixels}m0 -4v8` }));
-  group.append(make("text", { x: 20 + pixels, y: y + 4 }, `${Number(length.toPrecision(2))} ${robot.length_unit}`));
+  group.append(
+    make(
+      "text",
+      { x: 20 + pixels, y: y + 4 },
+      `${Number(length.toPrecision(2))} ${robot.length_unit}`,
+    ),
+  );
 }
 
 function drawWorkspace(drawn, slice) {
@@ -311,21 +395,34 @@ function drawWorkspace(drawn, slice) {
 /** Walls of the plane: the line, and a tint of what lies beyond it. */
 function drawWalls(robot, drawn, state) {
   const group = layer(drawn, "walls");
-  const corners = [[0, 0], [drawn.width, 0], [drawn.width, drawn.height], [0, drawn.height]].map(drawn.from);
+  const corners = [
+    [0, 0],
+    [drawn.width, 0],
+    [drawn.width, drawn.height],
+    [0, drawn.height],
+  ].map(drawn.from);
   const places = pointPlaces(robot, state.q);
   const axes = viewAxes(robot, state.q);
-  drawn.walls = robot.boundaries.filter((wall) => wall.kind === "half-space").map((wall) => {
-    const normal = project(axes, wall.normal);
-    const offset = wall.offset - dot(axes[2], wall.normal) * dot(axes[2], places[wall.points[0]]);
-    const side = ([x, y]) => normal[0] * x + normal[1] * y - offset;
-    if (wall.used) group.append(make("path", { class: "beyond", d: pathText(clipBelow(corners, side).map(drawn.at), true) }));
-    const ends = lineThrough(corners, side).map(drawn.at);
-    const line = make("path", { class: wall.used ? "wall" : "wall unused", d: pathText(ends) });
-    line.dataset.boundary = wall.name;
-    group.append(line);
-    if (ends.length === 2) group.append(wallLabel(wall, ends, drawn));
-    return line;
-  });
+  drawn.walls = robot.boundaries
+    .filter((wall) => wall.kind === "half-space")
+    .map((wall) => {
+      const normal = project(axes, wall.normal);
+      const offset = wall.offset - dot(axes[2], wall.normal) * dot(axes[2], places[wall.points[0]]);
+      const side = ([x, y]) => normal[0] * x + normal[1] * y - offset;
+      if (wall.used)
+        group.append(
+          make("path", {
+            class: "beyond",
+            d: pathText(clipBelow(corners, side).map(drawn.at), true),
+          }),
+        );
+      const ends = lineThrough(corners, side).map(drawn.at);
+      const line = make("path", { class: wall.used ? "wall" : "wall unused", d: pathText(ends) });
+      line.dataset.boundary = wall.name;
+      group.append(line);
+      if (ends.length === 2) group.append(wallLabel(wall, ends, drawn));
+      return line;
+    });
   thin(group.querySelectorAll("text"), drawn.width);
 }
 
@@ -334,10 +431,14 @@ function thin(names, width) {
   const kept = [];
   for (const name of names) {
     const { x, width: size } = name.getBBox();
-    name.setAttribute("x", Number(name.getAttribute("x")) + Math.max(0, 4 - x) - Math.max(0, x + size + 4 - width));
+    name.setAttribute(
+      "x",
+      Number(name.getAttribute("x")) + Math.max(0, 4 - x) - Math.max(0, x + size + 4 - width),
+    );
     const box = name.getBBox();
-    const covers = (other) => Math.abs(box.x + box.width / 2 - other.x - other.width / 2) < (box.width + other.width) / 2
-      && Math.abs(box.y - other.y) < box.height - 2;
+    const covers = (other) =>
+      Math.abs(box.x + box.width / 2 - other.x - other.width / 2) < (box.width + other.width) / 2 &&
+      Math.abs(box.y - other.y) < box.height - 2;
     if (kept.some(covers)) name.remove();
     else kept.push(box);
   }
@@ -355,14 +456,14 @@ function clipBelow(corners, side) {
   return corners.flatMap((a, i) => {
     const b = corners[(i + 1) % corners.length];
     const kept = side(a) <= 0 ? [a] : [];
-    return (side(a) <= 0) === (side(b) <= 0) ? kept : [...kept, crossing(a, b, side)];
+    return side(a) <= 0 === side(b) <= 0 ? kept : [...kept, crossing(a, b, side)];
   });
 }
 
 function lineThrough(corners, side) {
   return corners.flatMap((a, i) => {
     const b = corners[(i + 1) % corners.length];
-    return (side(a) <= 0) === (side(b) <= 0) ? [] : [crossing(a, b, side)];
+    return side(a) <= 0 === side(b) <= 0 ? [] : [crossing(a, b, side)];
   });
 }
 
@@ -374,24 +475,32 @@ function crossing(a, b, side) {
 /** The elements that move with the pose; `placeArm` moves them. */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
-  drawn.bodies = robot.bodies.map((body) => group.appendChild(
-    make("polygon", { class: "body", fill: `var(--links-${body.frame % 5})` })));
+  drawn.bodies = robot.bodies.map((body) =>
+    group.appendChild(make("polygon", { class: "body", fill: `var(--links-${body.frame % 5})` })),
+  );
   drawn.spine = group.appendChild(make("path", { class: "spine" }));
   drawn.axles = robot.joints.map(() => group.appendChild(make("circle", { class: "axle", r: 5 })));
-  drawn.gaps = robot.boundaries.map((wall) => group.appendChild(
-    make("line", { class: "gap", hidden: wall.kind === "pair" ? null : "" })));
-  drawn.points = robot.points.map((point) => group.appendChild(
-    make("circle", { class: point.radius > 0 ? "sphere" : "point", r: 3 })));
-  drawn.names = robot.points.map((point) => group.appendChild(
-    make("text", { class: "point-name" }, point.name)));
+  drawn.gaps = robot.boundaries.map((wall) =>
+    group.appendChild(make("line", { class: "gap", hidden: wall.kind === "pair" ? null : "" })),
+  );
+  drawn.points = robot.points.map((point) =>
+    group.appendChild(make("circle", { class: point.radius > 0 ? "sphere" : "point", r: 3 })),
+  );
+  drawn.names = robot.points.map((point) =>
+    group.appendChild(make("text", { class: "point-name" }, point.name)),
+  );
 }
 
 /** Move the arm to a pose; `lit` are the points and boundaries that stand out. */
 function placeArm(robot, drawn, state, lit) {
   const [found, axes] = [frames(robot, state.q), viewAxes(robot, state.q)];
   const at = (place) => drawn.at(project(axes, place));
-  robot.bodies.forEach((body, i) => drawn.bodies[i].setAttribute(
-    "points", body.outline.map((p) => at(placeIn(found[body.frame], p)).join(",")).join(" ")));
+  robot.bodies.forEach((body, i) =>
+    drawn.bodies[i].setAttribute(
+      "points",
+      body.outline.map((p) => at(placeIn(found[body.frame], p)).join(",")).join(" "),
+    ),
+  );
   const places = robot.points.map((point) => at(placeIn(found[point.frame], point.at)));
   const spine = [...found.map((frame) => at(frame.place)), places[robot.tool]];
   drawn.spine.setAttribute("d", pathText(spine));
@@ -425,7 +534,8 @@ function placeGap(line, wall, places, lit) {
   line.toggleAttribute("hidden", !near);
   if (!near) return;
   const [a, b] = wall.points.map((i) => places[i]);
-  for (const [key, value] of Object.entries({ x1: a[0], y1: a[1], x2: b[0], y2: b[1] })) line.setAttribute(key, value);
+  for (const [key, value] of Object.entries({ x1: a[0], y1: a[1], x2: b[0], y2: b[1] }))
+    line.setAttribute(key, value);
   line.classList.toggle("lit", lit.violated.has(wall.name));
 }
 

@@ -22,10 +22,16 @@ function basisSlope(kind, q) {
 function restrict(form, robot, q) {
   const [first, second] = robot.free;
   const factors = robot.joints.map((joint, j) => basis(joint.kind, q[j]));
-  const left = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
+  const left = [
+    [0, 0, 0],
+    [0, 0, 0],
+    [0, 0, 0],
+  ];
   for (const [coefficient, ...index] of form) {
     let value = coefficient;
-    index.forEach((k, j) => { if (j !== first && j !== second) value *= factors[j][k]; });
+    index.forEach((k, j) => {
+      if (j !== first && j !== second) value *= factors[j][k];
+    });
     left[index[first]][index[second]] += value;
   }
   return left;
@@ -51,7 +57,11 @@ function freeKinds(robot) {
 
 /* --- vectors, turns, frames: qbound.robot (Table 2) ------------------------------------------- */
 
-const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const IDENTITY = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
 
 function dot(a, b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -66,7 +76,9 @@ function add(a, b) {
 }
 
 function product(a, b) {
-  return a.map((row) => [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k]));
+  return a.map((row) =>
+    [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k]),
+  );
 }
 
 /** Rodrigues' formula about a unit axis. */
@@ -148,8 +160,9 @@ function around(joint, q, middle) {
 /** The margin that is smallest for its size: lengths by the robot's reach, angles by a turn. */
 function tightest(robot, found) {
   const size = (one) => one.value / (one.unit === "angle" ? 1 : robot.reach);
-  return found.filter((one) => one.used).reduce(
-    (best, one) => (best === null || size(one) < size(best) ? one : best), null);
+  return found
+    .filter((one) => one.used)
+    .reduce((best, one) => (best === null || size(one) < size(best) ? one : best), null);
 }
 
 function isSafe(found) {
@@ -171,10 +184,17 @@ function project(axes, place) {
 /** The tool's place in the plane as two forms of the free joints, and whether it stays there. */
 function toolMap(robot, q) {
   const seen = robot.tool_forms.map((form) => restrict(form, robot, q));
-  const along = (axis) => [0, 1, 2].map((i) => [0, 1, 2].map(
-    (k) => axis[0] * seen[0][i][k] + axis[1] * seen[1][i][k] + axis[2] * seen[2][i][k]));
+  const along = (axis) =>
+    [0, 1, 2].map((i) =>
+      [0, 1, 2].map(
+        (k) => axis[0] * seen[0][i][k] + axis[1] * seen[1][i][k] + axis[2] * seen[2][i][k],
+      ),
+    );
   const [x, y, out] = viewAxes(robot, q).map(along);
-  const depth = out.flat().slice(1).reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  const depth = out
+    .flat()
+    .slice(1)
+    .reduce((most, value) => Math.max(most, Math.abs(value)), 0);
   return { x, y, kinds: freeKinds(robot), planar: depth <= 1e-9 * robot.reach };
 }
 
@@ -187,8 +207,10 @@ function toolAt(map, pair) {
 function determinant(map, pair) {
   const [a, b] = [basis(map.kinds[0], pair[0]), basis(map.kinds[1], pair[1])];
   const [da, db] = [basisSlope(map.kinds[0], pair[0]), basisSlope(map.kinds[1], pair[1])];
-  return evaluate(map.x, da, b) * evaluate(map.y, a, db)
-    - evaluate(map.x, a, db) * evaluate(map.y, da, b);
+  return (
+    evaluate(map.x, da, b) * evaluate(map.y, a, db) -
+    evaluate(map.x, a, db) * evaluate(map.y, da, b)
+  );
 }
 
 /* --- complex numbers [re, im], for kinematics in the plane ------------------------------------ */
@@ -238,7 +260,8 @@ function singularValues(arm) {
   const { kind, d, e, s2 } = arm;
   if (kind === "rr") return [0, Math.PI].map((phi) => wrapped(s2 * (phi - angle(e) + angle(d))));
   if (kind === "rp") return [-inner(d, e) / inner(e, e)];
-  if (kind === "pr") return [1, -1].map((s) => wrapped(s2 * (s * Math.PI / 2 - angle(e) + angle(d))));
+  if (kind === "pr")
+    return [1, -1].map((s) => wrapped(s2 * ((s * Math.PI) / 2 - angle(e) + angle(d))));
   return [];
 }
 
@@ -287,8 +310,9 @@ function posturesPP({ d, e }, w) {
 /** The postures that the joints' ranges allow, angles turned into them. */
 function possible(robot, arm, target) {
   const kinds = freeKinds(robot);
-  const turned = postures(arm, target).map((pair) => (
-    pair.map((value, k) => turnsWithin(kinds[k], value, robot.views[k])[0])));
+  const turned = postures(arm, target).map((pair) =>
+    pair.map((value, k) => turnsWithin(kinds[k], value, robot.views[k])[0]),
+  );
   return turned.filter((pair) => pair.every((value) => value !== undefined));
 }
 
@@ -352,10 +376,13 @@ function fibre(problem, first) {
   lines.forEach((line, by) => rootsWithin(kind, line, view).forEach((at) => cuts.push({ at, by })));
   cuts.sort((a, b) => a.at - b.at);
   cuts.push({ at: view.high, by: view.wraps ? SEAM : UPPER });
-  return cuts.slice(1).map((high, i) => ({ low: cuts[i], high })).filter(({ low, high }) => {
-    const y = basis(kind, (low.at + high.at) / 2);
-    return high.at > low.at && lines.every((line) => dot(line, y) > 0);
-  });
+  return cuts
+    .slice(1)
+    .map((high, i) => ({ low: cuts[i], high }))
+    .filter(({ low, high }) => {
+      const y = basis(kind, (low.at + high.at) / 2);
+      return high.at > low.at && lines.every((line) => dot(line, y) > 0);
+    });
 }
 
 function signature(intervals) {
@@ -364,8 +391,10 @@ function signature(intervals) {
 
 /** Whether every interval of one fibre goes on into the like one of the next. */
 function goesOn(a, b) {
-  return signature(a.intervals) === signature(b.intervals)
-    && a.intervals.every((interval, k) => overlap(interval, b.intervals[k]) > 0);
+  return (
+    signature(a.intervals) === signature(b.intervals) &&
+    a.intervals.every((interval, k) => overlap(interval, b.intervals[k]) > 0)
+  );
 }
 
 /** Fibres over the first joint's range, closer and closer to where their intervals change. */
@@ -402,7 +431,9 @@ function sliceCells(problem, count) {
   let before = [];
   columns.forEach(({ t, intervals }, i) => {
     const same = i > 0 && goesOn(columns[i - 1], columns[i]);
-    const now = same ? before : intervals.map(({ low, high }) => ({ low: low.by, high: high.by, rows: [] }));
+    const now = same
+      ? before
+      : intervals.map(({ low, high }) => ({ low: low.by, high: high.by, rows: [] }));
     if (!same) {
       now.forEach((cell, k) => {
         all.push(cell);
@@ -431,15 +462,24 @@ function seamPairs(lower, upper, seam) {
 /** Cells over the first and the last fibre of a first joint that turns all the way round. */
 function basePairs(all, columns) {
   const [start, end] = [columns[0].t, columns[columns.length - 1].t];
-  const over = (t) => all.flatMap((cell) => cell.rows.filter((row) => row[0] === t).map(
-    (row) => ({ cell, low: { at: row[1] }, high: { at: row[2] } })));
-  return over(start).flatMap((a) => over(end).filter((b) => overlap(a, b) > 0).map(
-    (b) => [a.cell, b.cell]));
+  const over = (t) =>
+    all.flatMap((cell) =>
+      cell.rows
+        .filter((row) => row[0] === t)
+        .map((row) => ({ cell, low: { at: row[1] }, high: { at: row[2] } })),
+    );
+  return over(start).flatMap((a) =>
+    over(end)
+      .filter((b) => overlap(a, b) > 0)
+      .map((b) => [a.cell, b.cell]),
+  );
 }
 
 function numberPieces(all, joined) {
-  all.forEach((cell, i) => { cell.piece = i; });
-  for (let changed = true; changed;) {
+  all.forEach((cell, i) => {
+    cell.piece = i;
+  });
+  for (let changed = true; changed; ) {
     changed = false;
     for (const [a, b] of joined) {
       if (a.piece !== b.piece) {
@@ -453,7 +493,8 @@ function numberPieces(all, joined) {
 /** Give each cell the safe intervals just before it and just after it. */
 function noteNeighbours(all, columns, wraps) {
   const place = new Map(columns.map(({ t }, i) => [t, i]));
-  const at = (i) => (columns[wraps ? (i + columns.length) % columns.length : i] || {}).intervals || [];
+  const at = (i) =>
+    (columns[wraps ? (i + columns.length) % columns.length : i] || {}).intervals || [];
   for (const cell of all) {
     cell.before = at(place.get(cell.rows[0][0]) - 1);
     cell.after = at(place.get(cell.rows[cell.rows.length - 1][0]) + 1);
@@ -462,17 +503,33 @@ function noteNeighbours(all, columns, wraps) {
 
 /** The boundary of a slice's cells as polylines with the names of their walls. */
 function cellEdges(problem, cells) {
-  const name = (by) => (by >= 0 ? problem.names[by] : problem.ranges[1].names[by === LOWER ? 0 : 1]);
+  const name = (by) =>
+    by >= 0 ? problem.names[by] : problem.ranges[1].names[by === LOWER ? 0 : 1];
   return cells.flatMap((cell) => {
     const [first, last] = [cell.rows[0], cell.rows[cell.rows.length - 1]];
-    const curves = [[cell.low, 1], [cell.high, 2]].filter(([by]) => by !== SEAM).map(([by, k]) => (
-      { boundary: name(by), piece: cell.piece, points: cell.rows.map((row) => [row[0], row[k]]) }));
-    const walls = [[first, cell.before, 0], [last, cell.after, 1]].flatMap(([row, beyond, side]) => (
+    const curves = [
+      [cell.low, 1],
+      [cell.high, 2],
+    ]
+      .filter(([by]) => by !== SEAM)
+      .map(([by, k]) => ({
+        boundary: name(by),
+        piece: cell.piece,
+        points: cell.rows.map((row) => [row[0], row[k]]),
+      }));
+    const walls = [
+      [first, cell.before, 0],
+      [last, cell.after, 1],
+    ].flatMap(([row, beyond, side]) =>
       uncovered(row, beyond).map(([low, high]) => ({
         boundary: wallName(problem, row[0], (low + high) / 2, side),
         piece: cell.piece,
-        points: [[row[0], low], [row[0], high]],
-      }))));
+        points: [
+          [row[0], low],
+          [row[0], high],
+        ],
+      })),
+    );
     return curves.concat(walls);
   });
 }
@@ -493,7 +550,8 @@ function uncovered([, low, high], beyond) {
 function wallName(problem, first, second, side) {
   const range = problem.ranges[0];
   const limit = side === 0 ? range.low : range.high;
-  if (!range.wraps && Math.abs(first - limit) < 1e-6 * (range.high - range.low)) return range.names[side];
+  if (!range.wraps && Math.abs(first - limit) < 1e-6 * (range.high - range.low))
+    return range.names[side];
   const [x, y] = [basis(problem.kinds[0], first), basis(problem.kinds[1], second)];
   const values = problem.forms.map((form) => Math.abs(evaluate(form, x, y)));
   return problem.names[values.indexOf(Math.min(...values))];
@@ -515,12 +573,17 @@ function cutRows(rows, low, high) {
 
 /** The outline of a run of rows in the plane of the joints, anticlockwise. */
 function outline(rows, steps = 1) {
-  const rise = ([t, a, b]) => Array.from({ length: steps }, (_, k) => [t, a + ((b - a) * k) / steps]);
-  const fall = ([t, a, b]) => Array.from({ length: steps }, (_, k) => [t, b + ((a - b) * k) / steps]);
+  const rise = ([t, a, b]) =>
+    Array.from({ length: steps }, (_, k) => [t, a + ((b - a) * k) / steps]);
+  const fall = ([t, a, b]) =>
+    Array.from({ length: steps }, (_, k) => [t, b + ((a - b) * k) / steps]);
   return [
     ...rows.map((row) => [row[0], row[1]]),
     ...rise(rows[rows.length - 1]),
-    ...rows.slice().reverse().map((row) => [row[0], row[2]]),
+    ...rows
+      .slice()
+      .reverse()
+      .map((row) => [row[0], row[2]]),
     ...fall(rows[0]),
   ];
 }
@@ -573,8 +636,9 @@ function scaledPolygon(vertices, factor, centre) {
 /** Smallest length margin over the scaled polygon: its edges at this and at smaller scales. */
 function smallestClearance(robot, q, vertices, factor, centre, rings = 12, steps = 48) {
   const [kindA, kindB] = freeKinds(robot);
-  const walls = robot.boundaries.filter((wall) => wall.used).map(
-    (wall) => ({ wall, form: restrict(wall.form, robot, q) }));
+  const walls = robot.boundaries
+    .filter((wall) => wall.used)
+    .map((wall) => ({ wall, form: restrict(wall.form, robot, q) }));
   let best = { value: Infinity, name: null, q: centre };
   for (let ring = 0; ring <= rings; ring += 1) {
     const corners = scaledPolygon(vertices, (factor * ring) / rings, centre);
@@ -602,8 +666,9 @@ function lengthOf(wall, value) {
 /** Length of each straight piece of a path: the largest change of a joint, in views' widths. */
 function pieceLengths(robot, stops) {
   const size = robot.views.map((view) => view.high - view.low);
-  return stops.slice(1).map((b, i) => Math.max(
-    ...b.map((value, k) => Math.abs(value - stops[i][k]) / size[k])));
+  return stops
+    .slice(1)
+    .map((b, i) => Math.max(...b.map((value, k) => Math.abs(value - stops[i][k]) / size[k])));
 }
 
 /** The place on a path of straight pieces after a fraction of its length. */
