@@ -27,7 +27,8 @@ let playing = 0; // the animation frame that is asked for
 
 /* --- what depends on the held joints ----------------------------------------------------------- */
 
-/** The slice's cells, arcs, images and singular lines; the library's exact arcs where it has them. */
+/** The slice's cells, arcs, images and singular lines; the library's exact arcs where it has them.
+ * @type {() => Slice} */
 function findSlice() {
   const problem = sliceProblem(robot, state.q);
   const cells = sliceCells(problem, COLUMNS);
@@ -59,12 +60,14 @@ function findSlice() {
   };
 }
 
+/** @type {() => DrawnArc[]} */
 function exactArcs() {
   return robot.components.flatMap((component) =>
     component.loops.flatMap((loop) => loop.map((arc) => ({ ...arc, home: component.home }))),
   );
 }
 
+/** @type {(map: ToolMap) => number} */
 function largestDeterminant(map) {
   const steps = Array.from({ length: 37 }, (_, i) => i / 36);
   const [a, b] = robot.views;
@@ -73,6 +76,7 @@ function largestDeterminant(map) {
   return Math.max(...steps.flatMap((s) => steps.map((t) => value(s, t))));
 }
 
+/** @type {() => SamplePose[]} */
 function judgeSample() {
   return robot.sample.map((pair) => {
     const q = withPair(robot, state.q, pair);
@@ -82,7 +86,8 @@ function judgeSample() {
 
 /* --- poses ------------------------------------------------------------------------------------- */
 
-/** Bring both free joints into what is drawn: turn whole turns, stop at limits. */
+/** Bring both free joints into what is drawn: turn whole turns, stop at limits.
+ * @type {(pair: Pair) => Pair} */
 function inView(pair) {
   return pair.map((value, k) => {
     const { low, high, wraps } = robot.views[k];
@@ -92,22 +97,26 @@ function inView(pair) {
   });
 }
 
+/** @type {(q: Pose) => Pair} */
 function pairOf(q) {
   return robot.free.map((j) => q[j]);
 }
 
+/** @type {(pair: Pair) => void} */
 function setPair(pair) {
   state.q = withPair(robot, state.q, inView(pair));
 }
 
-/** The reader moved the arm: a running path stops. */
+/** The reader moved the arm: a running path stops.
+ * @type {(pair: Pair) => void} */
 function movePose(pair) {
   stop();
   setPair(pair);
   refresh();
 }
 
-/** Bring the tool to a place of the plane, in the posture that it has. */
+/** Bring the tool to a place of the plane, in the posture that it has.
+ * @type {(target: Point) => void} */
 function moveTool(target) {
   if (!slice.regular) return;
   const now = pairOf(state.q);
@@ -118,17 +127,20 @@ function moveTool(target) {
   if (best) movePose(best);
 }
 
+/** @type {(pairs: Pair[], now: Pair) => Pair | null} */
 function nearest(pairs, now) {
   const far = (pair) =>
     pair.reduce((sum, value, k) => sum + Math.abs(shortWay(k, value - now[k])), 0);
   return pairs.reduce((best, pair) => (best === null || far(pair) < far(best) ? pair : best), null);
 }
 
+/** @type {(k: number, difference: number) => number} */
 function shortWay(k, difference) {
   return robot.views[k].wraps ? difference - TURN * Math.round(difference / TURN) : difference;
 }
 
-/** The same place of the tool in the other posture, if the joints' limits allow it. */
+/** The same place of the tool in the other posture, if the joints' limits allow it.
+ * @type {() => Pair | null} */
 function otherPosture() {
   if (!slice.regular) return null;
   const now = pairOf(state.q);
@@ -141,6 +153,7 @@ function otherPosture() {
 
 /* --- words ------------------------------------------------------------------------------------- */
 
+/** @type {(value: number, digits: number) => string} */
 function number(value, digits) {
   return value
     .toFixed(digits)
@@ -148,19 +161,23 @@ function number(value, digits) {
     .replace("-", "−");
 }
 
+/** @type {(value: number) => string} */
 function length(value) {
   return `${number(value, robot.reach < 10 ? 4 : 2)} ${robot.length_unit}`;
 }
 
+/** @type {(margin: Margin) => string} */
 function marginText({ value, unit }) {
   return unit === "angle" ? `${number(value / DEGREE, 1)}°` : length(value);
 }
 
+/** @type {(j: number, value: number) => string} */
 function jointText(j, value) {
   const joint = robot.joints[j];
   return joint.kind === "revolute" ? `${number(value / DEGREE, 1)}°` : length(value);
 }
 
+/** @type {(row: number) => string} */
 function betweenText(row) {
   const limit = robot.limits[row - robot.boundaries.length]; // they follow the boundaries
   if (limit)
@@ -172,7 +189,8 @@ function betweenText(row) {
     : `point ${points[0]} and a wall`;
 }
 
-/** Whether the pose is safe, and whether the home pose can be reached from it. */
+/** Whether the pose is safe, and whether the home pose can be reached from it.
+ * @type {(found: Margin[]) => string[]} */
 function statusText(found) {
   const bad = found.filter((one) => one.used && one.value < 0);
   if (bad.length > 0) {
@@ -191,6 +209,7 @@ function statusText(found) {
   return [away ? "Safe, but cut off from home." : "Safe.", nearby];
 }
 
+/** @type {() => string} */
 function postureText() {
   if (!slice.regular) return "The tool leaves the plane: move the arm in joint space.";
   const det = determinant(slice.map, pairOf(state.q));
@@ -207,7 +226,8 @@ function postureText() {
   return `Posture ${det > 0 ? "A (det J > 0)" : "B (det J < 0)"}. The other one at this place is ${there}.`;
 }
 
-/** The exact areas of the workspace, as the library found them for the slice it was given. */
+/** The exact areas of the workspace, as the library found them for the slice it was given.
+ * @type {() => string} */
 function areaText() {
   if (!robot.workspace || !slice.exact || !state.show.workspace) return "";
   const area = (value) => `${Number(value.toPrecision(6))} ${robot.length_unit}²`;
@@ -264,6 +284,7 @@ function redraw() {
   refresh();
 }
 
+/** @type {(rows: [name: string, text: string, shows?: boolean][]) => HTMLLIElement[]} */
 function legend(rows) {
   return rows
     .filter(([, , shows]) => shows !== false)
@@ -310,7 +331,8 @@ function refresh() {
   remember();
 }
 
-/** The boundaries that stand out: violated ones, the one pointed at, and those that are near. */
+/** The boundaries that stand out: violated ones, the one pointed at, and those that are near.
+ * @type {(found: Margin[]) => Lit} */
 function litParts(found) {
   const used = found.filter((one) => one.used);
   const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
@@ -342,6 +364,7 @@ function drawPaths() {
   plane.ghost.setAttribute("d", skeleton(robot, plane, withPair(robot, state.q, state.mirror)));
 }
 
+/** @type {(found: Margin[]) => void} */
 function showStatus(found) {
   const [verdict, reason] = statusText(found);
   const strong = document.createElement("strong");
@@ -355,7 +378,8 @@ function showStatus(found) {
   );
 }
 
-/** Tell a screen reader, once the arm rests. */
+/** Tell a screen reader, once the arm rests.
+ * @type {(text: string) => void} */
 function say(text) {
   window.clearTimeout(say.timer);
   say.timer = window.setTimeout(() => {
@@ -363,6 +387,7 @@ function say(text) {
   }, 600);
 }
 
+/** @type {(found: Margin[], lit: Lit) => void} */
 function showMargins(found, lit) {
   found.forEach((one, i) => {
     const row = byId("margins").children[i];
@@ -403,6 +428,7 @@ function showScale() {
 
 /* --- the task: why the arm must stretch -------------------------------------------------------- */
 
+/** @type {() => boolean} */
 function hasTask() {
   return slice.regular && slice.arm.kind === "rr";
 }
@@ -429,6 +455,7 @@ function showTask() {
   if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
 }
 
+/** @type {(det: number, there: boolean) => string} */
 function taskText(det, there) {
   if (there) {
     return (
@@ -451,6 +478,7 @@ function walkStops() {
   return robot.polygon.walks[state.walk].map((i) => corners[i]);
 }
 
+/** @type {(stops: Pair[], from: number, each: (done: number) => void) => void} */
 function play(stops, from, each) {
   stop();
   byId("plane").scrollIntoView({ block: "nearest", behavior: calm.matches ? "auto" : "smooth" });
@@ -472,7 +500,8 @@ function play(stops, from, each) {
   playing = calm.matches ? playCalmly(stops, from, each) : window.requestAnimationFrame(step);
 }
 
-/** With reduced motion: from stop to stop, without anything in between. */
+/** With reduced motion: from stop to stop, without anything in between.
+ * @type {(stops: Pair[], from: number, each: (done: number) => void) => number} */
 function playCalmly(stops, from, each) {
   const pieces = pieceLengths(robot, stops);
   const whole = pieces.reduce((sum, piece) => sum + piece, 0);
@@ -503,6 +532,7 @@ function stop() {
   byId("play").textContent = "Play";
 }
 
+/** @type {() => boolean} */
 function isPlaying() {
   return byId("play").getAttribute("aria-pressed") === "true";
 }
@@ -542,6 +572,7 @@ function playFlip() {
 
 /* --- a link that restores the state ------------------------------------------------------------ */
 
+/** @type {() => string} */
 function hashOf() {
   const shown = Object.keys(state.show).filter((name) => state.show[name]);
   const values = {
@@ -586,7 +617,8 @@ function restore() {
   }
 }
 
-/** A held joint's value, within its limits. */
+/** A held joint's value, within its limits.
+ * @type {(value: number, j: number) => number} */
 function heldValue(value, j) {
   const { limits } = robot.joints[j];
   return limits ? Math.min(limits[1], Math.max(limits[0], value)) : value;
@@ -638,13 +670,15 @@ function buildPose() {
   byId("pose").replaceChildren(...rows);
 }
 
-/** The range of a joint's slider: what is drawn, its limits, or one turn. */
+/** The range of a joint's slider: what is drawn, its limits, or one turn.
+ * @type {(joint: Joint, j: number) => number[]} */
 function rangeShown(joint, j) {
   const k = robot.free.indexOf(j);
   if (k >= 0) return [robot.views[k].low, robot.views[k].high];
   return joint.limits || [-Math.PI, Math.PI];
 }
 
+/** @type {(j: number, value: number) => void} */
 function setJoint(j, value) {
   if (robot.free.includes(j)) {
     movePose(pairOf(state.q.map((old, i) => (i === j ? value : old))));
@@ -713,6 +747,7 @@ function buildScale() {
   byId("play").addEventListener("click", playWalk);
 }
 
+/** @type {(scale: number) => void} */
 function setScale(scale) {
   stop();
   state.scale = scale;
@@ -753,7 +788,8 @@ function goHome() {
 
 /* --- hands and keys ---------------------------------------------------------------------------- */
 
-/** Where a pointer is, in a picture's own pixels. */
+/** Where a pointer is, in a picture's own pixels.
+ * @type {(svg: SVGSVGElement, event: MouseEvent) => Point} */
 function pixelOf(svg, event) {
   const box = svg.getBoundingClientRect();
   const view = svg.viewBox.baseVal;
@@ -763,7 +799,8 @@ function pixelOf(svg, event) {
   ];
 }
 
-/** Drag from a handle, or with a mouse from anywhere; a tap moves at once. */
+/** Drag from a handle, or with a mouse from anywhere; a tap moves at once.
+ * @type {(svg: SVGSVGElement, move: (pixel: Point) => void) => void} */
 function draggable(svg, move) {
   let held = null;
   svg.addEventListener("pointerdown", (event) => {
@@ -790,6 +827,7 @@ function draggable(svg, move) {
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
+/** @type {(svg: SVGSVGElement, step: (direction: number[], large: boolean) => void) => void} */
 function onKeys(svg, step) {
   svg.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -802,12 +840,14 @@ function onKeys(svg, step) {
   });
 }
 
+/** @type {(direction: number[], large: boolean) => void} */
 function stepJoints(direction, large) {
   const size = (k) =>
     slice.map.kinds[k] === "revolute" ? DEGREE : (robot.views[k].high - robot.views[k].low) / 200;
   movePose(pairOf(state.q).map((value, k) => value + direction[k] * size(k) * (large ? 10 : 1)));
 }
 
+/** @type {(direction: number[], large: boolean) => void} */
 function stepTool(direction, large) {
   const size = robot.reach * (large ? 0.05 : 0.01);
   const place = toolAt(slice.map, pairOf(state.q));

@@ -9,7 +9,8 @@ function make(name, attributes = {}, text = null) {
   return element;
 }
 
-/** A picture with two scales: `at` leads from values to pixels, `from` back. */
+/** A picture with two scales: `at` leads from values to pixels, `from` back.
+ * @type {(svg: SVGSVGElement, ranges: number[][], margin: Picture["box"], equal: boolean) => Picture} */
 function picture(svg, ranges, margin, equal) {
   const width = Math.max(240, svg.parentElement.clientWidth);
   const height = Math.round(Math.min(width, 560));
@@ -31,12 +32,14 @@ function picture(svg, ranges, margin, equal) {
   };
 }
 
+/** @type {(points: Point[], closed?: boolean) => string} */
 function pathText(points, closed = false) {
   const text = points.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join("L");
   return points.length ? `M${text}${closed ? "Z" : ""}` : "";
 }
 
-/** A clipped layer inside a picture's box. */
+/** A clipped layer inside a picture's box.
+ * @type {(drawn: Picture, name: string, clipped?: boolean) => SVGGElement} */
 function layer(drawn, name, clipped = true) {
   const group = make(
     "g",
@@ -46,6 +49,7 @@ function layer(drawn, name, clipped = true) {
   return group;
 }
 
+/** @type {(drawn: Picture) => void} */
 function clear(drawn) {
   drawn.svg.replaceChildren();
   const { left, top, right, bottom } = drawn.box;
@@ -56,6 +60,7 @@ function clear(drawn) {
 
 /* --- joint space ------------------------------------------------------------------------------- */
 
+/** @type {(robot: Robot, state: State, slice: Slice) => JointPicture} */
 function drawJointSpace(robot, state, slice) {
   const svg = document.getElementById("joints");
   const ranges = robot.views.map((view) => [view.low, view.high]);
@@ -74,6 +79,7 @@ function drawJointSpace(robot, state, slice) {
   return drawn;
 }
 
+/** @type {(robot: Robot, drawn: Picture) => void} */
 function drawJointAxes(robot, drawn) {
   const group = layer(drawn, "axes", false);
   const { left, top, right, bottom } = drawn.box;
@@ -100,7 +106,8 @@ function drawJointAxes(robot, drawn) {
   });
 }
 
-/** Round values to label an axis with. */
+/** Round values to label an axis with.
+ * @type {(view: View, turn: boolean) => number[]} */
 function ticks(view, turn) {
   const span = view.high - view.low;
   const unit = 10 ** Math.floor(Math.log10(span / 3));
@@ -114,12 +121,14 @@ function ticks(view, turn) {
   return found;
 }
 
-/** A joint value as the page writes it: whole degrees, or a length. */
+/** A joint value as the page writes it: whole degrees, or a length.
+ * @type {(joint: Joint, value: number) => string} */
 function shown(joint, value) {
   const number = joint.kind === "revolute" ? (value * 180) / Math.PI : value;
   return String(Number(number.toFixed(joint.kind === "revolute" ? 0 : 2))).replace("-", "−");
 }
 
+/** @type {(drawn: Picture, slice: Slice) => void} */
 function drawCells(drawn, robot, slice) {
   const group = layer(drawn, "cells");
   const outlines = { home: "", away: "" };
@@ -132,6 +141,7 @@ function drawCells(drawn, robot, slice) {
   for (const [name, d] of Object.entries(outlines)) group.append(make("path", { class: name, d }));
 }
 
+/** @type {(drawn: Picture, slice: Slice) => SVGLineElement[]} */
 function drawSingular(drawn, slice) {
   const group = layer(drawn, "singular-lines");
   drawn.singular = slice.lines.map((value) => {
@@ -158,7 +168,8 @@ function drawSingular(drawn, slice) {
   });
 }
 
-/** All arcs, again one turn further where a joint turns all the way round. */
+/** All arcs, again one turn further where a joint turns all the way round.
+ * @type {(drawn: Picture, robot: Robot, slice: Slice) => (SVGPathElement | SVGTextElement)[]} */
 function drawArcs(drawn, robot, slice) {
   const group = layer(drawn, "arcs");
   const shifts = robot.views.map((view) => (view.wraps && slice.exact ? [-TURN, 0, TURN] : [0]));
@@ -177,7 +188,8 @@ function drawArcs(drawn, robot, slice) {
   drawn.arcs.push(...nameArcs(drawn, slice));
 }
 
-/** Write a boundary's name beside the longest of its arcs, outside the home component. */
+/** Write a boundary's name beside the longest of its arcs, outside the home component.
+ * @type {(drawn: Picture, slice: Slice) => SVGTextElement[]} */
 function nameArcs(drawn, slice) {
   const longest = new Map();
   for (const arc of slice.arcs.filter((one) => one.home)) {
@@ -214,11 +226,13 @@ function nameArcs(drawn, slice) {
   return names;
 }
 
+/** @type {(value: number, low: number, high: number) => number} */
 function between(value, low, high) {
   return Math.min(high, Math.max(low, value));
 }
 
-/** The middle of a polyline by length, and the unit normal to the right of its direction. */
+/** The middle of a polyline by length, and the unit normal to the right of its direction.
+ * @type {(points: Point[]) => Point[]} */
 function middleOf(points) {
   const steps = points.slice(1).map((p, i) => Math.hypot(p[0] - points[i][0], p[1] - points[i][1]));
   let rest = steps.reduce((sum, step) => sum + step, 0) / 2;
@@ -236,6 +250,7 @@ function middleOf(points) {
   ];
 }
 
+/** @type {(drawn: Picture, polygon: VertexPolygon, scale: number) => void} */
 function drawPolygon(drawn, robot, state) {
   const { vertices, centroid, largest } = robot.polygon;
   const group = layer(drawn, "scaled");
@@ -270,7 +285,8 @@ function drawPolygon(drawn, robot, state) {
   });
 }
 
-/** Random poses: round dots where safe, crosses where not. */
+/** Random poses: round dots where safe, crosses where not.
+ * @type {(group: SVGGElement, sample: SamplePose[], place: (one: SamplePose) => Point) => void} */
 function drawMarks(group, sample, place) {
   const d = { dots: "", crosses: "" };
   for (const one of sample) {
@@ -282,7 +298,8 @@ function drawMarks(group, sample, place) {
     group.append(make("path", { class: name, d: text }));
 }
 
-/** A handle to drag, with room around it for a finger. */
+/** A handle to drag, with room around it for a finger.
+ * @type {(svg: SVGSVGElement, mark: SVGElement) => Handle} */
 function handle(svg, mark) {
   const group = make("g", { class: "handle-group" });
   const room = make("circle", { class: "reach-me", r: 24 });
@@ -293,7 +310,8 @@ function handle(svg, mark) {
 
 /* --- the arm ----------------------------------------------------------------------------------- */
 
-/** The part of the plane that the arm can reach, its bodies included, whatever joint moves. */
+/** The part of the plane that the arm can reach, its bodies included, whatever joint moves.
+ * @type {(robot: Robot) => number[][]} */
 function planeBox(robot) {
   const [xs, ys] = [[0], [0]];
   const note = ([x, y]) => {
@@ -316,7 +334,8 @@ function planeBox(robot) {
   ];
 }
 
-/** The pose that the page opens with, and each held joint on its own at places of its range. */
+/** The pose that the page opens with, and each held joint on its own at places of its range.
+ * @type {(robot: Robot) => Pose[]} */
 function posesOfHeld(robot) {
   const others = robot.joints.flatMap((joint, j) => {
     if (robot.free.includes(j)) return [];
@@ -328,7 +347,8 @@ function posesOfHeld(robot) {
   return [robot.q, ...others];
 }
 
-/** Everything of the arm that takes room in the plane. */
+/** Everything of the arm that takes room in the plane.
+ * @type {(robot: Robot, q: Pose) => Point[]} */
 function planePlaces(robot, q) {
   const [found, axes] = [frames(robot, q), viewAxes(robot, q)];
   const corners = robot.bodies.flatMap((body) =>
@@ -338,6 +358,7 @@ function planePlaces(robot, q) {
   return [...corners, ...points, ...found.map((frame) => frame.place)].map((p) => project(axes, p));
 }
 
+/** @type {(robot: Robot, q: Pose, pair: Pair) => Pose} */
 function withPair(robot, q, pair) {
   const pose = [...q];
   robot.free.forEach((j, k) => {
@@ -346,6 +367,7 @@ function withPair(robot, q, pair) {
   return pose;
 }
 
+/** @type {(robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
 function drawPlane(robot, state, slice, box) {
   const svg = document.getElementById("plane");
   const drawn = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
@@ -366,6 +388,7 @@ function drawPlane(robot, state, slice, box) {
   return drawn;
 }
 
+/** @type {(robot: Robot, drawn: Picture) => void} */
 function drawScaleBar(robot, drawn) {
   const group = layer(drawn, "axes", false);
   const [left] = drawn.from([0, 0]);
@@ -384,6 +407,7 @@ function drawScaleBar(robot, drawn) {
   );
 }
 
+/** @type {(drawn: Picture, slice: Slice) => void} */
 function drawWorkspace(drawn, slice) {
   const group = layer(drawn, "images");
   for (const image of Object.values(slice.images)) {
@@ -392,7 +416,8 @@ function drawWorkspace(drawn, slice) {
   }
 }
 
-/** Walls of the plane: the line, and a tint of what lies beyond it. */
+/** Walls of the plane: the line, and a tint of what lies beyond it.
+ * @type {(robot: Robot, drawn: Picture, state: State) => SVGPathElement[]} */
 function drawWalls(robot, drawn, state) {
   const group = layer(drawn, "walls");
   const corners = [
@@ -426,7 +451,8 @@ function drawWalls(robot, drawn, state) {
   thin(group.querySelectorAll("text"), drawn.width);
 }
 
-/** Keep names inside the picture, and leave out one that would cover another. */
+/** Keep names inside the picture, and leave out one that would cover another.
+ * @type {(names: Iterable<SVGTextElement>, width: number) => void} */
 function thin(names, width) {
   const kept = [];
   for (const name of names) {
@@ -444,14 +470,16 @@ function thin(names, width) {
   }
 }
 
-/** Write a wall's name where its line leaves the picture on the right, or at the top. */
+/** Write a wall's name where its line leaves the picture on the right, or at the top.
+ * @type {(wall: Wall, ends: Point[], drawn: Picture) => SVGTextElement} */
 function wallLabel(wall, ends, drawn) {
   const [x, y] = ends.reduce((best, one) => (one[0] - one[1] > best[0] - best[1] ? one : best));
   const at = { x: Math.min(drawn.width - 8, x - 6), y: Math.max(16, y - 6), "text-anchor": "end" };
   return make("text", { class: "wall-name", ...at }, wall.name);
 }
 
-/** The part of a polygon where `side` is negative (Sutherland and Hodgman). */
+/** The part of a polygon where `side` is negative (Sutherland and Hodgman).
+ * @type {(corners: Point[], side: (p: Point) => number) => Point[]} */
 function clipBelow(corners, side) {
   return corners.flatMap((a, i) => {
     const b = corners[(i + 1) % corners.length];
@@ -460,6 +488,7 @@ function clipBelow(corners, side) {
   });
 }
 
+/** @type {(corners: Point[], side: (p: Point) => number) => Point[]} */
 function lineThrough(corners, side) {
   return corners.flatMap((a, i) => {
     const b = corners[(i + 1) % corners.length];
@@ -467,12 +496,14 @@ function lineThrough(corners, side) {
   });
 }
 
+/** @type {(a: Point, b: Point, side: (p: Point) => number) => Point} */
 function crossing(a, b, side) {
   const share = side(a) / (side(a) - side(b));
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }
 
-/** The elements that move with the pose; `placeArm` moves them. */
+/** The elements that move with the pose; `placeArm` moves them.
+ * @type {(robot: Robot, drawn: Picture) => ArmParts} */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
   drawn.bodies = robot.bodies.map((body) =>
@@ -491,7 +522,8 @@ function addArm(robot, drawn) {
   );
 }
 
-/** Move the arm to a pose; `lit` are the points and boundaries that stand out. */
+/** Move the arm to a pose; `lit` are the points and boundaries that stand out.
+ * @type {(robot: Robot, drawn: PlanePicture, state: State, lit: Lit) => void} */
 function placeArm(robot, drawn, state, lit) {
   const [found, axes] = [frames(robot, state.q), viewAxes(robot, state.q)];
   const at = (place) => drawn.at(project(axes, place));
@@ -510,11 +542,13 @@ function placeArm(robot, drawn, state, lit) {
   drawn.group.setAttribute("transform", `translate(${places[robot.tool].join(" ")})`);
 }
 
+/** @type {(element: SVGElement, point: Point, prefix?: string) => void} */
 function moveTo(element, [x, y], prefix = "") {
   element.setAttribute(`${prefix}x`, x);
   element.setAttribute(`${prefix}y`, y);
 }
 
+/** @type {(robot: Robot, drawn: PlanePicture, state: State, lit: Lit, i: number, place: Point) => void} */
 function placePoint(robot, drawn, state, lit, i, [x, y]) {
   const [mark, name, point] = [drawn.points[i], drawn.names[i], robot.points[i]];
   const size = drawn.at([point.radius, 0])[0] - drawn.at([0, 0])[0];
@@ -528,7 +562,8 @@ function placePoint(robot, drawn, state, lit, i, [x, y]) {
   moveTo(name, [x + (left ? -7 : 7), y + (left ? 13 : -6)]);
 }
 
-/** A dashed line between the points of a pair that stands out. */
+/** A dashed line between the points of a pair that stands out.
+ * @type {(line: SVGLineElement, wall: Wall, places: Point[], lit: Lit) => void} */
 function placeGap(line, wall, places, lit) {
   const near = wall.kind === "pair" && lit.boundaries.has(wall.name);
   line.toggleAttribute("hidden", !near);
@@ -539,7 +574,8 @@ function placeGap(line, wall, places, lit) {
   line.classList.toggle("lit", lit.violated.has(wall.name));
 }
 
-/** The arm without bodies at another pose: a line from base to tool. */
+/** The arm without bodies at another pose: a line from base to tool.
+ * @type {(robot: Robot, drawn: Picture, q: Pose) => string} */
 function skeleton(robot, drawn, q) {
   const [found, axes] = [frames(robot, q), viewAxes(robot, q)];
   const places = [...found.map((frame) => frame.place), pointPlaces(robot, q)[robot.tool]];
