@@ -18,7 +18,8 @@ from numpy.testing import assert_allclose
 from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
-from qbound.explorer.page import explorer_data, explorer_page
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import ARITHMETIC, SCRIPTS, explore, explorer_page
 from qbound.measures.scaling import least_along_edges
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
@@ -116,7 +117,7 @@ class Script:
     def __init__(self, data):
         self.data = data
         self.context = quickjs.Context()
-        self.context.eval((TEMPLATES / "explorer_math.js").read_text(encoding="utf-8"))
+        self.context.eval("".join((TEMPLATES / name).read_text("utf-8") for name in ARITHMETIC))
         self.context.eval(f"const robot = {json.dumps(data)};")
         self.context.eval("const map = toolMap(robot, robot.q); const arm = armOf(map);")
 
@@ -468,7 +469,7 @@ def test_a_robots_names_cannot_become_markup():
 
 
 def test_the_script_writes_names_as_text_only():
-    code = "".join((TEMPLATES / name).read_text() for name in ("explorer.js", "explorer_math.js"))
+    code = "".join((TEMPLATES / name).read_text("utf-8") for name in SCRIPTS)
     assert re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
     assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
 

@@ -249,6 +249,8 @@ interface Picture {
   from: (pixel: Point) => number[];
 }
 
+type Side = (point: Point) => number; // of a line: its sign says on which side a point lies
+
 interface Handle {
   group: SVGGElement;
   mark: SVGElement;
