@@ -474,6 +474,79 @@ def test_the_script_writes_names_as_text_only():
     assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
 
 
+def code_of(name):
+    text = (TEMPLATES / name).read_text(encoding="utf-8")
+    return re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+
+
+def test_every_name_of_a_script_is_used():
+    code = "".join(map(code_of, SCRIPTS))
+    names = re.findall(r"^(?:function|const|let) (\w+)", code, re.MULTILINE)
+    assert len(names) > 100
+    assert [name for name in names if len(re.findall(rf"\b{name}\b", code)) < 2] == []
+
+
+def test_every_script_stands_in_the_page():
+    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize(
+    ("interface", "pick"),
+    [
+        ("Robot", lambda data: data),
+        ("Joint", lambda data: data["joints"][0]),
+        ("RobotPoint", lambda data: data["points"][0]),
+        ("View", lambda data: data["views"][0]),
+        ("Limit", lambda data: data["limits"][0]),
+        ("Component", lambda data: data["components"][0]),
+        ("VertexPolygon", lambda data: data["polygon"]),
+    ],
+)
+def test_what_the_scripts_are_told_has_the_declared_fields(interface, pick):
+    robot = load_robot("minervabot-v2")
+    data = explorer_data(robot, solve(paper_rule.problem(robot), robot.home), rule="paper")
+    declared = (TEMPLATES / "explorer.d.ts").read_text(encoding="utf-8")
+    [fields] = re.findall(rf"interface {interface} {{\n(.*?)\n}}", declared, re.DOTALL)
+    assert re.findall(r"^  (\w+):", fields, re.MULTILINE) == list(pick(data))
+
+
+# --- in a notebook -------------------------------------------------------------------------------
+
+
+class Frame(HTMLParser):
+    """The one frame of a notebook's output, with its attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.attributes = [], {}
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes |= dict(attributes)
+
+
+def test_a_notebook_shows_the_page_in_a_frame_of_its_own():
+    robot, _, region, _ = case("RR")
+    shown = explore(robot, region)
+    frame = Frame()
+    frame.feed(shown._repr_html_())
+    assert frame.tags == ["iframe"]
+    assert frame.attributes["srcdoc"] == shown.html == explorer_page(robot, region)
+    assert frame.attributes["sandbox"] == "allow-scripts"
+
+
+def test_an_explorer_is_named_in_one_short_line():
+    robot, _, region, _ = case("RR")
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(robot, region)))
+
+
+def test_an_explorer_is_saved_as_the_page(tmp_path):
+    robot, _, region, _ = case("RR")
+    shown = explore(robot, region)
+    shown.save(tmp_path / "arm.html")
+    assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
+
+
 # --- the command ---------------------------------------------------------------------------------
 
 

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from test_explorer import ROBOTS, SPATIAL
 
 from qbound import find_region, load_robot
-from qbound.explorer.page import explorer_page
+from qbound.explorer.page import explore, explorer_page
 from qbound.region.region import violated
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
@@ -443,3 +443,17 @@ def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):
     page = open_explorer("nasty")
     assert page.inner_text("h1").startswith("<img src=x")
     assert page.evaluate("window.hit") is None
+
+
+def test_in_a_notebook_all_controls_work_and_no_link_is_offered(open_explorer, files, tmp_path):
+    robot = load_robot("minervabot-v2")
+    files["notebook"] = tmp_path / "notebook.html"
+    output = explore(robot, find_region(robot))._repr_html_()
+    files["notebook"].write_text(f"<!doctype html><p>{output}</p>", encoding="utf-8")
+    page = open_explorer("notebook").frame_locator("iframe")
+    page.locator("#value-0").fill("80")
+    assert "Not safe" in page.locator("#status").inner_text()
+    page.locator("#play").click()
+    assert page.locator("#play").inner_text() == "Pause"
+    assert not page.locator("#share").is_visible()
+    assert not page.locator("#full-page").is_visible()

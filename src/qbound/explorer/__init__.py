@@ -1,4 +1,4 @@
-"""A page in which one moves the arm: which poses are safe, and what stands between them?
+"""A page in which one moves the arm, and sees which poses are safe and what stands between them.
 
 ``data`` is what the page is told, ``page`` puts it together with the scripts and the style in
 ``web``; `explore` shows it in a notebook or saves it.
