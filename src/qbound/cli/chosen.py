@@ -8,7 +8,7 @@ from dataclasses import replace
 from qbound.export.polygons import from_lowest
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
-from qbound.region.region import Component, Region, find_region, solve
+from qbound.region.region import Region, find_region, solve
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -42,11 +42,3 @@ def region_by_rule(robot: Robot, rule: str, values: dict[int, float]) -> Region:
     else:
         region = solve(paper_rule.problem(robot), robot.home)
     return replace(region, components=tuple(map(from_lowest, region.components)))
-
-
-def component_of(region: Region, k: int) -> Component:
-    """Return a component by its number, from 0 as in the JSON."""
-    count = len(region.components)
-    if not 0 <= k < count:
-        raise ValueError(f"no component {k}; there are {count}, numbered from 0")
-    return region.components[k]

@@ -9,7 +9,9 @@ import numpy as np
 
 from qbound import __version__
 from qbound.cli.chosen import add_robot
-from qbound.cli.values import configuration, json_text, write_text
+from qbound.cli.files import write_text
+from qbound.cli.values import configuration
+from qbound.export.formats import json_text
 from qbound.measures.nearest import BoundaryPoint, nearest_boundary
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot

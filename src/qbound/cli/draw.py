@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, component_of, region_by_rule
-from qbound.cli.values import check_targets, configuration, held, write_all
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.files import check_targets, write_all
+from qbound.cli.values import configuration, held
 from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import plane_of_motion
+from qbound.paths.route import nth_component
 
 
 def add_to(commands: Any) -> None:
@@ -60,7 +62,7 @@ def _picture(
     if both or options.region:
         region = region_by_rule(robot, options.rule, values)
         first, second = robot.free(values)
-        numbered = component_of(region, options.component) if region.components else None
+        numbered = nth_component(region, options.component) if region.components else None
         chart = Chart(region, (first, second), numbered)
     plane = (plane_of_motion(robot) or (0, 2)) if both or options.arm else None
     kind = Path(options.output or ".svg").suffix.removeprefix(".").lower() or "svg"

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from functools import cache, partial
 from typing import Any
 
 from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
-from qbound.cli.values import Content, check_targets, held, joint_units, json_text, write_all
+from qbound.cli.files import Output, check_targets, write_asked
+from qbound.cli.values import held
+from qbound.export.document import loop_content
+from qbound.export.formats import json_text
+from qbound.export.outlines import (
+    find_outlines,
+    outlines_csv,
+    outlines_geojson,
+    outlines_npz,
+)
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
-from qbound.region.arcs import Arc
+from qbound.model.units import joint_units
 from qbound.region.region import Component, Region, violated
 from qbound.workspace.areas import NoHomeError, find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
@@ -47,11 +56,11 @@ def run(options: argparse.Namespace) -> int:
     """Find the region; 1 if the home pose is not in it."""
     robot = load_robot(options.robot)
     files = [options.svg, options.csv, options.geojson, options.npz, options.json]
-    check_targets([file for file in files if file])
+    check_targets(files)
     values = held(robot, options.slice)
     region = region_by_rule(robot, options.rule, values)
     content = region_content(robot, region, options.rule, values)
-    write_all(_outputs(options, robot, region, content, values))
+    write_asked(_outputs(options, robot, region, content, values))
     if "-" not in files:
         _say(region, content, joint_units(robot, robot.free(values)))
     return 0 if content["home"]["feasible"] else 1
@@ -63,23 +72,17 @@ def _outputs(
     region: Region,
     content: dict[str, Any],
     values: dict[int, float],
-) -> list[tuple[str, Content]]:
+) -> list[Output]:
     """Make what was asked for; files in the order in which they are named here."""
-    joints, free = content["joints"], robot.free(values)
-    units, outputs = joint_units(robot, free), list[tuple[str, Content]]()
-    if options.svg:
-        outputs.append((options.svg, _draw(robot, content["home"]["q"], region, free)))
-    if options.csv or options.geojson or options.npz:
-        drawn = outlines(region, options.deviation)
-        if options.csv:
-            outputs.append((options.csv, polygon_csv(drawn, joints, units)))
-        if options.geojson:
-            outputs.append((options.geojson, polygon_json(region, drawn, joints, units)))
-        if options.npz:
-            outputs.append((options.npz, polygon_npz(region, drawn, joints, units)))
-    if options.json:
-        outputs.append((options.json, json_text(content)))
-    return outputs
+    free = robot.free(values)
+    drawn = cache(partial(find_outlines, robot, region, free, options.deviation))
+    return [
+        (options.svg, lambda: _draw(robot, content["home"]["q"], region, free)),
+        (options.csv, lambda: outlines_csv(drawn())),
+        (options.geojson, lambda: json_text(outlines_geojson(drawn()), None)),
+        (options.npz, lambda: outlines_npz(drawn())),
+        (options.json, lambda: json_text(content)),
+    ]
 
 
 def region_content(
@@ -129,21 +132,6 @@ def _component_content(component: Component) -> dict[str, Any]:
             for vertex in component.vertices
         ],
         "loops": [loop_content(loop) for loop in component.loops],
-    }
-
-
-def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
-    """Return the JSON form of a closed walk."""
-    return {
-        "arcs": [
-            {
-                "boundary": arc.boundary,
-                "branch": arc.branch,
-                "from": arc.points[0].tolist(),
-                "to": arc.points[-1].tolist(),
-            }
-            for arc in loop
-        ]
     }
 
 

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.functions import clearance, pair_vector, position
+from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import meetings
 from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.units import joint_units, unit_of
 from qbound.paths.traversal import Traversal
 from qbound.region.region import Problem
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
@@ -108,7 +110,7 @@ def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> lis
         if pair is None or any(_stops_at(walk, x) for x in pair):
             continue
         if all(abs(pair - (c.first.s, c.second.s)).max() >= SAME_PLACE for c in found):
-            first, second = (Place(float(x), walk.at(x)[0]) for x in pair)
+            first, second = (_place(walk, x) for x in pair)
             found.append(Crossing(path(pair[:1])[0], first, second))
     return sorted(found, key=lambda c: (c.first.s, c.second.s))
 
@@ -145,12 +147,12 @@ def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:
     """Places between rows of different sign, by bisection."""
     signs = np.sign(form(walk.at(grid)))
     changes = np.nonzero(signs[1:] != signs[:-1])[0]
-    low, high, sign = grid[changes], grid[changes + 1], signs[changes]
-    for _ in range(52 if len(changes) else 0):
-        middle = (low + high) / 2
-        before = np.sign(form(walk.at(middle))) == sign
-        low, high = np.where(before, middle, low), np.where(before, high, middle)
-    return [Place(float(s), walk.at(s)[0]) for s in low]
+
+    def as_before(s: Floats) -> NDArray[np.bool_]:
+        return np.asarray(np.sign(form(walk.at(s))) == signs[changes])
+
+    low, _ = last_before(as_before, grid[changes], grid[changes + 1])
+    return [_place(walk, s) for s in low]
 
 
 def boundaries(robot: Robot) -> list[Boundary]:
@@ -159,9 +161,8 @@ def boundaries(robot: Robot) -> list[Boundary]:
     The margin of a pair is ``|B| - d_min``; that of a half-space the height over it.
     """
     found = [_of_boundary(robot, boundary) for boundary in robot.boundaries if boundary.used]
-    for j, joint in enumerate(robot.joints):
+    for j, (joint, unit) in enumerate(zip(robot.joints, joint_units(robot), strict=True)):
         if joint.limits is not None:
-            unit = "rad" if joint.kind == "revolute" else robot.length_unit
             names = f"{joint.name}.lower", f"{joint.name}.upper"
             found += _limits(j, joint.limits, names, unit)
     return found
@@ -179,45 +180,45 @@ def stated_boundaries(robot: Robot, problem: Problem) -> list[Boundary]:
         found.append(Boundary(name, robot.length_unit, form, scale))
     for j, ends in enumerate(problem.ranges):
         if ends is not None:
-            unit = "rad" if problem.forms.kinds[j] == "revolute" else robot.length_unit
+            unit = unit_of(problem.forms.kinds[j], robot)
             found += _limits(j, ends, problem.limits[j], unit)
     return found
 
 
 def least_margin(walk: Traversal, boundary: Boundary) -> Margin:
-    """Find the smallest margin along a path, and where the path leaves if it does.
+    """Find the smallest margin along a path, and where the path leaves if it does."""
+    value, place = lowest(walk, boundary.margin)
+    return Margin(boundary, value, place, _leaves(walk, boundary, place.s))
+
+
+def lowest(walk: Traversal, function: Form) -> tuple[float, Place]:
+    """Return the smallest value of a function of the joint values along a path, and its place.
 
     The smallest row is the start; the interval around it is divided again until it is a point.
     """
-    grid = _grid(walk)
-    margins = boundary.margin(walk.at(grid))
-    i = int(margins.argmin())
-    low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
-    for _ in range(12):
-        fine = np.linspace(low, high, 33)
-        values = boundary.margin(walk.at(fine))
-        j = int(values.argmin())
-        low, high = fine[max(j - 1, 0)], fine[min(j + 1, 32)]
-    value, s = min((float(values[j]), float(fine[j])), (float(margins[i]), float(grid[i])))
-    leaves = _leaves(walk, boundary, np.sort(np.append(grid, s)))
-    return Margin(boundary, value, Place(s, walk.at(s)[0]), leaves)
+    s, found = _grid(walk), list[tuple[float, float]]()
+    for _ in range(13):
+        values = function(walk.at(s))
+        i = int(values.argmin())
+        found.append((float(values[i]), float(s[i])))
+        s = np.linspace(s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 33)
+    value, at = min(found[0], found[-1])
+    return value, _place(walk, at)
 
 
-def _leaves(walk: Traversal, boundary: Boundary, grid: Floats) -> Place | None:
-    """First place at which the margin is negative beyond rounding."""
-    rounding = ON_BOUNDARY * boundary.scale
-    outside = boundary.margin(walk.at(grid)) < -rounding
-    if not outside.any():
+def _leaves(walk: Traversal, boundary: Boundary, least: float) -> Place | None:
+    """First place at which the margin is negative beyond rounding; `least`: where it is least."""
+
+    def inside(s: Floats) -> NDArray[np.bool_]:
+        return np.asarray(boundary.margin(walk.at(s)) >= -ON_BOUNDARY * boundary.scale)
+
+    grid = np.sort(np.append(_grid(walk), least))
+    kept = inside(grid)
+    if kept.all():
         return None
-    i = int(outside.argmax())
-    low, high = grid[max(i - 1, 0)], grid[i]
-    for _ in range(52):
-        middle = (low + high) / 2
-        if boundary.margin(walk.at(middle))[0] < -rounding:
-            high = middle
-        else:
-            low = middle
-    return Place(float(high), walk.at(high)[0])
+    i = int(kept.argmin())
+    _, high = last_before(inside, grid[[max(i - 1, 0)]], grid[[i]])
+    return _place(walk, high[0])
 
 
 def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
@@ -232,6 +233,10 @@ def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
     form = clearance(robot, boundary)
     scale = float(np.abs(form.coefficients).max())
     return Boundary(boundary.name, robot.length_unit, form, scale)
+
+
+def _place(walk: Traversal, s: float) -> Place:
+    return Place(float(s), walk.at(s)[0])
 
 
 def _limits(j: int, ends: tuple[float, float], names: tuple[str, str], unit: str) -> list[Boundary]:
