@@ -18,12 +18,12 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
-from oracles import packaged_table, point_seen_from
 from shapely.geometry import Polygon, shape
 
 from qbound import find_region, load_robot
 from qbound.cli import command_parsers, main
 from qbound.cli.files import write_all
+from support.oracles import packaged_table, point_seen_from
 
 MINERVA = load_robot("minervabot-v2")
 ARM = """

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsers import refuse_remote, settle
 from numpy.testing import assert_allclose
-from test_explorer import ROBOTS, SPATIAL
 
 from qbound import find_region, load_robot
 from qbound.explorer.page import explorer_page
-from qbound.region.region import violated
+from qbound.region import violated
+from support.arms import ROBOTS, SPATIAL
+from support.browser import refuse_remote, settle
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}

@@ -32,7 +32,6 @@ from qbound.proofs.reports import (
     paving_lines,
 )
 from qbound.sampling import keeps_clear, sample
-from qbound.workspace.planar import planar_arm
 from qbound.workspace.report import workspace_report
 
 MINERVA = load_robot("minervabot-v2")
@@ -51,7 +50,7 @@ def follows_schema(content, name) -> None:
 
 def test_units_are_rad_and_length_inside_and_the_files_own_outside():
     assert joint_units(MINERVA) == ["rad", "rad"]
-    assert joint_units(BOOM, [1]) == [BOOM.length_unit]
+    assert joint_units(BOOM) == ["rad", BOOM.length_unit]
     assert file_units(MINERVA) == [MINERVA.angle_unit] * 2
     assert file_units(BOOM) == [BOOM.angle_unit, BOOM.length_unit]
 
@@ -106,7 +105,7 @@ def test_bisection_of_nothing_asks_nothing():
 def test_outlines_have_the_areas_of_their_components_in_each_format(name):
     robot = load_robot(name)
     region = find_region(robot)
-    drawn = find_outlines(robot, region, [0, 1], 1e-3)
+    drawn = find_outlines(region, 1e-3)
     features = outlines_geojson(drawn)["features"]
     assert len(features) == len(region.components)
     for feature, component in zip(features, region.components, strict=True):
@@ -152,9 +151,8 @@ def test_a_sample_is_the_same_in_each_format():
 
 
 def test_a_report_on_a_workspace_says_what_was_asked():
-    arm, problem = planar_arm(MINERVA), REGION.problem
-    asked = {"places": [(-45.0, 20.0), (0.0, 40.0)], "poses": [(0, 0), (0, np.radians(170))]}
-    found = workspace_report(MINERVA, arm, problem, **asked)
+    poses = [(0, 0), (0, np.radians(170))]
+    found = workspace_report(REGION, [(-45.0, 20.0), (0.0, 40.0)], poses)
     assert [at.safe for at in found.places] == [1, 0]
     assert not found.passage.possible
     assert not found.all_safe
@@ -169,12 +167,10 @@ def test_a_report_on_a_workspace_says_what_was_asked():
 
 
 def test_a_report_without_questions_is_safe():
-    found = workspace_report(MINERVA, planar_arm(MINERVA), REGION.problem)
+    found = workspace_report(REGION)
     assert found.all_safe
     assert workspace_document(found)["go"] is None
-    assert workspace_report(
-        MINERVA, planar_arm(MINERVA), REGION.problem, poses=[(0, 0), (0, 0.1)]
-    ).all_safe
+    assert workspace_report(REGION, poses=[(0, 0), (0, 0.1)]).all_safe
 
 
 # --- proofs ---------------------------------------------------------------------------------------

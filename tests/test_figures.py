@@ -12,12 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import packaged_table, point_seen_from
-from test_region import random_robot
 
 from qbound import figures, find_region, load_robot
 from qbound.paths.traversal import traverse
 from qbound.region.paper_rule import vertices
+from support.oracles import packaged_table, point_seen_from
+from support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
 SIX = np.array([vertex.q for vertex in vertices(MINERVA)])

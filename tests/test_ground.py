@@ -667,6 +667,19 @@ def test_no_file_names_a_registry_or_a_place_on_this_machine() -> None:
     assert not found
 
 
+def test_no_test_file_imports_another() -> None:
+    """What two of them need is in `tests/support`: a file can be changed for its own sake."""
+    files = sorted((ROOT / "tests").rglob("*.py"))
+    names = {file.stem for file in files if file.stem.startswith(("test_", "conftest"))}
+    assert len(names) > 40
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+        modules = {node.module or "" for node in imports if isinstance(node, ast.ImportFrom)}
+        modules |= {alias.name for node in imports for alias in node.names}
+        assert not names & {part for module in modules for part in module.split(".")}, file.name
+
+
 def test_the_products_are_not_committed(run: ModuleType) -> None:
     products = [run.VENV, run.CHAPTERS, run.BUILD, run.GENERATED]
     assert not [p for p in tracked() if any(place in p.parents for place in products)]

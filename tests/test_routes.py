@@ -32,7 +32,7 @@ CORNERS = np.array([vertex.q for vertex in REGION.components[0].vertices])
 
 
 def test_a_closed_route_visits_scaled_vertices_and_returns():
-    route = route_along_vertices(MINERVA, REGION, [3, 1, 2], closed=True, scale=0.5)
+    route = route_along_vertices(REGION, [3, 1, 2], closed=True, scale=0.5)
     centre = np.array(Polygon(CORNERS).centroid.coords[0])
     wanted = centre + 0.5 * (CORNERS[[2, 0, 1, 2]] - centre)
     assert_allclose(route.path.q[route.path.stops], wanted, atol=1e-12)
@@ -43,7 +43,7 @@ def test_a_closed_route_visits_scaled_vertices_and_returns():
 
 
 def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
-    route = route_along_arcs(MINERVA, REGION, [2, -4], closed=True)
+    route = route_along_arcs(REGION, [2, -4], closed=True)
     assert route.legs == ("arc 2", "line to arc 4", "arc 4 backwards", "line to the start")
     assert route.stops == ("1", "2", "3", "4", "5")
     ends = [ARCS[1].points[0], ARCS[1].points[-1], ARCS[3].points[-1], ARCS[3].points[0]]
@@ -52,7 +52,7 @@ def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
 
 def test_arcs_that_meet_need_no_line():
     whole = range(1, len(ARCS) + 1)
-    route = route_along_arcs(MINERVA, REGION, whole, closed=True)
+    route = route_along_arcs(REGION, whole, closed=True)
     assert route.legs == tuple(f"arc {k}" for k in whole)
 
 
@@ -75,13 +75,13 @@ def test_arcs_that_meet_need_no_line():
 )
 def test_a_route_that_is_none_is_refused(along, order, more, words):
     with pytest.raises(ValueError, match=words):
-        along(MINERVA, REGION, order, **more)
+        along(REGION, order, **more)
 
 
 def test_a_component_without_vertices_says_so():
     bare = replace(REGION, components=(replace(REGION.components[0], vertices=()),))
     with pytest.raises(ValueError, match="it has no vertex"):
-        route_along_vertices(MINERVA, bare, [1, 2])
+        route_along_vertices(bare, [1, 2])
 
 
 def test_components_count_from_0():
@@ -89,7 +89,7 @@ def test_components_count_from_0():
 
 
 def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
-    route = route_along_vertices(MINERVA, REGION, [1, 2])
+    route = route_along_vertices(REGION, [1, 2])
     turns = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 2))
     places = MINERVA.frames(turns).position("0", "3", "0")
     assert np.linalg.norm(places, axis=1).max() <= stretched_length(MINERVA)
@@ -99,7 +99,7 @@ def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
 def test_a_held_joint_stays():
     first, held = replace(MINERVA.joints[0], parent="-1", frame="0"), {0: 0.3}
     three = replace(MINERVA, joints=(first, *MINERVA.joints), home=np.array([0.3, 0, 0]))
-    route = route_along_vertices(three, find_region(three, held), [1, 2], held=held)
+    route = route_along_vertices(find_region(three, held), [1, 2])
     assert_allclose(route.path.q[:, 0], 0.3)
     assert np.ptp(route.path.q[:, 1:]) > 0
 
@@ -111,7 +111,7 @@ def test_a_route_is_feasible_where_every_place_of_it_is():
     """Round the component's corners, by a fine grid and the boundary functions alone."""
     answers = set()
     for k in range(1, 7):
-        found = report(route_along_vertices(MINERVA, REGION, [k, k % 6 + 1], scale=0.999))
+        found = report(route_along_vertices(REGION, [k, k % 6 + 1], scale=0.999))
         q = found.route.path.at(np.linspace(0, 1, 5001))
         assert found.feasible == keeps_clear(MINERVA, q).all()
         answers.add(found.feasible)
@@ -119,14 +119,14 @@ def test_a_route_is_feasible_where_every_place_of_it_is():
 
 
 def test_the_largest_reach_is_that_of_a_far_finer_path():
-    found = report(route_along_vertices(MINERVA, REGION, [1, 4, 2, 6]))
+    found = report(route_along_vertices(REGION, [1, 4, 2, 6]))
     fine = reach(MINERVA, found.route.path.at(np.linspace(0, 3, 30_001))).max()
     assert fine <= found.largest_reach <= fine + 1e-4
     assert_allclose(reach(MINERVA, found.farthest.q), found.largest_reach)
 
 
 def test_the_document_follows_its_schema_and_the_lines_say_the_same():
-    route = route_along_vertices(MINERVA, REGION, [1, 3, 2, 4], scale=0.9)
+    route = route_along_vertices(REGION, [1, 3, 2, 4], scale=0.9)
     found, times = report(route), lasting(MINERVA, route.path, 12)
     content = json.loads(json.dumps(route_document(found, times)))
     schema = resources.files("qbound") / "schemas" / "traverse.schema.json"
@@ -146,7 +146,7 @@ def test_the_document_follows_its_schema_and_the_lines_say_the_same():
 
 
 def test_a_route_without_times_has_an_empty_column():
-    route = route_along_vertices(MINERVA, REGION, [1, 2], deviation=1.0)
+    route = route_along_vertices(REGION, [1, 2], deviation=1.0)
     header, *rows = csv.reader(io.StringIO(route_csv(route)))
     assert header == ["t_s", "q1_rad", "q2_rad", "x_cm", "y_cm", "z_cm"]
     assert {row[0] for row in rows} == {""}

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import equation_29
 
 from qbound import clearance, load_robot
 from qbound.forms.harmonic import HarmonicForm
@@ -20,6 +19,7 @@ from qbound.measures.scaling import (
     worst_margins,
 )
 from qbound.region.paper_rule import vertices
+from support.oracles import equation_29
 
 MINERVA = load_robot("minervabot-v2")
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])

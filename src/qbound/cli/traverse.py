@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
     robot = load_robot(options.robot)
     route = _route(robot, options)
     times = _in_time(route, options)
-    found = report(route, options.rule)
+    found = report(route)
     outputs: list[Output] = [
         (options.csv, lambda: route_csv(route, times)),
         (options.svg, lambda: _picture(found)),
@@ -88,26 +88,24 @@ def run(options: argparse.Namespace) -> int:
 
 def _route(robot: Robot, options: argparse.Namespace) -> Route:
     """Find the region and go along what the numbers are of."""
-    values = held(robot, options.slice)
-    region = region_by_rule(robot, options.rule, values)
+    region = region_by_rule(robot, options.rule, held(robot, options.slice))
     chosen: dict[str, Any] = {
         "component": options.component,
-        "held": values,
         "closed": options.closed,
         "deviation": options.deviation,
     }
     if not options.arcs:
         if not options.scale > 0:
             raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
-        return route_along_vertices(robot, region, options.order, scale=options.scale, **chosen)
+        return route_along_vertices(region, options.order, scale=options.scale, **chosen)
     if options.scale != 1:
         raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
-    return route_along_arcs(robot, region, options.order, **chosen)
+    return route_along_arcs(region, options.order, **chosen)
 
 
 def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
     """Time the path; None where nothing asks for times and the file states no velocities."""
-    robot, part = route.robot, options.speed_scale
+    robot, part = route.region.robot, options.speed_scale
     if not 0 < part <= 1:
         raise ValueError(f"--speed-scale {part:g}: above 0, at most 1")
     if options.duration is not None:
@@ -122,7 +120,6 @@ def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
 def _picture(found: PathReport) -> bytes:
     from qbound.figures.pictures import Chart, traversal_picture
 
-    route = found.route
-    first, second = route.robot.free(route.held)
-    chart, plane = Chart(route.region, (first, second)), found.plane or (0, 2)
-    return traversal_picture(route.robot, chart, route.path, route.stops, plane)
+    route, region = found.route, found.route.region
+    chart, plane = Chart(region, region.problem.joints), found.plane or (0, 2)
+    return traversal_picture(region.robot, chart, route.path, route.stops, plane)

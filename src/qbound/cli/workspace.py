@@ -13,7 +13,6 @@ from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.model.robotfile import load_robot
 from qbound.workspace.areas import NoHomeError
-from qbound.workspace.planar import planar_arm
 from qbound.workspace.report import WorkspaceReport, workspace_report
 
 
@@ -40,16 +39,15 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
-    robot, rule = load_robot(options.robot), options.rule
+    robot = load_robot(options.robot)
     files = [options.svg, options.json]
     check_targets(files)
     values = held(robot, options.slice)
     places = [place(text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
-    arm = planar_arm(robot, values)
-    problem = region_by_rule(robot, rule, values).problem
+    region = region_by_rule(robot, options.rule, values)
     try:
-        found = workspace_report(robot, arm, problem, rule, values, places=places, poses=poses)
+        found = workspace_report(region, places, poses)
     except NoHomeError as reason:
         print(f"qbound: {reason}", file=sys.stderr)
         return 1
@@ -67,4 +65,4 @@ def run(options: argparse.Namespace) -> int:
 def _picture(found: WorkspaceReport) -> bytes:
     from qbound.figures.pictures import workspace_picture
 
-    return workspace_picture(found.workspace, found.robot.length_unit)
+    return workspace_picture(found.workspace, found.workspace.region.robot.length_unit)

@@ -21,14 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.functions import clearance, position
-from qbound.export.polygons import from_lowest
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import HalfSpace, Joint, Pair, Robot
+from qbound.region import Component, Region
 from qbound.region.arcs import Arc
-from qbound.region.region import Component, Region
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
@@ -290,7 +289,7 @@ def _polygon(region: Region) -> Data | None:
     home = region.home
     if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
         return None
-    vertices = np.array([vertex.q for vertex in from_lowest(home).vertices])
+    vertices = np.array([vertex.q for vertex in home.vertices])
     forms = [region.problem.forms[i] for i in range(len(region.problem.names))]
     try:
         centre = polygon.centroid(vertices)

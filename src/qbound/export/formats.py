@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound import __version__
 from qbound.model.robot import Robot
 from qbound.model.units import joint_units
+from qbound.version import __version__
 
 
 def heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:

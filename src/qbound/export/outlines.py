@@ -1,19 +1,20 @@
-"""Polygons of a region's components as files: CSV, GeoJSON, NumPy arrays; deviation stated."""
+"""Polygons of a region as others read them: CSV, GeoJSON, NumPy arrays, shapely."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.export.formats import csv_text, npz_bytes
 from qbound.export.polygons import Piece, polygons
-from qbound.model.robot import Robot
-from qbound.model.units import joint_units
-from qbound.region.region import Region
+from qbound.region import Region
+
+if TYPE_CHECKING:
+    from shapely import MultiPolygon
 
 Floats = NDArray[np.float64]
 
@@ -25,8 +26,6 @@ class Outlines:
     Attributes
     ----------
     region : Region
-    joints, units : tuple of two str
-        Names of the two joints, and the units of their values.
     pieces : tuple of list of Piece
         Polygons of each component: one, unless it goes round a joint and is cut.
     deviations : tuple of float
@@ -34,8 +33,6 @@ class Outlines:
     """
 
     region: Region
-    joints: tuple[str, ...]
-    units: tuple[str, ...]
     pieces: tuple[list[Piece], ...]
     deviations: tuple[float, ...]
 
@@ -47,15 +44,11 @@ class Outlines:
                     yield c, p, r, ring
 
 
-def find_outlines(
-    robot: Robot, region: Region, joints: Sequence[int], deviation: float = 1e-3
-) -> Outlines:
+def find_outlines(region: Region, deviation: float = 1e-3) -> Outlines:
     """Draw polygons through the arcs of every component of a region.
 
     Parameters
     ----------
-    joints : sequence of two int
-        The joints of the robot that span the region.
     deviation : float
         Largest distance of the polygons from the arcs, in the plane of the two joint values.
 
@@ -65,24 +58,19 @@ def find_outlines(
         If the deviation is not above zero.
     """
     drawn = [polygons(component, deviation) for component in region.components]
-    return Outlines(
-        region,
-        tuple(robot.joints[j].name for j in joints),
-        tuple(joint_units(robot, joints)),
-        tuple(pieces for pieces, _ in drawn),
-        tuple(measured for _, measured in drawn),
-    )
+    return Outlines(region, tuple(p for p, _ in drawn), tuple(off for _, off in drawn))
 
 
 def outlines_csv(drawn: Outlines) -> str:
     """Return one row a corner: component, piece and ring (0 the outer one, then holes)."""
-    columns = [f"{joint}_{unit}" for joint, unit in zip(drawn.joints, drawn.units, strict=True)]
+    problem = drawn.region.problem
+    joints = zip(problem.joint_names, problem.units, strict=True)
     rows = (
         [c, p, r, *corner, drawn.deviations[c]]
         for c, p, r, ring in drawn.rings()
         for corner in ring.tolist()
     )
-    return csv_text(["component", "piece", "ring", *columns, "deviation"], rows)
+    return csv_text(["component", "piece", "ring", *map("_".join, joints), "deviation"], rows)
 
 
 def outlines_geojson(drawn: Outlines) -> dict[str, Any]:
@@ -105,7 +93,7 @@ def outlines_npz(drawn: Outlines) -> bytes:
     """
     rings = list(drawn.rings())
     c, p, r = np.array([numbers for *numbers, _ in rings], dtype=int).reshape(-1, 3).T
-    components = drawn.region.components
+    components, problem = drawn.region.components, drawn.region.problem
     return npz_bytes(
         {
             "points": np.concatenate([np.empty((0, 2)), *(ring for *_, ring in rings)]),
@@ -116,14 +104,22 @@ def outlines_npz(drawn: Outlines) -> bytes:
             "area": np.array([component.area for component in components]),
             "contains_home": np.array([part.contains_home for part in components], dtype=bool),
             "deviation": np.array(drawn.deviations),
-            "joints": np.array(drawn.joints),
-            "units": np.array(drawn.units),
+            "joints": np.array(problem.joint_names),
+            "units": np.array(problem.units),
         }
     )
 
 
+def outlines_shapely(drawn: Outlines) -> MultiPolygon:
+    """Return the polygons of all components as one shapely geometry."""
+    from shapely import MultiPolygon, Polygon
+
+    pieces = (piece for pieces in drawn.pieces for piece in pieces)
+    return MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
+
+
 def _feature(drawn: Outlines, c: int) -> dict[str, Any]:
-    component = drawn.region.components[c]
+    component, problem = drawn.region.components[c], drawn.region.problem
     return {
         "type": "Feature",
         "properties": {
@@ -132,8 +128,8 @@ def _feature(drawn: Outlines, c: int) -> dict[str, Any]:
             "area": component.area,
             "deviation": drawn.deviations[c],
             "wraps": list(component.wraps),
-            "joints": list(drawn.joints),
-            "unit": list(drawn.units),
+            "joints": list(problem.joint_names),
+            "unit": list(problem.units),
         },
         "geometry": {
             "type": "MultiPolygon",

@@ -23,7 +23,7 @@ def route_csv(route: Route, times: Trajectory | None = None) -> str:
     path = route.path
     t = [""] * len(path.q) if times is None else row_times(path, times).tolist()
     rows = zip(t, path.q.tolist(), path.tool.tolist(), strict=True)
-    header = ["t_s", *pose_columns(route.robot)]
+    header = ["t_s", *pose_columns(route.region.robot)]
     return csv_text(header, ([time, *q, *tool] for time, q, tool in rows))
 
 
@@ -34,7 +34,7 @@ def route_document(found: PathReport, times: Trajectory | None = None) -> dict[s
         route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
     )
     return {
-        **heading("qbound/traverse/1", route.robot, found.rule),
+        **heading("qbound/traverse/1", route.region.robot, route.region.problem.rule),
         "component": route.component,
         "order": list(route.order),
         "along": route.along,
@@ -64,7 +64,7 @@ def route_document(found: PathReport, times: Trajectory | None = None) -> dict[s
 def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[str]:
     """Say in sentences what a route meets, in the units of the robot file."""
     route, path = found.route, found.route.path
-    robot, unit = route.robot, route.robot.length_unit
+    robot, unit = route.region.robot, route.region.robot.length_unit
     known = "at most" if path.proved else "measured"
     yield f"{len(path.legs)} legs: {', '.join(route.legs)}"
     yield f"{len(path.q)} rows; the tool's path deviates {path.deviation:.3g} {unit} ({known})"

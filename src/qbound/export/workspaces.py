@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from qbound import __version__
 from qbound.export.document import loop_content
+from qbound.model.robot import Robot
 from qbound.model.units import joint_text
+from qbound.version import __version__
 from qbound.workspace.areas import Aspect
 from qbound.workspace.passage import Passage
 from qbound.workspace.report import PlaceReport, WorkspaceReport
@@ -15,14 +16,14 @@ from qbound.workspace.report import PlaceReport, WorkspaceReport
 
 def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
-    robot, workspace = found.robot, found.workspace
+    workspace, region = found.workspace, found.workspace.region
     return {
         "schema": "qbound/workspace/1",
-        "robot": robot.name,
+        "robot": region.robot.name,
         "version": __version__,
-        "rule": found.rule,
-        "joints": [robot.joints[j].name for j in found.joints],
-        "length_unit": robot.length_unit,
+        "rule": region.problem.rule,
+        "joints": list(region.problem.joint_names),
+        "length_unit": region.robot.length_unit,
         "plane": workspace.arm.axes.tolist(),
         "workspace": {
             "area": workspace.area,
@@ -38,7 +39,8 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
 
 def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
     """Say in sentences how large a workspace is, and what was asked of it."""
-    workspace, unit = found.workspace, found.robot.length_unit
+    workspace, robot = found.workspace, found.workspace.region.robot
+    joints, unit = workspace.region.problem.joints, robot.length_unit
     twice = f"{workspace.covered_twice:.9g} in both postures"
     yield f"area {workspace.area:.9g} {unit}^2, {twice}"
     yield f"reached both safely and not: {found.safe_and_unsafe:.9g} {unit}^2"
@@ -48,9 +50,9 @@ def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
         x, z = at.place
         yield f"at ({x:g}, {z:g}): safe postures {at.safe}"
         for posture, component in at.postures:
-            yield f"  {joint_text(found.robot, posture.q, found.joints)}: {_state(component)}"
+            yield f"  {joint_text(robot, posture.q, joints)}: {_state(component)}"
     if found.passage is not None:
-        yield from _passage_lines(found, found.passage)
+        yield from _passage_lines(robot, joints, found.passage)
 
 
 def _aspect(aspect: Aspect) -> dict[str, Any]:
@@ -84,14 +86,14 @@ def _passage(passage: Passage) -> dict[str, Any]:
     }
 
 
-def _passage_lines(found: WorkspaceReport, passage: Passage) -> Iterator[str]:
+def _passage_lines(robot: Robot, joints: tuple[int, int], passage: Passage) -> Iterator[str]:
     answer, loops = "yes" if passage.possible else "no", len(passage.loops)
     yield f"go: {answer}, from {_state(passage.start)} to {_state(passage.goal)}"
     if loops:
         what = "the loop" if loops == 1 else f"one of {loops} loops"
         yield f"  every path crosses {what} of {', '.join(passage.boundaries)}"
     if passage.exit is not None:
-        place = joint_text(found.robot, passage.exit.q, found.joints)
+        place = joint_text(robot, passage.exit.q, joints)
         yield f"  the straight path leaves at {place}, through {passage.exit.boundary}"
 
 

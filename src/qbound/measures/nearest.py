@@ -14,9 +14,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.angles import TURN
+from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
-from qbound.region.decomposition import TURN
-from qbound.region.region import Component, Problem, Region
 
 Floats = NDArray[np.float64]
 

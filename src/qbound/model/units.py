@@ -8,18 +8,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.model.robot import Kind, Robot
+from qbound.model.robot import Robot
 
 
-def unit_of(kind: Kind, robot: Robot) -> str:
-    """Return the library's unit of a joint's values: ``rad``, or the robot's length unit."""
-    return "rad" if kind == "revolute" else robot.length_unit
-
-
-def joint_units(robot: Robot, joints: Iterable[int] | None = None) -> list[str]:
-    """Return the library's unit of each joint's values, or of those of some joints by index."""
-    chosen = range(len(robot.joints)) if joints is None else joints
-    return [unit_of(robot.kinds[j], robot) for j in chosen]
+def joint_units(robot: Robot) -> list[str]:
+    """Return the library's unit of each joint's values: ``rad``, or the robot's length unit."""
+    return ["rad" if kind == "revolute" else robot.length_unit for kind in robot.kinds]
 
 
 def file_units(robot: Robot) -> list[str]:

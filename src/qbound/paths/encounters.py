@@ -12,14 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.functions import clearance, pair_vector, position
+from qbound.boundary.evaluator import Evaluator, evaluator
+from qbound.boundary.functions import position
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import meetings
-from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.model.units import joint_units, unit_of
+from qbound.model.robot import Robot
+from qbound.model.units import joint_units
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Problem
-from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
+from qbound.region import Region
+from qbound.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
 Floats = NDArray[np.float64]
@@ -155,34 +156,24 @@ def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:
     return [_place(walk, s) for s in low]
 
 
-def boundaries(robot: Robot) -> list[Boundary]:
-    """Return every boundary in use and every joint limit, as lengths and joint units (eqs. 9-12).
+def boundaries(region: Region) -> list[Boundary]:
+    """Return all that a region keeps, as margins of every joint's values (eqs. 9-12).
 
-    The margin of a pair is ``|B| - d_min``; that of a half-space the height over it.
+    By the clearance rule every boundary in use and every joint limit; by the paper's the
+    half-spaces and the windows of Table 6, as limits that bear the names of their boundaries.
     """
-    found = [_of_boundary(robot, boundary) for boundary in robot.boundaries if boundary.used]
-    for j, (joint, unit) in enumerate(zip(robot.joints, joint_units(robot), strict=True)):
-        if joint.limits is not None:
-            names = f"{joint.name}.lower", f"{joint.name}.upper"
-            found += _limits(j, joint.limits, names, unit)
-    return found
-
-
-def stated_boundaries(robot: Robot, problem: Problem) -> list[Boundary]:
-    """Return the boundaries of a stated problem, such as the paper's rule, whose forms are lengths.
-
-    The windows of Table 6 are limits of the joints and bear the names of their boundaries.
-    """
-    found = []
-    for name, i in zip(problem.names, range(len(problem.names)), strict=True):
-        form = problem.forms[i]
-        scale = float(np.abs(form.coefficients).max())
-        found.append(Boundary(name, robot.length_unit, form, scale))
-    for j, ends in enumerate(problem.ranges):
-        if ends is not None:
-            unit = unit_of(problem.forms.kinds[j], robot)
-            found += _limits(j, ends, problem.limits[j], unit)
-    return found
+    robot, problem = region.robot, region.problem
+    if problem.rule == "clearance":
+        compiled = evaluator(robot)
+        limited = zip(joint_units(robot), (joint.limits for joint in robot.joints), strict=True)
+    else:
+        compiled, limited = problem.evaluator, zip(problem.units, problem.ranges, strict=True)
+    ends = [unit for unit, limits in limited if limits is not None for _ in limits]
+    lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
+    sizes = compiled.rounding / ROUNDING  # of a pair's form, whose value is a length squared
+    sizes = np.where(np.isnan(compiled.distance), sizes, np.sqrt(sizes))
+    columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes.tolist(), strict=True))
+    return [Boundary(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns]
 
 
 def least_margin(walk: Traversal, boundary: Boundary) -> Margin:
@@ -221,31 +212,12 @@ def _leaves(walk: Traversal, boundary: Boundary, least: float) -> Place | None:
     return _place(walk, high[0])
 
 
-def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
-    if isinstance(boundary, Pair):
-        vector, needed = pair_vector(robot, boundary), robot.required_distance(boundary)
-        scale = float(np.abs(vector.coefficients).max())
-
-        def distance(q: Floats) -> Floats:
-            return np.asarray(np.linalg.norm(vector(q), axis=-1) - needed)
-
-        return Boundary(boundary.name, robot.length_unit, distance, scale)
-    form = clearance(robot, boundary)
-    scale = float(np.abs(form.coefficients).max())
-    return Boundary(boundary.name, robot.length_unit, form, scale)
+def _column(compiled: Evaluator, k: int) -> Form:
+    return lambda q: np.asarray(compiled.margins(q)[..., k])
 
 
 def _place(walk: Traversal, s: float) -> Place:
     return Place(float(s), walk.at(s)[0])
-
-
-def _limits(j: int, ends: tuple[float, float], names: tuple[str, str], unit: str) -> list[Boundary]:
-    low, high = ends
-    scale = max(abs(low), abs(high))
-    return [
-        Boundary(names[0], unit, lambda q: q[..., j] - low, scale),
-        Boundary(names[1], unit, lambda q: high - q[..., j], scale),
-    ]
 
 
 def _grid(walk: Traversal) -> Floats:

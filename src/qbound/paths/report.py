@@ -13,7 +13,6 @@ from qbound.paths.encounters import (
     lowest,
     plane_of_motion,
     singular_crossings,
-    stated_boundaries,
     tool_crossings,
 )
 from qbound.paths.route import Route
@@ -27,8 +26,6 @@ class PathReport:
     Attributes
     ----------
     route : Route
-    rule : {"clearance", "paper"}
-        Whose boundaries the margins are of.
     plane : tuple of two int, or None
         Coordinates that the tool moves in; None where it keeps to no plane.
     crossings : list of Crossing, or None
@@ -44,7 +41,6 @@ class PathReport:
     """
 
     route: Route
-    rule: str
     plane: tuple[int, int] | None
     crossings: list[Crossing] | None
     singular: list[Place] | None
@@ -58,28 +54,17 @@ class PathReport:
         return all(margin.leaves is None for margin in self.margins)
 
 
-def report(route: Route, rule: str = "clearance") -> PathReport:
-    """Look along a route: every boundary, limit, crossing and singular pose that it meets.
-
-    Parameters
-    ----------
-    rule : {"clearance", "paper"}
-        By which the route's region was found.
-    """
-    robot, path = route.robot, route.path
+def report(route: Route) -> PathReport:
+    """Look along a route: every boundary, limit, crossing and singular pose that it meets."""
+    region, robot, path = route.region, route.region.robot, route.path
     plane = plane_of_motion(robot)
-    if rule == "clearance":
-        bounds = boundaries(robot)
-    else:
-        bounds = stated_boundaries(robot, route.region.problem)
     minus_reach, farthest = lowest(path, lambda q: -reach(robot, q))
     return PathReport(
         route,
-        rule,
         plane,
         None if plane is None else tool_crossings(robot, path, plane),
-        singular_crossings(robot, path, route.held),
-        [least_margin(path, bound) for bound in bounds],
+        singular_crossings(robot, path, region.problem.held),
+        [least_margin(path, boundary) for boundary in boundaries(region)],
         -minus_reach,
         farthest,
     )

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Traversal, follow, straight
+from qbound.region import Component, Region
 from qbound.region.arcs import Arc
-from qbound.region.region import Component, Region
 from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]
@@ -30,10 +30,7 @@ class Route:
 
     Attributes
     ----------
-    robot : Robot
     region : Region
-    held : dict of int to float
-        Joints that do not move, and their values.
     component : int
         Whose vertices or arcs it visits.
     order : tuple of int
@@ -46,9 +43,7 @@ class Route:
         Names: numbers of vertices, or of the visit; ``3 to 4`` or ``arc 2``.
     """
 
-    robot: Robot
     region: Region
-    held: dict[int, float]
     component: int
     order: tuple[int, ...]
     along: Literal["lines", "arcs"]
@@ -63,12 +58,10 @@ class Route:
 
 
 def route_along_vertices(
-    robot: Robot,
     region: Region,
     order: Sequence[int],
     *,
     component: int = 0,
-    held: Mapping[int, float] | None = None,
     closed: bool = False,
     scale: float = 1.0,
     deviation: float | None = None,
@@ -77,12 +70,8 @@ def route_along_vertices(
 
     Parameters
     ----------
-    region : Region
-        Of the joints that are not held.
     order : sequence of int
         Numbers of vertices, from 1.
-    held : mapping of int to float, optional
-        Joints that do not move and their values, all but two; rad or length.
     closed : bool
         Whether to return to the first vertex.
     scale : float
@@ -106,21 +95,19 @@ def route_along_vertices(
     corners = np.array([vertex.q for vertex in vertices])
     if scale != 1:
         corners = polygon.scaled(corners, scale, polygon.centroid(corners))
-    held = dict(held or {})
-    q = robot.with_held(corners, held)
+    robot = region.robot
+    q = robot.with_held(corners, region.problem.held)
     named = [(f"{a} to {b}", straight(robot, q[a - 1], q[b - 1])) for a, b in pairwise(visited)]
     names, path = _followed(robot, named, deviation)
     stops = tuple(map(str, visited))
-    return Route(robot, region, held, component, tuple(order), "lines", scale, path, stops, names)
+    return Route(region, component, tuple(order), "lines", scale, path, stops, names)
 
 
 def route_along_arcs(
-    robot: Robot,
     region: Region,
     order: Sequence[int],
     *,
     component: int = 0,
-    held: Mapping[int, float] | None = None,
     closed: bool = False,
     deviation: float | None = None,
 ) -> Route:
@@ -130,7 +117,7 @@ def route_along_arcs(
     ----------
     order : sequence of int
         Numbers of arcs, from 1; -2 runs arc 2 backwards.
-    region, component, held, closed, deviation
+    component, closed, deviation
         As for `route_along_vertices`.
 
     Raises
@@ -142,11 +129,11 @@ def route_along_arcs(
     if not order:
         raise ValueError("a path needs an arc or more")
     _refuse_unknown([abs(number) for number in order], len(arcs), "arc", component)
-    held = dict(held or {})
+    robot, held = region.robot, region.problem.held
     legs = [_arc_leg(robot, held, arcs[abs(number) - 1], number < 0) for number in order]
     names, path = _followed(robot, list(_joined(robot, order, legs, closed)), deviation)
     stops = tuple(str(number) for number in range(1, len(names) + 2))
-    return Route(robot, region, held, component, tuple(order), "arcs", 1.0, path, stops, names)
+    return Route(region, component, tuple(order), "arcs", 1.0, path, stops, names)
 
 
 def nth_component(region: Region, k: int) -> Component:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from qbound import __version__
 from qbound.model.robot import Robot
 from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate, Witness
 from qbound.proofs.connection import Connection, wall
 from qbound.proofs.paving import Paving
+from qbound.version import __version__
 
 
 def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN
 from qbound.forms.circle import polar
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import (
@@ -36,7 +37,6 @@ Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 Range = tuple[float, float] | None
 
-TURN = math.tau
 PROBES = np.array([0.29, 0.5, 0.77])
 
 

@@ -14,10 +14,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN
 from qbound.forms.harmonic import basis, basis_slope
 from qbound.region.arcs import Arc, Pieces
 from qbound.region.cells import Complex, Step
-from qbound.region.decomposition import TURN, Plane, Root
+from qbound.region.decomposition import Plane, Root
 from qbound.tolerances import TRANSVERSAL
 
 Floats = NDArray[np.float64]

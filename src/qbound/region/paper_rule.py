@@ -21,7 +21,7 @@ from qbound.forms.circle import CircleRoots, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.polylines import tangent_corners
 from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.region.region import Problem, state
+from qbound.region.problem import Problem, state
 from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
@@ -131,7 +131,8 @@ def problem(robot: Robot) -> Problem:
     region, cuts = box(robot), [wall for wall, _ in _cuts(robot)]
     ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
     sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
-    return state(robot, cuts, ranges, [(low.boundary, high.boundary) for low, high in sides])
+    names = [(low.boundary, high.boundary) for low, high in sides]
+    return state(robot, cuts, ranges, names, rule="paper")
 
 
 def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:

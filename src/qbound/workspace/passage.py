@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry import polygon
 from qbound.geometry.bisection import last_before
+from qbound.region import Component
 from qbound.region.arcs import Arc
-from qbound.region.region import Component
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.planar import turns_within
 
@@ -73,7 +73,7 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
         rad or length. Joints without limits may turn on: full turns do not count.
     """
     a, b = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-    one, other = region.holding(a), region.holding(b)
+    one, other = region.component_of(a), region.component_of(b)
     possible = one is not None and one == other
     loops: tuple[Loop, ...] = ()
     if one is not None and other is not None and not possible:

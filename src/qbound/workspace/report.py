@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from qbound.model.robot import Robot
-from qbound.region.region import Problem
+from qbound.region import Region
 from qbound.workspace.areas import Workspace, find_workspace, overlap
 from qbound.workspace.passage import Passage, find_passage
-from qbound.workspace.planar import PlanarArm, Posture
+from qbound.workspace.planar import Posture, planar_arm
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +38,6 @@ class WorkspaceReport:
 
     Attributes
     ----------
-    robot : Robot
-    rule : {"clearance", "paper"}
-    joints : list of two int
-        The joints that move.
     workspace : Workspace
     safe_and_unsafe : float
         Area of the places that are reached both safely and unsafely; length squared.
@@ -51,9 +46,6 @@ class WorkspaceReport:
         None where none was asked for.
     """
 
-    robot: Robot
-    rule: str
-    joints: list[int]
     workspace: Workspace
     safe_and_unsafe: float
     places: list[PlaceReport]
@@ -66,12 +58,7 @@ class WorkspaceReport:
 
 
 def workspace_report(
-    robot: Robot,
-    arm: PlanarArm,
-    problem: Problem,
-    rule: str = "clearance",
-    held: Mapping[int, float] | None = None,
-    *,
+    region: Region,
     places: Sequence[tuple[float, float]] = (),
     poses: Sequence[ArrayLike] = (),
 ) -> WorkspaceReport:
@@ -79,10 +66,6 @@ def workspace_report(
 
     Parameters
     ----------
-    arm, problem : PlanarArm, Problem
-        Of the two joints that are not held, the problem by the rule.
-    held : mapping of int to float, optional
-        Joints that do not move and their values; rad or length.
     places : sequence of (float, float)
         In the plane of motion; length.
     poses : sequence of two array_like, shape (2,), or none
@@ -90,19 +73,16 @@ def workspace_report(
 
     Raises
     ------
-    NoHomeError
-        If the home pose is in no component.
+    NoHomeError, NoPlanarWorkspaceError
+        If the home pose is in no component, or the tool leaves its plane.
     """
-    joints = robot.free(held or {})
-    home = robot.home[joints]
+    robot, problem = region.robot, region.problem
+    arm, home = planar_arm(robot, problem.held), robot.home[list(problem.joints)]
+    one, other = (robot.joints[j].limits for j in problem.joints)
     workspace = find_workspace(arm, problem, home)
-    first, second = (robot.joints[j].limits for j in joints)
     return WorkspaceReport(
-        robot,
-        rule,
-        joints,
         workspace,
-        overlap(arm, problem, home, (first, second)),
+        overlap(arm, problem, home, (one, other)),
         [PlaceReport(at, workspace.postures(at), workspace.safe_postures(at)) for at in places],
         find_passage(workspace.region, *poses) if poses else None,
     )
