@@ -17,8 +17,7 @@ from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.paths.report import report
 from qbound.paths.route import (
     nth_component,
-    route_along_arcs,
-    route_along_vertices,
+    plan_route,
     stretched_length,
 )
 from qbound.paths.trajectory import lasting
@@ -32,7 +31,7 @@ CORNERS = np.array([vertex.q for vertex in REGION.components[0].vertices])
 
 
 def test_a_closed_route_visits_scaled_vertices_and_returns():
-    route = route_along_vertices(REGION, [3, 1, 2], closed=True, scale=0.5)
+    route = plan_route(REGION, [3, 1, 2], closed=True, scale=0.5)
     centre = np.array(Polygon(CORNERS).centroid.coords[0])
     wanted = centre + 0.5 * (CORNERS[[2, 0, 1, 2]] - centre)
     assert_allclose(route.path.q[route.path.stops], wanted, atol=1e-12)
@@ -43,7 +42,7 @@ def test_a_closed_route_visits_scaled_vertices_and_returns():
 
 
 def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
-    route = route_along_arcs(REGION, [2, -4], closed=True)
+    route = plan_route(REGION, [2, -4], along="arcs", closed=True)
     assert route.legs == ("arc 2", "line to arc 4", "arc 4 backwards", "line to the start")
     assert route.stops == ("1", "2", "3", "4", "5")
     ends = [ARCS[1].points[0], ARCS[1].points[-1], ARCS[3].points[-1], ARCS[3].points[0]]
@@ -52,36 +51,38 @@ def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
 
 def test_arcs_that_meet_need_no_line():
     whole = range(1, len(ARCS) + 1)
-    route = route_along_arcs(REGION, whole, closed=True)
+    route = plan_route(REGION, whole, along="arcs", closed=True)
     assert route.legs == tuple(f"arc {k}" for k in whole)
 
 
 @pytest.mark.parametrize(
-    ("along", "order", "more", "words"),
+    ("order", "more", "words"),
     [
-        (route_along_vertices, [1, 7], {}, "no vertex 7 in component 0: it has 6, numbered from 1"),
-        (route_along_vertices, [-1, 2], {}, "no vertex -1"),
-        (route_along_vertices, [1], {}, "two vertices or more"),
-        (route_along_vertices, [], {"closed": True}, "two vertices or more"),
-        (route_along_vertices, [1, 2], {"scale": 0}, "scale must be above 0, found 0"),
-        (route_along_vertices, [1, 2], {"scale": np.nan}, "scale must be above 0, found nan"),
-        (route_along_vertices, [1, 2], {"deviation": 0}, "deviation must be above 0"),
-        (route_along_vertices, [1, 2], {"component": 5}, "no component 5; there are 5"),
-        (route_along_arcs, [0], {}, "no arc 0"),
-        (route_along_arcs, [1, -7], {}, "no arc 7"),
-        (route_along_arcs, [], {}, "an arc or more"),
-        (route_along_arcs, [1], {"component": -1}, "no component -1"),
+        ([1, 7], {}, "no vertex 7 in component 0: it has 6, numbered from 1"),
+        ([-1, 2], {}, "no vertex -1"),
+        ([1], {}, "two vertices or more"),
+        ([], {"closed": True}, "two vertices or more"),
+        ([1, 2], {"scale": 0}, "scale must be above 0, found 0"),
+        ([1, 2], {"scale": np.nan}, "scale must be above 0, found nan"),
+        ([1, 2], {"deviation": 0}, "deviation must be above 0"),
+        ([1, 2], {"component": 5}, "no component 5; there are 5"),
+        ([0], {"along": "arcs"}, "no arc 0"),
+        ([1, -7], {"along": "arcs"}, "no arc 7"),
+        ([], {"along": "arcs"}, "an arc or more"),
+        ([1], {"along": "arcs", "component": -1}, "no component -1"),
+        ([1], {"along": "roads"}, "no way along 'roads'; there are lines and arcs"),
+        ([1], {"along": "arcs", "scale": 0.5}, "a scaled arc is none of the region's"),
     ],
 )
-def test_a_route_that_is_none_is_refused(along, order, more, words):
+def test_a_route_that_is_none_is_refused(order, more, words):
     with pytest.raises(ValueError, match=words):
-        along(REGION, order, **more)
+        plan_route(REGION, order, **more)
 
 
 def test_a_component_without_vertices_says_so():
     bare = replace(REGION, components=(replace(REGION.components[0], vertices=()),))
     with pytest.raises(ValueError, match="it has no vertex"):
-        route_along_vertices(bare, [1, 2])
+        plan_route(bare, [1, 2])
 
 
 def test_components_count_from_0():
@@ -89,7 +90,7 @@ def test_components_count_from_0():
 
 
 def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
-    route = route_along_vertices(REGION, [1, 2])
+    route = plan_route(REGION, [1, 2])
     turns = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 2))
     places = MINERVA.frames(turns).position("0", "3", "0")
     assert np.linalg.norm(places, axis=1).max() <= stretched_length(MINERVA)
@@ -99,7 +100,7 @@ def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
 def test_a_held_joint_stays():
     first, held = replace(MINERVA.joints[0], parent="-1", frame="0"), {0: 0.3}
     three = replace(MINERVA, joints=(first, *MINERVA.joints), home=np.array([0.3, 0, 0]))
-    route = route_along_vertices(find_region(three, held), [1, 2])
+    route = plan_route(find_region(three, held), [1, 2])
     assert_allclose(route.path.q[:, 0], 0.3)
     assert np.ptp(route.path.q[:, 1:]) > 0
 
@@ -111,7 +112,7 @@ def test_a_route_is_feasible_where_every_place_of_it_is():
     """Round the component's corners, by a fine grid and the boundary functions alone."""
     answers = set()
     for k in range(1, 7):
-        found = report(route_along_vertices(REGION, [k, k % 6 + 1], scale=0.999))
+        found = report(plan_route(REGION, [k, k % 6 + 1], scale=0.999))
         q = found.route.path.at(np.linspace(0, 1, 5001))
         assert found.feasible == keeps_clear(MINERVA, q).all()
         answers.add(found.feasible)
@@ -119,14 +120,14 @@ def test_a_route_is_feasible_where_every_place_of_it_is():
 
 
 def test_the_largest_reach_is_that_of_a_far_finer_path():
-    found = report(route_along_vertices(REGION, [1, 4, 2, 6]))
+    found = report(plan_route(REGION, [1, 4, 2, 6]))
     fine = reach(MINERVA, found.route.path.at(np.linspace(0, 3, 30_001))).max()
     assert fine <= found.largest_reach <= fine + 1e-4
     assert_allclose(reach(MINERVA, found.farthest.q), found.largest_reach)
 
 
 def test_the_document_follows_its_schema_and_the_lines_say_the_same():
-    route = route_along_vertices(REGION, [1, 3, 2, 4], scale=0.9)
+    route = plan_route(REGION, [1, 3, 2, 4], scale=0.9)
     found, times = report(route), lasting(MINERVA, route.path, 12)
     content = json.loads(json.dumps(route_document(found, times)))
     schema = resources.files("qbound") / "schemas" / "traverse.schema.json"
@@ -146,7 +147,7 @@ def test_the_document_follows_its_schema_and_the_lines_say_the_same():
 
 
 def test_a_route_without_times_has_an_empty_column():
-    route = route_along_vertices(REGION, [1, 2], deviation=1.0)
+    route = plan_route(REGION, [1, 2], deviation=1.0)
     header, *rows = csv.reader(io.StringIO(route_csv(route)))
     assert header == ["t_s", "q1_rad", "q2_rad", "x_cm", "y_cm", "z_cm"]
     assert {row[0] for row in rows} == {""}

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import write_text
+from qbound.cli.files import deliver
 from qbound.cli.values import configuration
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
@@ -40,8 +40,6 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"{len(options.values)} values; two poses of {n} joints have {2 * n}")
     one, other = (configuration(robot, options.values[k : k + n]) for k in (0, n))
     found = connection(exact_problem(exact_robot(options.robot)), one, other)
-    if options.json:
-        write_text(options.json, json_text(connection_document(robot, [one, other], found)))
-    if options.json != "-":
-        print(connection_line(found))
+    document = (options.json, lambda: json_text(connection_document(robot, [one, other], found)))
+    deliver([document], [connection_line(found)])
     return STATUS[found.answer]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 Content = str | bytes
@@ -12,9 +12,11 @@ Output = tuple[str | None, Callable[[], Content]]
 """A file, or None where none was asked for, and what makes its content."""
 
 
-def write_asked(outputs: Sequence[Output]) -> None:
-    """Make and write those outputs that have a file, as `write_all` does."""
+def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
+    """Make and write what was asked for; print the lines unless standard output is taken by it."""
     write_all([(file, make()) for file, make in outputs if file])
+    if "-" not in (file for file, _ in outputs):
+        print("\n".join(lines))
 
 
 def write_all(outputs: Sequence[tuple[str, Content]]) -> None:

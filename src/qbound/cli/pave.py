@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_slice
-from qbound.cli.files import write_text
+from qbound.cli.files import deliver
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
@@ -43,8 +43,6 @@ def run(options: argparse.Namespace) -> int:
     robot = load_robot(options.robot)
     values = held(robot, options.slice)
     paving = pave(exact_problem(exact_robot(options.robot), values), options.tolerance)
-    if options.json:
-        write_text(options.json, json_text(paving_document(robot, paving)))
-    if options.json != "-":
-        print("\n".join(paving_lines(paving)))
+    document = (options.json, lambda: json_text(paving_document(robot, paving)))
+    deliver([document], paving_lines(paving))
     return 0 if paving.undecided_fraction <= options.tolerance else 3

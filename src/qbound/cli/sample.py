@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound import sampling
 from qbound.cli.chosen import add_robot, add_rule
-from qbound.cli.files import check_targets, write_asked
+from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import progress
 from qbound.export.formats import json_text
 from qbound.export.samples import sample_csv, sample_document, sample_npz
@@ -42,19 +42,16 @@ def run(options: argparse.Namespace) -> int:
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
     robot, rule, seed = load_robot(options.robot), options.rule, options.seed
-    files = [options.csv, options.npz, options.json]
-    check_targets(files)
+    check_targets([options.csv, options.npz, options.json])
     judge = sampling.keeps_clear if rule == "clearance" else paper_rule.feasible
     told = progress("sampling", options.n)
     drawn = sampling.sample(robot, options.n, judge, seed=seed, progress=told)
-    write_asked(
-        [
-            (options.csv, lambda: sample_csv(robot, drawn)),
-            (options.npz, lambda: sample_npz(robot, drawn)),
-            (options.json, lambda: json_text(sample_document(robot, drawn, rule, seed), None)),
-        ]
-    )
-    if "-" not in files:
-        free, n = int(drawn.free.sum()), options.n
-        print(f"{free} of {n} are free: {drawn.fraction_free:.6g} +- {drawn.standard_error:.2g}")
+    free, error = int(drawn.free.sum()), drawn.standard_error
+    outputs: list[Output] = [
+        (options.csv, lambda: sample_csv(robot, drawn)),
+        (options.npz, lambda: sample_npz(robot, drawn)),
+        (options.json, lambda: json_text(sample_document(robot, drawn, rule, seed), None)),
+    ]
+    line = f"{free} of {options.n} are free: {drawn.fraction_free:.6g} +- {error:.2g}"
+    deliver(outputs, [line])
     return 0

@@ -6,14 +6,14 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import Output, check_targets, write_asked
+from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.paths.report import PathReport, report
-from qbound.paths.route import Route, route_along_arcs, route_along_vertices
+from qbound.paths.route import Route, plan_route
 from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
@@ -67,8 +67,7 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    files = [options.csv, options.ros, options.svg, options.json]
-    check_targets(files)
+    check_targets([options.csv, options.ros, options.svg, options.json])
     robot = load_robot(options.robot)
     route = _route(robot, options)
     times = _in_time(route, options)
@@ -80,27 +79,25 @@ def run(options: argparse.Namespace) -> int:
     ]
     if times is not None:
         outputs.append((options.ros, lambda: json_text(ros_trajectory(robot, times), None)))
-    write_asked(outputs)
-    if "-" not in files:
-        print("\n".join(route_lines(found, times)))
+    deliver(outputs, route_lines(found, times))
     return 0 if found.feasible else 1
 
 
 def _route(robot: Robot, options: argparse.Namespace) -> Route:
     """Find the region and go along what the numbers are of."""
-    region = region_by_rule(robot, options.rule, held(robot, options.slice))
-    chosen: dict[str, Any] = {
-        "component": options.component,
-        "closed": options.closed,
-        "deviation": options.deviation,
-    }
-    if not options.arcs:
-        if not options.scale > 0:
-            raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
-        return route_along_vertices(region, options.order, scale=options.scale, **chosen)
-    if options.scale != 1:
+    if options.arcs and options.scale != 1:
         raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
-    return route_along_arcs(region, options.order, **chosen)
+    if not options.scale > 0:
+        raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
+    return plan_route(
+        region_by_rule(robot, options.rule, held(robot, options.slice)),
+        options.order,
+        along="arcs" if options.arcs else "lines",
+        component=options.component,
+        closed=options.closed,
+        scale=options.scale,
+        deviation=options.deviation,
+    )
 
 
 def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:

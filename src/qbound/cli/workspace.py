@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import check_targets, write_asked
+from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
@@ -40,8 +40,7 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
     robot = load_robot(options.robot)
-    files = [options.svg, options.json]
-    check_targets(files)
+    check_targets([options.svg, options.json])
     values = held(robot, options.slice)
     places = [place(text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
@@ -51,14 +50,11 @@ def run(options: argparse.Namespace) -> int:
     except NoHomeError as reason:
         print(f"qbound: {reason}", file=sys.stderr)
         return 1
-    write_asked(
-        [
-            (options.svg, lambda: _picture(found)),
-            (options.json, lambda: json_text(workspace_document(found))),
-        ]
-    )
-    if "-" not in files:
-        print("\n".join(workspace_lines(found)))
+    outputs: list[Output] = [
+        (options.svg, lambda: _picture(found)),
+        (options.json, lambda: json_text(workspace_document(found))),
+    ]
+    deliver(outputs, workspace_lines(found))
     return 0 if found.all_safe else 1
 
 

@@ -5,7 +5,7 @@ Vertices and arcs count from 1 in the order of the component's loops, components
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -21,7 +21,7 @@ from qbound.region.arcs import Arc
 from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]
-NamedLegs = list[tuple[str, Leg]]
+Along = Literal["lines", "arcs"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Route:
     region: Region
     component: int
     order: tuple[int, ...]
-    along: Literal["lines", "arcs"]
+    along: Along
     scale: float
     path: Traversal
     stops: tuple[str, ...]
@@ -57,83 +57,71 @@ class Route:
         return self.legs[min(int(s), len(self.legs) - 1)]
 
 
-def route_along_vertices(
+def plan_route(
     region: Region,
     order: Sequence[int],
     *,
+    along: Along = "lines",
     component: int = 0,
     closed: bool = False,
     scale: float = 1.0,
     deviation: float | None = None,
 ) -> Route:
-    """Visit vertices of a component along straight lines in joint space (Figures 7 to 9).
+    """Visit vertices of a component along straight lines in joint space, or follow its arcs.
+
+    The paper's paths are of the first kind (Figures 7 to 9).
 
     Parameters
     ----------
     order : sequence of int
-        Numbers of vertices, from 1.
+        Numbers of vertices or arcs, from 1; -2 runs arc 2 backwards. A straight line joins arcs
+        that do not meet.
+    along : {"lines", "arcs"}
+    component : int
+        Whose they are, from 0.
     closed : bool
-        Whether to return to the first vertex.
+        Whether to return to the start.
     scale : float
-        Of the vertices, about the centroid of their polygon.
+        Of the vertices, about the centroid of their polygon; of arcs 1 only.
     deviation : float, optional
         As `follow` takes it; default: a ten-thousandth of the stretched arm.
 
     Raises
     ------
     ValueError
-        If a number is of no component or vertex, there are fewer than two, or the scale or the
-        deviation is not above zero.
+        If a number is of no component, vertex or arc, there are too few of them, `along` is
+        neither, arcs are to be scaled, or the scale or the deviation is not above zero.
+
+    Examples
+    --------
+    >>> from qbound import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> plan_route(region, [1, 2, 3], closed=True, scale=0.9).legs
+    ('1 to 2', '2 to 3', '3 to 1')
+    >>> plan_route(region, [1, -4], along="arcs").legs
+    ('arc 1', 'line to arc 4', 'arc 4 backwards')
     """
-    vertices = nth_component(region, component).vertices
-    _refuse_unknown(order, len(vertices), "vertex", component)
-    visited = [*order, *order[:1]] if closed else list(order)
-    if len(visited) < 2:
-        raise ValueError("a path needs two vertices or more")
-    if not scale > 0:
-        raise ValueError(f"a scale must be above 0, found {scale:g}")
-    corners = np.array([vertex.q for vertex in vertices])
-    if scale != 1:
-        corners = polygon.scaled(corners, scale, polygon.centroid(corners))
-    robot = region.robot
-    q = robot.with_held(corners, region.problem.held)
-    named = [(f"{a} to {b}", straight(robot, q[a - 1], q[b - 1])) for a, b in pairwise(visited)]
-    names, path = _followed(robot, named, deviation)
-    stops = tuple(map(str, visited))
-    return Route(region, component, tuple(order), "lines", scale, path, stops, names)
-
-
-def route_along_arcs(
-    region: Region,
-    order: Sequence[int],
-    *,
-    component: int = 0,
-    closed: bool = False,
-    deviation: float | None = None,
-) -> Route:
-    """Follow arcs of a component; a straight line joins two that do not meet.
-
-    Parameters
-    ----------
-    order : sequence of int
-        Numbers of arcs, from 1; -2 runs arc 2 backwards.
-    component, closed, deviation
-        As for `route_along_vertices`.
-
-    Raises
-    ------
-    ValueError
-        If a number is of no component or arc, there is none, or the deviation is not above zero.
-    """
-    arcs = [arc for loop in nth_component(region, component).loops for arc in loop]
-    if not order:
-        raise ValueError("a path needs an arc or more")
-    _refuse_unknown([abs(number) for number in order], len(arcs), "arc", component)
-    robot, held = region.robot, region.problem.held
-    legs = [_arc_leg(robot, held, arcs[abs(number) - 1], number < 0) for number in order]
-    names, path = _followed(robot, list(_joined(robot, order, legs, closed)), deviation)
-    stops = tuple(str(number) for number in range(1, len(names) + 2))
-    return Route(region, component, tuple(order), "arcs", 1.0, path, stops, names)
+    chosen, robot = nth_component(region, component), region.robot
+    if along == "lines":
+        visited = [*order, *order[:1]] if closed else list(order)
+        _refuse_unknown(order, len(chosen.vertices), "vertex", component)
+        named = list(_lines(region, visited, chosen, scale))
+        stops = map(str, visited)
+    elif along == "arcs":
+        arcs = [arc for loop in chosen.loops for arc in loop]
+        _refuse_unknown([abs(number) for number in order], len(arcs), "arc", component)
+        if scale != 1:
+            raise ValueError("a scale is of vertices: a scaled arc is none of the region's")
+        legs = [_arc_leg(region, arcs[abs(number) - 1], number < 0) for number in order]
+        named = list(_joined(robot, order, legs, closed))
+        stops = map(str, range(1, len(named) + 2))
+    else:
+        raise ValueError(f"no way along {along!r}; there are lines and arcs")
+    if deviation is None:
+        deviation = 1e-4 * stretched_length(robot) or 1e-4
+    path = follow(robot, [leg for _, leg in named], deviation)
+    names = tuple(name for name, _ in named)
+    return Route(region, component, tuple(order), along, scale, path, tuple(stops), names)
 
 
 def nth_component(region: Region, k: int) -> Component:
@@ -151,20 +139,28 @@ def stretched_length(robot: Robot) -> float:
     return sum(links) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 
-def _followed(
-    robot: Robot, named: NamedLegs, deviation: float | None
-) -> tuple[tuple[str, ...], Traversal]:
-    """Return the names of the legs and the path along them."""
-    if deviation is None:
-        deviation = 1e-4 * stretched_length(robot) or 1e-4
-    path = follow(robot, [leg for _, leg in named], deviation)
-    return tuple(name for name, _ in named), path
+def _lines(
+    region: Region, order: Sequence[int], component: Component, scale: float
+) -> Iterator[tuple[str, Leg]]:
+    """Go straight from vertex to vertex, scaled about the centroid of their polygon."""
+    if len(order) < 2:
+        raise ValueError("a path needs two vertices or more")
+    if not scale > 0:
+        raise ValueError(f"a scale must be above 0, found {scale:g}")
+    corners = np.array([vertex.q for vertex in component.vertices])
+    if scale != 1:
+        corners = polygon.scaled(corners, scale, polygon.centroid(corners))
+    q = region.robot.with_held(corners, region.problem.held)
+    for a, b in pairwise(order):
+        yield f"{a} to {b}", straight(region.robot, q[a - 1], q[b - 1])
 
 
 def _joined(
     robot: Robot, order: Sequence[int], legs: Sequence[Leg], closed: bool
 ) -> Iterator[tuple[str, Leg]]:
     """Put a straight line between arcs that do not meet; a closed path ends where it began."""
+    if not legs:
+        raise ValueError("a path needs an arc or more")
     ends = [(_place(leg, 0.0), _place(leg, 1.0)) for leg in legs]
     here = first = ends[0][0]
     for number, leg, (start, end) in zip(order, legs, ends, strict=True):
@@ -176,9 +172,10 @@ def _joined(
         yield "line to the start", straight(robot, here, first)
 
 
-def _arc_leg(robot: Robot, held: Mapping[int, float], arc: Arc, backwards: bool) -> Leg:
+def _arc_leg(region: Region, arc: Arc, backwards: bool) -> Leg:
     def at(s: Floats) -> Floats:
-        return robot.with_held(arc.at(1 - s if backwards else s), held)
+        q = arc.at(1 - s if backwards else s)
+        return region.robot.with_held(q, region.problem.held)
 
     return Leg(at, parts=len(arc.pieces.roots))
 
