@@ -6,7 +6,8 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.values import check_targets, held, write_text
+from qbound.cli.files import check_targets, write_text
+from qbound.cli.values import held
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
