@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from lizarraga2025.ledger.entries import Claim
+from lizarraga2025.ledger.claims import Claim
 from qbound import __version__
 
 YEAR: Final = 2026

@@ -4,37 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 
-from lizarraga2025.ledger import effort
-from lizarraga2025.ledger.entries import Finding, entry, judge, require
-from lizarraga2025.ledger.facts import SMALL, robot
-from lizarraga2025.ledger.walks import (
+from lizarraga2025 import printed as paper
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence import effort
+from lizarraga2025.evidence.arms import robot, symmetric, tool_form
+from lizarraga2025.evidence.joint_region import SCALE, drawn, scaled, share_of_square
+from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.tool_paths import (
     LEFT,
-    PLANE,
     RIGHT,
-    SCALE,
-    by_windows,
-    crossings,
-    drawn,
-    neighbours,
+    aspect,
+    det_jacobian,
+    is_cut_by_the_singular_line,
+    neighbour_sequences,
     other_posture,
-    scaled,
-    simple,
+    path_through,
+    simple_neighbours,
+    simple_sequences,
     stretched,
-    symmetric,
-    tool_form,
-    walk,
     workspace,
 )
+from lizarraga2025.verdicts import Finding, judge, require
 from qbound.region import paper_rule
 from qbound.sampling import sample
 
 
-@entry(
-    "S-30", "sentence", "Section 4, after Figure 8",
-    "The reach is greatest where the links are collinear.",
-    test="test_traversal.py::test_reach_is_greatest_with_the_links_in_line",
-    chapter="08_workspace#five-points",
-)  # fmt: skip
+@computes("S-30")
 def greatest_reach() -> Finding:
     q2 = np.linspace(-np.pi, np.pi, 7201)
     places = tool_form()(np.stack([0 * q2, q2], -1)) - robot().joints[0].origin
@@ -48,15 +43,10 @@ def greatest_reach() -> Finding:
     )
 
 
-@entry(
-    "S-31", "sentence", "Section 4, after Figure 8",
-    "There the arm is singular.",
-    test="test_statements.py::test_the_arm_is_singular_where_it_is_stretched",
-    chapter="08_workspace#the-stretched-pose",
-)  # fmt: skip
+@computes("S-31")
 def stretched_is_singular() -> Finding:
     q = np.array([[0.3, stretched()], [-1.0, stretched()], [0.3, stretched() + 0.1]])
-    det = np.linalg.det(tool_form().gradient(q)[:, PLANE])
+    det = det_jacobian(q)
     return Finding(
         judge(holds=bool(np.abs(det[:2]).max() < SMALL < abs(det[2]))),
         f"det J vanishes on the line q2 = {np.degrees(stretched()):.4f}° for every q1 (to {SMALL:g}"
@@ -64,18 +54,12 @@ def stretched_is_singular() -> Finding:
     )
 
 
-@entry(
-    "S-32", "sentence", "Section 4, after Figure 8",
-    "The scaling settles the singular poses indirectly.",
-    test="test_statements.py::test_every_walk_of_five_points_is_stretched_on_the_way",
-    chapter="08_workspace#the-stretched-pose",
-    mended="Every walk through five of the six points passes through a stretched pose.",
-)  # fmt: skip
+@computes("S-32")
 def scaling_settles_nothing() -> Finding:
-    side = {s: np.sign(scaled(s)[:, 1] - stretched()) for s in (1.0, 0.96, SCALE, 0.9, 0.5, 0.1)}
+    side = {s: aspect(scaled(s)) for s in (1.0, 0.96, SCALE, 0.9, 0.5, 0.1)}
     parts = {s: (int((x < 0).sum()), int((x > 0).sum())) for s, x in side.items()}
     require(set(parts.values()) == {(3, 3)}, "three points on either side of the singular line")
-    passing = sum(bool(np.ptp(np.sign(walk(o).q[:, 1] - stretched()))) for o in neighbours())
+    passing = sum(is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences())
     return Finding(
         judge(holds=passing == 0),
         "At every scale tried, 1 to 0.1, three points lie on either side of the singular line, so"
@@ -85,33 +69,23 @@ def scaling_settles_nothing() -> Finding:
     )
 
 
-@entry(
-    "S-33", "sentence", "Section 4, before Figure 9",
-    "Two distinct ways lead round the geometric workspace, on the right or on the left.",
-    test="test_traversal.py::test_orders_without_crossing_are_shapelys",
-    chapter="08_workspace#five-points",
-)  # fmt: skip
+@computes("S-33")
 def two_ways() -> Finding:
-    free = [o for o in neighbours() if crossings(walk(o)) == 0]
+    free = simple_neighbours()
     mirror = (3, 4, 5, 0, 1, 2)
     paired = {o for o in free if tuple(mirror[i] for i in o) in free}
     forward = {min(o, o[::-1]) for o in paired}
     return Finding(
-        judge(holds=len(simple()) == 2, under=len(forward) == 2),
-        f"{len(simple())} orders of five points do not cross themselves. If the five are to be"
+        judge(holds=len(simple_sequences()) == 2, under=len(forward) == 2),
+        f"{len(simple_sequences())} orders of five points do not cross themselves. If the five are to be"
         f" neighbours and the two ways mirror images, {len(forward)} are left (and their reverses):"
         " 6-1-2-3-4 on the right, 3-4-5-6-1 on the left.",
     )
 
 
-@entry(
-    "S-34", "sentence", "Section 4, before Figure 9",
-    "The choice decides the final pose.",
-    test="test_traversal.py::test_joint_path_is_straight_from_stop_to_stop",
-    chapter="08_workspace#five-points",
-)  # fmt: skip
+@computes("S-34")
 def choice_decides_the_pose() -> Finding:
-    ends = [np.degrees(walk(o).final_pose) for o in (RIGHT, LEFT)]
+    ends = [np.degrees(path_through(o).final_pose) for o in (RIGHT, LEFT)]
     text = " and ".join(f"({a:.4f}°, {b:.4f}°)" for a, b in ends)
     return Finding(
         judge(holds=bool(np.abs(ends[0] - ends[1]).max() > 1)),
@@ -119,17 +93,12 @@ def choice_decides_the_pose() -> Finding:
     )
 
 
-@entry(
-    "S-35", "sentence", "Section 4, before Figure 9",
-    "The choice between right and left decides the reach.",
-    test="test_statements.py::test_right_and_left_reach_equally_far_on_the_symmetric_arm",
-    chapter="08_workspace#five-points",
-)  # fmt: skip
+@computes("S-35")
 def choice_decides_the_reach() -> Finding:
-    reach = {arm: [float(walk(o, SCALE, arm).reach[-1]) for o in (RIGHT, LEFT)]
+    reach = {arm: [float(path_through(o, SCALE, arm).reach[-1]) for o in (RIGHT, LEFT)]
              for arm in (robot(), symmetric())}  # fmt: skip
     printed, exact = reach.values()
-    spread = [float(walk(o).reach[-1]) for o in neighbours()]
+    spread = [float(path_through(o).reach[-1]) for o in neighbour_sequences()]
     return Finding(
         judge(holds=abs(exact[0] - exact[1]) > SMALL, under=max(spread) - min(spread) > 1),
         f"Among all sequences the final reach runs from {min(spread):.4f} to {max(spread):.4f} cm."
@@ -138,22 +107,16 @@ def choice_decides_the_reach() -> Finding:
     )
 
 
-@entry(
-    "S-36", "sentence", "Section 4, before Figure 9",
-    "The last link cannot come to its mirrored pose on one trajectory.",
-    test="test_statements.py::test_the_mirrored_pose_is_reached_through_the_stretched_one",
-    chapter="08_workspace#the-stretched-pose",
-    mended="It cannot without passing through the stretched, singular pose.",
-)  # fmt: skip
+@computes("S-36")
 def mirrored_pose_on_one_trajectory() -> Finding:
     p = scaled(SCALE, symmetric())
     turned = np.radians([-60.0, -120.0]) - p[0]  # the arm mirrored at the z axis
     straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
     allowed = bool(paper_rule.feasible(symmetric(), straight).all())
     mirrored = bool(np.allclose(turned, p[3], atol=SMALL))
-    apart = np.sign([q[1] - stretched(symmetric()) for q in (p[0], p[3])])
+    apart = aspect(p[[0, 3]], symmetric())
     require(apart[0] * apart[1] < 0, "mirrored poses on either side of the singular line")
-    right = walk(RIGHT)
+    right = path_through(RIGHT)
     return Finding(
         judge(holds=not (allowed and mirrored)),
         "On the symmetric arm point 4 is the mirror image of point 1, and the straight joint path"
@@ -165,41 +128,18 @@ def mirrored_pose_on_one_trajectory() -> Finding:
     )
 
 
-@entry(
-    "S-37", "sentence", "Section 4, after Figure 10",
-    "Figure 10 shows the traditional numerical methods at work.",
-    test="test_statements.py::test_the_figure_meant_is_the_one_whose_caption_says_so",
-    chapter="09_sampling#answer",
-    mended="Figure 11 does.",
-)  # fmt: skip
+@computes("S-37")
 def figure_10_for_11() -> Finding:
-    named = [number for number, shows in CAPTIONS.items() if shows == NAMED[1]]
+    number, subject = paper.NAMED_FIGURE
+    showing = [figure for figure, shows in paper.CAPTIONS.items() if shows == subject]
     return Finding(
-        judge(holds=named == [NAMED[0]], mended=len(named) == 1),
-        f"The sentence names Figure {NAMED[0]}, whose caption announces {CAPTIONS[NAMED[0]]};"
-        f" {NAMED[1]} are announced by the caption of Figure {named[0]} alone.",
+        judge(holds=showing == [number], corrected=len(showing) == 1),
+        f"The sentence names Figure {number}, whose caption announces {paper.CAPTIONS[number]};"
+        f" {subject} are announced by the caption of Figure {showing[0]} alone.",
     )
 
 
-CAPTIONS = {
-    7: "the path of six points",
-    8: "a path of five points",
-    9: "a path of five points",
-    10: "an overlay of two paths",
-    11: "random configurations",
-}
-"""What the captions of Section 4's last figures announce."""
-
-NAMED = (10, "random configurations")
-"""The figure that the text names, and what it says is seen there."""
-
-
-@entry(
-    "S-38", "sentence", "Section 4, on numerical methods",
-    "Random sampling costs much computation.",
-    test="test_statements.py::test_the_closed_form_needs_few_evaluations",
-    chapter="09_sampling#at-equal-accuracy",
-)  # fmt: skip
+@computes("S-38")
 def sampling_is_costly() -> Finding:
     rows = []
     for k in (2, 3, 6):
@@ -213,12 +153,7 @@ def sampling_is_costly() -> Finding:
     )
 
 
-@entry(
-    "S-39", "sentence", "Section 4, on numerical methods",
-    "Numerical methods give no continuous boundary in joint space.",
-    test="test_statements.py::test_a_contour_on_a_grid_is_one_closed_curve_near_the_region",
-    chapter="09_sampling#at-equal-accuracy",
-)  # fmt: skip
+@computes("S-39")
 def no_continuous_boundary() -> Finding:
     errors = {n: effort.contour_error(n) for n in (50, 100, 200, 400)}
     closed = all(
@@ -235,14 +170,9 @@ def no_continuous_boundary() -> Finding:
     )
 
 
-@entry(
-    "S-40", "sentence", "Section 4, on numerical methods",
-    "The efficiency of sampling depends directly on the volume of data.",
-    test="test_sampling.py::test_standard_error_is_binomial",
-    chapter="09_sampling#what-sampling-costs",
-)  # fmt: skip
+@computes("S-40")
 def efficiency_and_volume() -> Finding:
-    part = by_windows().area / (2 * np.pi) ** 2
+    part = share_of_square()
     sizes = np.array([100, 1000, 10_000])
     errors = [
         np.sqrt(
@@ -264,42 +194,30 @@ def efficiency_and_volume() -> Finding:
     )
 
 
-@entry(
-    "S-41", "sentence", "Section 4, before Figure 11",
-    "The overlap of colours in the plane comes from the poses of Figures 8 and 9.",
-    test="test_statements.py::test_the_overlap_is_where_one_posture_alone_is_safe",
-    chapter="09_sampling#why-the-colours-overlap-in-the-plane",
-)  # fmt: skip
+@computes("S-41")
 def overlap_comes_from_postures() -> Finding:
     areas, draw = workspace(), drawn()
-    once = areas["union"] - areas["twice"]
     free = draw.q[draw.free]
     alone = ~paper_rule.feasible(robot(), other_posture(free))
-    weight = np.abs(np.linalg.det(tool_form().gradient(free)[:, PLANE]))
+    weight = np.abs(det_jacobian(free))
     drawn_area = float((weight * alone).sum() / len(draw.q) * (2 * np.pi) ** 2)
     return Finding(
-        judge(holds=abs(drawn_area / once - 1) < 0.05),
-        f"A place shows both colours exactly where one of its two postures is safe: {once:.2f}"
+        judge(holds=abs(drawn_area / areas["once"] - 1) < 0.05),
+        f"A place shows both colours exactly where one of its two postures is safe: {areas['once']:.2f}"
         " cm² of the"
         f" {areas['union']:.2f} cm² of safe places, without sampling. The draw gives"
         f" {drawn_area:.1f} cm².",
     )
 
 
-@entry(
-    "S-42", "sentence", "Section 4, before Figure 11",
-    "The lateral shapes of the workspace show as in Figure 7.",
-    test="test_statements.py::test_the_image_of_the_boundary_encloses_a_part_of_the_workspace",
-    chapter="08_workspace#what-the-path-does-not-enclose",
-)  # fmt: skip
+@computes("S-42")
 def lobes_show() -> Finding:
     areas = workspace()
-    once = areas["union"] - areas["twice"]
-    same = abs(areas["enclosed"] - once) < 1e-3
+    same = abs(areas["enclosed"] - areas["once"]) < 1e-3
     return Finding(
         judge(holds=same),
         f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in two lobes, is"
         " just the"
-        f" part with one safe posture ({once:.2f} cm²): the lateral shapes are the places of both"
+        f" part with one safe posture ({areas['once']:.2f} cm²): the lateral shapes are the places of both"
         " colours.",
     )

@@ -8,57 +8,29 @@ from functools import cache
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.ledger.entries import Finding, entry, judge, require
-from lizarraga2025.ledger.facts import SMALL, lettered, pairs, robot
-from lizarraga2025.ledger.walks import (
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence.arms import of_slides, pairs, robot, sliding, symbolic_robot, symmetric
+from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled
+from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.tool_paths import (
     LEFT,
     RIGHT,
-    SCALE,
     asymmetry,
-    by_windows,
-    crossings,
-    neighbours,
-    scaled,
-    stretched,
-    symmetric,
-    walk,
+    asymmetry_of_the_symmetric,
+    is_cut_by_the_singular_line,
+    neighbour_sequences,
+    path_through,
+    simple_neighbours,
     workspace,
 )
+from lizarraga2025.verdicts import Finding, judge, require
 from qbound import clearance, components
 from qbound.boundary.functions import closest_approach, position
-from qbound.model.robot import Joint, Pair, Robot, joint_symbols, with_symbols
+from qbound.model.robot import joint_symbols, with_symbols
 from qbound.region.region import clearance_problem, solve
 
 
-@cache
-def sliding() -> Robot:
-    """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    slide = Joint(
-        "q3",
-        "prismatic",
-        "2",
-        "slide",
-        np.zeros(3),
-        np.eye(3),
-        np.array([1.0, 0, 0]),
-        (-10.0, 10.0),
-    )
-    points = tuple(replace(p, frame="slide") if p.name == "3" else p for p in robot().points)
-    return replace(
-        robot(),
-        joints=(*robot().joints, slide),
-        points=points,
-        boundaries=(*robot().boundaries, Pair("B8", ("6", "3"), 5.0)),
-        home=np.zeros(3),
-    )
-
-
-@entry(
-    "S-43", "sentence", "Section 4, on prismatic joints",
-    "A prismatic joint enters the position vectors linearly.",
-    test="test_boundary.py::test_only_slides_have_squares",
-    chapter="18_prismatic_joints#what-a-slide-does-to-a-boundary-function",
-)  # fmt: skip
+@computes("S-43")
 def slides_enter_linearly() -> Finding:
     import sympy as sp
 
@@ -73,12 +45,7 @@ def slides_enter_linearly() -> Finding:
     )
 
 
-@entry(
-    "S-44", "sentence", "Section 4, on prismatic joints",
-    "The same structure of boundary functions applies.",
-    test="test_harmonic.py::test_a_prismatic_joint_has_a_square",
-    chapter="18_prismatic_joints#what-a-slide-does-to-a-boundary-function",
-)  # fmt: skip
+@computes("S-44")
 def same_structure() -> Finding:
     forms = [components(sliding(), b) for b in sliding().boundaries]
     shapes = {form.shape for form in forms}
@@ -91,12 +58,7 @@ def same_structure() -> Finding:
     )
 
 
-@entry(
-    "S-45", "sentence", "Section 4, on prismatic joints",
-    "With prismatic joints the constraints become affine in configuration space.",
-    test="test_statements.py::test_what_is_affine_in_a_slide_and_what_is_quadratic",
-    chapter="18_prismatic_joints#what-a-slide-does-to-a-boundary-function",
-)  # fmt: skip
+@computes("S-45")
 def affine_constraints() -> Finding:
     import sympy as sp
 
@@ -107,11 +69,7 @@ def affine_constraints() -> Finding:
     along = sp.simplify(sp.diff(wall, q[2], 2)) == 0
     mixed = sp.simplify(sp.diff(wall, q[0], q[2]))
     square = sp.simplify(sp.diff(pair, q[2], 2) / 2)
-    slides = replace(
-        robot(),
-        joints=tuple(replace(j, kind="prismatic", limits=(-9.0, 9.0)) for j in robot().joints),
-    )
-    flat = clearance(slides, slides.boundary("B7")).coefficients
+    flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
     require(square == 1, "the clearance is quadratic in a slide, with leading coefficient 1")
     return Finding(
@@ -138,12 +96,7 @@ def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
     return low + points * (high - low) / (n - 1), triangles
 
 
-@entry(
-    "S-46", "sentence", "Section 4, on higher dimensions",
-    "A boundary function equal to zero is a hypersurface of configuration space.",
-    test="test_statements.py::test_what_is_affine_in_a_slide_and_what_is_quadratic",
-    chapter="18_prismatic_joints#a-surface-in-three-joints",
-)  # fmt: skip
+@computes("S-46")
 def hypersurfaces() -> Finding:
     places, _ = surface(41)
     wall = clearance(sliding(), sliding().boundary("B7"))
@@ -160,12 +113,7 @@ def hypersurfaces() -> Finding:
     )
 
 
-@entry(
-    "S-47", "sentence", "Section 4, on higher dimensions",
-    "Such surfaces can be drawn by isosurface extraction.",
-    test="test_statements.py::test_marching_cubes_come_to_the_surface_as_the_square_of_the_step",
-    chapter="18_prismatic_joints#a-surface-in-three-joints",
-)  # fmt: skip
+@computes("S-47")
 def isosurfaces() -> Finding:
     wall = clearance(sliding(), sliding().boundary("B7"))
     off = {n: float(np.abs(wall(surface(n)[0])).max()) for n in (21, 41, 81)}
@@ -179,12 +127,7 @@ def isosurfaces() -> Finding:
     )
 
 
-@entry(
-    "S-48", "sentence", "Section 4, on higher dimensions",
-    "Slices of fewer joints keep the computation small without random sampling.",
-    test="test_harmonic.py::test_restriction_holds_joints",
-    chapter="18_prismatic_joints#slices",
-)  # fmt: skip
+@computes("S-48")
 def slices_are_enough() -> Finding:
     held = {2: 4.0}
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
@@ -204,12 +147,7 @@ def slices_are_enough() -> Finding:
     )
 
 
-@entry(
-    "S-49", "sentence", "Section 4, on higher dimensions",
-    "In a slice the formulation stays deterministic and symbolic.",
-    test="test_harmonic.py::test_symbols_and_numbers_agree",
-    chapter="18_prismatic_joints#slices",
-)  # fmt: skip
+@computes("S-49")
 def slices_stay_symbolic() -> Finding:
     import sympy as sp
 
@@ -226,12 +164,7 @@ def slices_stay_symbolic() -> Finding:
     )
 
 
-@entry(
-    "S-50", "sentence", "Conclusions, first paragraph",
-    "Connecting the intersection points constructs continuous workspace boundaries.",
-    test="test_statements.py::test_the_image_of_the_boundary_encloses_a_part_of_the_workspace",
-    chapter="08_workspace#what-the-path-does-not-enclose",
-)  # fmt: skip
+@computes("S-50")
 def boundary_by_connecting_points() -> Finding:
     areas, region = workspace(), by_windows()
     part = areas["enclosed"] / areas["union"]
@@ -244,16 +177,11 @@ def boundary_by_connecting_points() -> Finding:
     )
 
 
-@entry(
-    "S-51", "sentence", "Conclusions, first paragraph",
-    "Boundary functions represent the constraints explicitly.",
-    test="test_boundary.py::test_derived_component_is_the_printed_formula_by_identity",
-    chapter="05_boundary_functions#the-eleven-components",
-)  # fmt: skip
+@computes("S-51")
 def explicit_constraints() -> Finding:
     import sympy as sp
 
-    arm, _ = lettered()
+    arm, _ = symbolic_robot()
     q = joint_symbols(arm)
     derived = [f for b in arm.boundaries for f in components(arm, b).symbolic(q) if f != 0]
     same = [
@@ -268,55 +196,34 @@ def explicit_constraints() -> Finding:
     )
 
 
-@entry(
-    "S-52", "sentence", "Conclusions, second paragraph",
-    "Scaling about the centroid resolves singularities.",
-    test="test_statements.py::test_no_useful_scale_leaves_out_the_singular_poses",
-    chapter="08_workspace#the-stretched-pose",
-    mended="At every scale above 0.0095 the scaled region holds stretched poses.",
-)  # fmt: skip
+@computes("S-52")
 def scaling_resolves_singularities() -> Finding:
-    through = [
-        float(np.ptp(np.sign(scaled(s)[:, 1] - stretched()))) for s in (SCALE, 0.5, 0.1, 0.01)
-    ]
-    require(min(through) > 0, "stretched poses inside at scales down to 0.01")
+    through = [is_cut_by_the_singular_line(scaled(s)) for s in (SCALE, 0.5, 0.1, 0.01)]
+    require(all(through), "stretched poses inside at scales down to 0.01")
     return Finding(
-        judge(holds=max(through) == 0),
+        judge(holds=not any(through)),
         "The singular line crosses the scaled polygon at scales 0.95, 0.5, 0.1 and 0.01 alike: it"
         " passes"
         " within a degree of the point about which the region is scaled.",
     )
 
 
-@entry(
-    "S-53", "sentence", "Conclusions, second paragraph",
-    "The scaling is what gives structured trajectories.",
-    test="test_traversal.py::test_orders_without_crossing_are_shapelys",
-    chapter="08_workspace#five-points",
-    mended="The choice of points and order gives them, at every scale alike.",
-)  # fmt: skip
+@computes("S-53")
 def structured_without_scaling() -> Finding:
-    free = {
-        s: {o for o in neighbours() if crossings(walk(o, s)) == 0} for s in (1.0, SCALE, 0.9, 0.8)
-    }
-    require(len(set(map(frozenset, free.values()))) == 1, "the same sequences at every scale")
+    free = {s: simple_neighbours(s) for s in (1.0, SCALE, 0.9, 0.8)}
+    require(len(set(map(tuple, free.values()))) == 1, "the same sequences at every scale")
     number = len(free[1.0])
     return Finding(
         judge(holds=number == 0),
-        f"The same {number} of {len(neighbours())} sequences of neighbours are free of crossings at"
+        f"The same {number} of {len(neighbour_sequences())} sequences of neighbours are free of crossings at"
         " scales 1, 0.95, 0.9 and 0.8: without scaling as with it.",
     )
 
 
-@entry(
-    "S-54", "sentence", "Conclusions, second paragraph",
-    "Final pose and reach depend strongly on the trajectory.",
-    test="test_traversal.py::test_tool_and_reach_are_forward_kinematics",
-    chapter="08_workspace#five-points",
-)  # fmt: skip
+@computes("S-54")
 def strong_dependence() -> Finding:
-    ends = np.array([walk(o).final_pose for o in neighbours()])
-    reach = np.array([walk(o).reach[-1] for o in neighbours()])
+    ends = np.array([path_through(o).final_pose for o in neighbour_sequences()])
+    reach = np.array([path_through(o).reach[-1] for o in neighbour_sequences()])
     spread = np.degrees(np.ptp(ends, axis=0))
     return Finding(
         judge(holds=bool(spread.min() > 90 and np.ptp(reach) / reach.max() > 0.2)),
@@ -326,17 +233,11 @@ def strong_dependence() -> Finding:
     )
 
 
-@entry(
-    "S-55", "sentence", "Conclusions, second paragraph",
-    "Such paths are unsymmetric because of nonlinearity and of the scaling.",
-    test="test_paper_rule.py::test_symmetric_robot_has_a_symmetric_region",
-    chapter="08_workspace#right-against-left",
-    mended="They are unsymmetric because of the data, or of a pair of sequences that is.",
-)  # fmt: skip
+@computes("S-55")
 def causes_of_asymmetry() -> Finding:
-    exact = max(asymmetry(symmetric(), s) for s in (1.0, SCALE, 0.8))
+    exact = asymmetry_of_the_symmetric()
     printed = asymmetry(robot(), SCALE)
-    other = [walk(o, SCALE, symmetric()) for o in (RIGHT, LEFT[::-1])]
+    other = [path_through(o, SCALE, symmetric()) for o in (RIGHT, LEFT[::-1])]
     require(exact < SMALL, "symmetric paths of the symmetric arm")
     return Finding(
         judge(holds=exact > SMALL),
@@ -349,12 +250,7 @@ def causes_of_asymmetry() -> Finding:
     )
 
 
-@entry(
-    "S-56", "sentence", "Conclusions, third paragraph",
-    "The formulation carries over to spatial manipulators.",
-    test="test_boundary.py::test_theorem_1_holds_for_any_chain_and_either_order",
-    chapter="03_theorem_1#answer",
-)  # fmt: skip
+@computes("S-56")
 def spatial_manipulators() -> Finding:
     first = replace(robot().joints[0], axis=np.array([0.0, 0.0, 1.0]))
     arm = replace(robot(), joints=(first, robot().joints[1]))

@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from lizarraga2025.ledger.facts import robot, vertices
-from lizarraga2025.ledger.walks import by_windows, floor
+from lizarraga2025.evidence.arms import floor, robot
+from lizarraga2025.evidence.joint_region import by_windows, share_of_square, vertices
 from qbound.forms.circle import nearest_turn
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace
@@ -27,7 +27,7 @@ CLOSED_FORM_START = 12
 
 def samples_needed(relative: float) -> float:
     """Return how many random configurations give the area with this relative standard error."""
-    p = by_windows().area / (2 * np.pi) ** 2
+    p = share_of_square()
     return float((1 - p) / p / relative**2)
 
 

@@ -2,41 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.ledger.entries import Finding, entry, judge, require, undetermined
-from lizarraga2025.ledger.facts import degrees, lettered, mended, pairs, robot, square, walls
-from lizarraga2025.ledger.labels import quarter_turn
-from lizarraga2025.ledger.proofs import General, general, vanishes
-from lizarraga2025.ledger.rounding import contact, radii
+from lizarraga2025.computations.registry import computes, computes_each
+from lizarraga2025.evidence.arms import corrected, half_spaces, pairs, robot, symbolic_robot
+from lizarraga2025.evidence.joint_region import square, vertices
+from lizarraga2025.evidence.proofs import UNTURNED, General, general, quarter_turn, vanishes
+from lizarraga2025.evidence.rounding import contact, degrees, radii
+from lizarraga2025.verdicts import Finding, judge, require, undetermined
 from qbound import clearance, components, pair_vector
 from qbound.boundary.functions import closest_approach, observer
 from qbound.model.frames import Frame, Frames
-from qbound.model.robot import joint_symbols
+from qbound.model.robot import Robot, joint_symbols
 from qbound.region import paper_rule
 from qbound.region.region import find_region
-
-PAGE = "03_theorem_1#equation-eq-"
-
 
 # --- constraints: eqs. (9) to (12) ----------------------------------------------------------------
 
 
-@entry(
-    "E-9",
-    "equation",
-    "eq. (9), Section 3",
-    "Each component of a boundary function is positive inside the feasible region, zero on its"
-    " boundary and negative outside.",
-    test="test_boundary.py::test_clearance_of_a_pair_is_positive_exactly_where_it_keeps_apart",
-    chapter="03_theorem_1#the-sign-of-a-component-is-no-verdict",
-    mended="β = |B|² - d_min² for a point pair and β = n · r - h for a wall: one function for each"
-    " boundary, positive exactly inside.",
-)
+@computes("E-9")
 def sign_of_a_component() -> Finding:
     import sympy as sp
 
@@ -65,19 +54,11 @@ def sign_of_a_component() -> Finding:
     )
 
 
-@entry(
-    "E-9.1",
-    "equation",
-    "eq. (9) for geometric boundary functions",
-    "The one component of a wall that counts is positive inside the feasible region.",
-    test="test_boundary.py::test_clearance_of_a_half_space_is_the_depth_inside_it",
-    chapter="03_theorem_1#the-sign-of-a-component-is-no-verdict",
-    mended="β_{7,3} ≥ 0 in the region; β_{5,1} and β_{6,1} do not bound it.",
-)
-def sign_of_a_wall() -> Finding:
+@computes("E-9.1")
+def sign_of_a_half_space() -> Finding:
     allowed = square()[paper_rule.feasible(robot(), square())]
-    below = {w.name: 100 * (clearance(robot(), w)(allowed) < 0).mean() for w in walls()}
-    used = [w.name for w in walls() if w.used]
+    below = {w.name: 100 * (clearance(robot(), w)(allowed) < 0).mean() for w in half_spaces()}
+    used = [w.name for w in half_spaces() if w.used]
     shares = ", ".join(f"{name} in {share:.1f} %" for name, share in below.items())
     return Finding(
         judge(holds=not any(below.values()), under=not any(below[name] for name in used)),
@@ -85,24 +66,14 @@ def sign_of_a_wall() -> Finding:
     )
 
 
-@entry(
-    "E-10",
-    "equation",
-    "eq. (10), Section 3",
-    "Each joint has a lower and an upper limit; no value is printed for this robot.",
-    test="test_sampling.py::test_ranges_are_the_limits_or_a_full_turn",
-    chapter="03_theorem_1#what-a-boundary-function-is",
-)
+@computes("E-10")
 def joint_limits() -> Finding:
-    from dataclasses import replace
-
     printed = [o.label for o in paper.OFFSETS if o.label.startswith("q")]
     box = np.degrees([paper_rule.box(robot()).lower, paper_rule.box(robot()).upper])
     area = {}
     for name, limits in (("none", None), ("±180°", (-np.pi, np.pi)), ("±170°", (-2.967, 2.967))):
         joints = tuple(replace(joint, limits=limits) for joint in robot().joints)
-        home = find_region(replace(robot(), joints=joints)).home
-        area[name] = 0.0 if home is None else home.area
+        area[name], _ = _home(replace(robot(), joints=joints))
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
     verdict = undetermined({name: not printed and fits for name, fits in same.items()})
     return Finding(
@@ -116,27 +87,16 @@ def joint_limits() -> Finding:
     )
 
 
-@entry(
-    "E-11",
-    "equation",
-    "eq. (11), Section 3",
-    "Points of different bodies keep a distance of at least d_min; no value is printed.",
-    test="test_robotfile.py::test_the_clearance_of_the_packaged_robot_makes_a_wall_of_every_pair",
-    chapter="03_theorem_1#what-the-distance-condition-repairs",
-)
+@computes("E-11")
 def least_distance() -> Finding:
-    from dataclasses import replace
-
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
     seen, fits = [], {}
     for d in (0.01, 0.1, 0.5):
         boundaries = tuple(
             replace(b, clearance=d) if b in pairs() else b for b in robot().boundaries
         )
-        home = find_region(replace(robot(), boundaries=boundaries)).home
+        area, corners = _home(replace(robot(), boundaries=boundaries))
         walled = sum(gap < d for gap in gaps)
-        area = 0.0 if home is None else home.area
-        corners = 0 if home is None else len(home.vertices)
         fits[str(d)] = walled == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {walled} walls, {corners} corners, {area:.6f} rad²")
     return Finding(
@@ -146,18 +106,15 @@ def least_distance() -> Finding:
     )
 
 
-@entry(
-    "E-12",
-    "equation",
-    "eq. (12), Section 3",
-    "The position stays between limits along x, y and z.",
-    test="test_boundary.py::test_clearance_of_a_half_space_is_the_depth_inside_it",
-    chapter="07_joint_region#all-bounds-in-one-picture",
-    mended="z ≥ z_{min,1} alone bounds the selected region.",
-)
+def _home(arm: Robot) -> tuple[float, int]:
+    """Return area, rad^2, and number of vertices of the region around home; zeros if it is empty."""
+    home = find_region(arm).home
+    return (0.0, 0) if home is None else (home.area, len(home.vertices))
+
+
+@computes("E-12")
 def limits_in_space() -> Finding:
-    corners = [vertex.q for vertex in paper_rule.vertices(robot())]
-    least = {w.name: float(np.min(clearance(robot(), w)(corners))) for w in walls()}
+    least = {w.name: float(np.min(clearance(robot(), w)(vertices()))) for w in half_spaces()}
     inside = {name: x > -1e-9 for name, x in least.items()}
     depths = ", ".join(f"{name} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     upper = [o.label for o in paper.OFFSETS if "max" in o.label]
@@ -171,14 +128,7 @@ def limits_in_space() -> Finding:
 # --- Theorem 1 ------------------------------------------------------------------------------------
 
 
-@entry(
-    "E-13",
-    "equation",
-    "eq. (13), Theorem 1",
-    "Two points collide when the vector between them is null.",
-    test="test_boundary.py::test_converse_of_theorem_1",
-    chapter=PAGE + "13",
-)
+@computes("E-13")
 def null_between() -> Finding:
     chain = general().chain
     ends = [chain.position("0", name, "0") for name in ("a+n", "b+m")]
@@ -190,14 +140,7 @@ def null_between() -> Finding:
     )
 
 
-@entry(
-    "E-14",
-    "equation",
-    "eq. (14), Theorem 1",
-    "The vector is null exactly when its length is zero.",
-    test="test_boundary.py::test_converse_of_theorem_1",
-    chapter=PAGE + "14",
-)
+@computes("E-14")
 def null_length() -> Finding:
     import sympy as sp
 
@@ -211,16 +154,7 @@ def null_length() -> Finding:
     )
 
 
-@entry(
-    "E-15",
-    "equation",
-    "eq. (15), Theorem 1",
-    "Under a collision the vector between the points is r_{a,b} + R_{a,b} r_{b,b+m} - r_{a,a+n}.",
-    test="test_boundary.py::test_the_label_of_eqs_15_and_25_is_two_vectors_of_one_length",
-    chapter="03_theorem_1#one-label-two-observers",
-    mended="The same, seen from frame a, at every configuration; seen from the base it is turned"
-    " by R_{0,a}.",
-)
+@computes("E-15")
 def relative_position() -> Finding:
     g, small = general(), quarter_turn()
     from_a, from_0 = (g.chain.position("a+n", "b+m", o) for o in ("a", "0"))
@@ -233,18 +167,11 @@ def relative_position() -> Finding:
     )
 
 
-@entry(
-    "E-16",
-    "equation",
-    "eq. (16), Theorem 1",
-    "This vector, as a function of the joints, is the boundary function B(q).",
-    test="test_boundary.py::test_theorem_1_holds_for_any_chain_and_either_order",
-    chapter=PAGE + "16",
-)
+@computes("E-16")
 def boundary_function() -> Finding:
     import sympy as sp
 
-    symbolic, _ = lettered()
+    symbolic, _ = symbolic_robot()
     q = np.array(joint_symbols(robot()))
     frames = symbolic.frames(q)
     left, joints = [], []
@@ -260,14 +187,7 @@ def boundary_function() -> Finding:
     )
 
 
-@entry(
-    "E-17",
-    "equation",
-    "eq. (17), Theorem 1",
-    "A collision occurs if and only if B(q) = 0.",
-    test="test_boundary.py::test_converse_of_theorem_1",
-    chapter="03_theorem_1#do-the-points-ever-meet",
-)
+@computes("E-17")
 def collision_condition() -> Finding:
     g = general()
     between = g.chain.position("a+n", "b+m", "0")
@@ -280,51 +200,26 @@ def collision_condition() -> Finding:
     )
 
 
-def _pair_meets(number: int) -> Callable[[], Finding]:
-    def meets() -> Finding:
-        pair = pairs()[number - 1]
-        q, gap = closest_approach(robot(), pair)
-        a, b = radii(robot(), pair)
-        limit = contact(pair)
-        with_9_09 = closest_approach(mended(), pairs(mended())[number - 1])[1]
-        verdict = judge(holds=gap == 0, under=gap <= limit, mended=with_9_09 <= limit)
-        slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm." if with_9_09 != gap else ""
-        return Finding(
-            verdict,
-            f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
-            f" {gap:.4f} cm, at {degrees(q)}. Offsets rounded to hundredths allow {limit:.4f}"
-            f" cm.{slip}",
-        )
-
-    return meets
-
-
-for _number, _pair in enumerate(pairs(), start=1):
-    entry(
-        f"E-17.{_number}",
-        "equation",
-        f"eq. (17) for B_{_number}, Tables 3 and 4",
-        f"Points {_pair.points[0]} and {_pair.points[1]} meet at some joint value.",
-        test="test_boundary.py::test_printed_points_never_quite_meet",
-        chapter="05_boundary_functions#where-the-points-come-closest",
-        mended="x_{2,13} = 9.09 cm."
-        if _number == 4
-        else "They meet up to the rounding of the print.",
-    )(_pair_meets(_number))
+@computes_each({f"E-17.{number}": number for number in (1, 2, 3, 4)})
+def pair_meets(number: int) -> Finding:
+    pair = pairs()[number - 1]
+    q, gap = closest_approach(robot(), pair)
+    a, b = radii(robot(), pair)
+    limit = contact(pair)
+    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
+    slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm." if with_9_09 != gap else ""
+    return Finding(
+        judge(holds=gap == 0, under=gap <= limit, corrected=with_9_09 <= limit),
+        f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
+        f" {gap:.4f} cm, at {degrees(q)}. Offsets rounded to hundredths allow {limit:.4f}"
+        f" cm.{slip}",
+    )
 
 
 # --- the proof of Theorem 1 -----------------------------------------------------------------------
 
 
-@entry(
-    "E-18",
-    "equation",
-    "eq. (18), proof of Theorem 1",
-    "A position along a chain is the one before plus the rotated next step.",
-    test="test_frames.py::test_frame_is_the_relative_homogeneous_matrix",
-    chapter="03_theorem_1#positions-along-the-chain",
-    mended="The last vector is seen from b-1 (rule 1); rule 5, one observer, does not apply.",
-)
+@computes("E-18")
 def chain_rule() -> Finding:
     g = general()
     whole, first = (g.chain.position("0", name, "0") for name in ("b", "a"))
@@ -343,10 +238,8 @@ def chain_rule() -> Finding:
 
 Step = Callable[[General], Any]
 
-STEPS: tuple[tuple[int, str, str, Step], ...] = (
-    (
-        19,
-        "The vector between the points is the difference of their places.",
+STEPS: Mapping[str, tuple[str, Step]] = {
+    "E-19": (
         "for the observers 0, a and b",
         lambda g: [
             g.chain.position("a+n", "b+m", o)
@@ -354,40 +247,42 @@ STEPS: tuple[tuple[int, str, str, Step], ...] = (
             for o in ("0", "a", "b")
         ],
     ),
-    (
-        20,
-        "The place of a+n is that of a plus the rotated local vector.",
+    "E-20": (
         "seen from the base, the local vector from a",
         lambda g: g.chain.position("0", "a+n", "0") - (g.r_0a + g.R_0a @ g.r_an),
     ),
-    (
-        21,
-        "The place of b+m is that of b plus the rotated local vector.",
+    "E-21": (
         "seen from the base, the local vector from b",
         lambda g: g.chain.position("0", "b+m", "0") - (_r_0b(g) + _R_0b(g) @ g.r_bm),
     ),
-    (
-        22,
-        "Both places inserted into the difference.",
+    "E-22": (
         "seen from the base",
         lambda g: _between(g) - ((_r_0b(g) + _R_0b(g) @ g.r_bm) - (g.r_0a + g.R_0a @ g.r_an)),
     ),
-    (
-        23,
-        "The same, sorted.",
+    "E-23": (
         "seen from the base",
         lambda g: _between(g) - ((_r_0b(g) - g.r_0a) + _R_0b(g) @ g.r_bm - g.R_0a @ g.r_an),
     ),
-    (
-        24,
-        "R_{0,b} is replaced by R_{0,a} R_{a,b}.",
+    "E-24": (
         "seen from the base; it also takes r_{0,b} - r_{0,a} = R_{0,a} r_{a,b}",
         lambda g: [
             _between(g) - (g.R_0a @ g.r_ab + g.R_0a @ g.R_ab @ g.r_bm - g.R_0a @ g.r_an),
             _r_0b(g) - g.r_0a - g.R_0a @ g.r_ab,
         ],
     ),
-)
+}
+"""Steps of the proof: who observes, and left side less right side."""
+
+
+@computes_each(STEPS)
+def step_of_the_proof(step: tuple[str, Step]) -> Finding:
+    seen, difference = step
+    left = np.ravel(np.asarray(difference(general())))
+    return Finding(
+        judge(holds=vanishes(left)),
+        f"An identity {seen}: none of {left.size} components leaves a remainder in general"
+        " rotations and vectors.",
+    )
 
 
 def _between(g: General) -> Any:
@@ -402,38 +297,7 @@ def _R_0b(g: General) -> Any:
     return g.chain.rotation("0", "b")
 
 
-def _step_of_the_proof(seen: str, difference: Step) -> Callable[[], Finding]:
-    def step() -> Finding:
-        left = np.ravel(np.asarray(difference(general())))
-        return Finding(
-            judge(holds=vanishes(left)),
-            f"An identity {seen}: none of {left.size} components leaves a remainder in general"
-            " rotations and vectors.",
-        )
-
-    return step
-
-
-for _number, _says, _seen, _difference in STEPS:
-    entry(
-        f"E-{_number}",
-        "equation",
-        f"eq. ({_number}), proof of Theorem 1",
-        _says,
-        test="test_boundary.py::test_the_label_of_eqs_15_and_25_is_two_vectors_of_one_length",
-        chapter=f"{PAGE}{_number}",
-    )(_step_of_the_proof(_seen, _difference))
-
-
-@entry(
-    "E-25",
-    "equation",
-    "eq. (25), proof of Theorem 1",
-    "Taken out, the factor R_{0,a} leaves the vector of eq. (15) in parentheses.",
-    test="test_boundary.py::test_the_label_of_eqs_15_and_25_is_two_vectors_of_one_length",
-    chapter=PAGE + "25",
-    mended="The left side is seen from the base, that of eq. (15) from a.",
-)
+@computes("E-25")
 def rotation_taken_out() -> Finding:
     g = general()
     from_0, from_a = (g.chain.position("a+n", "b+m", o) for o in ("0", "a"))
@@ -446,14 +310,7 @@ def rotation_taken_out() -> Finding:
     )
 
 
-@entry(
-    "E-26",
-    "equation",
-    "eq. (26), proof of Theorem 1",
-    "If the vector is null, the term in parentheses is null.",
-    test="test_boundary.py::test_converse_of_theorem_1",
-    chapter="03_theorem_1#from-the-vector-to-its-null",
-)
+@computes("E-26")
 def bracket_null() -> Finding:
     g = general()
     back = vanishes(g.R_0a.T @ _between(g) - g.B)
@@ -467,14 +324,7 @@ def bracket_null() -> Finding:
     )
 
 
-@entry(
-    "E-27",
-    "equation",
-    "eq. (27), proof of Theorem 1",
-    "The term in parentheses defines B_i(q).",
-    test="test_boundary.py::test_theorem_1_holds_for_any_chain_and_either_order",
-    chapter=PAGE + "27",
-)
+@computes("E-27")
 def boundary_function_again() -> Finding:
     g = general()
     return Finding(
@@ -484,14 +334,7 @@ def boundary_function_again() -> Finding:
     )
 
 
-@entry(
-    "E-28",
-    "equation",
-    "eq. (28), proof of Theorem 1",
-    "A collision occurs if and only if B_i(q) = 0.",
-    test="test_boundary.py::test_converse_of_theorem_1",
-    chapter=PAGE + "28",
-)
+@computes("E-28")
 def collision_condition_again() -> Finding:
     g = general()
     there, back = vanishes(_between(g) - g.R_0a @ g.B), vanishes(g.R_0a.T @ _between(g) - g.B)
@@ -502,23 +345,16 @@ def collision_condition_again() -> Finding:
     )
 
 
-@entry(
-    "TH-1",
-    "sentence",
-    "Theorem 1",
-    "In a chain 0, a, a+n, b, b+m two points collide exactly where B(q) = 0.",
-    test="test_boundary.py::test_theorem_1_holds_for_any_chain_and_either_order",
-    chapter="03_theorem_1#thm:1",
-)
+@computes("TH-1")
 def theorem_1() -> Finding:
     g = general()
     printed = Frames(  # the labels in the printed order: b grows from the point a+n
         "0",
         [
             Frame("a", "0", g.R_0a, g.r_0a),
-            Frame("a+n", "a", np.eye(3, dtype=int), g.r_an),
+            Frame("a+n", "a", UNTURNED, g.r_an),
             Frame("b", "a+n", g.R_ab, g.r_ab - g.r_an),
-            Frame("b+m", "b", np.eye(3, dtype=int), g.r_bm),
+            Frame("b+m", "b", UNTURNED, g.r_bm),
         ],
     )
     same_order = vanishes(printed.position("a+n", "b+m", "a") - g.B)
@@ -536,43 +372,23 @@ def theorem_1() -> Finding:
 def _derived(name: str) -> Any:
     import sympy as sp
 
-    symbolic, _ = lettered()
-    i, j = int(name[6]), int(name[8])
+    symbolic, _ = symbolic_robot()
+    i, j = paper.indices(name)
     form = components(symbolic, symbolic.boundary(f"B{i}"))
     return sp.sympify(form.symbolic(joint_symbols(robot()))[j - 1])
 
 
-def _component(name: str) -> Callable[[], Finding]:
-    def component() -> Finding:
-        import sympy as sp
-
-        printed = paper.expression(paper.EQUATION_29[name])
-        difference = sp.expand(_derived(name) - printed)
-        return Finding(
-            judge(holds=difference == 0),
-            f"The component derived from the chain has {len(sp.Add.make_args(sp.expand(printed)))}"
-            f" terms; printed minus derived is {difference}, symbol by symbol.",
-        )
-
-    return component
-
-
-@entry(
-    "E-29",
-    "equation",
-    "eq. (29), Section 4",
-    "Eleven components of the seven boundary functions.",
-    test="test_boundary.py::test_derived_component_is_the_printed_formula_by_identity",
-    chapter="05_boundary_functions#the-eleven-components",
-)
-def eleven_components() -> Finding:
+def _differs(name: str) -> Any:
+    """Return the derived component less the printed one."""
     import sympy as sp
 
+    return sp.expand(_derived(name) - paper.expression(paper.EQUATION_29[name]))
+
+
+@computes("E-29")
+def eleven_components() -> Finding:
     names = {f"beta_{{{b.name[1:]},{j}}}" for b in robot().boundaries for j in (1, 2, 3)}
-    equal = [
-        sp.expand(_derived(n) - paper.expression(text)) == 0
-        for n, text in paper.EQUATION_29.items()
-    ]
+    equal = [_differs(name) == 0 for name in paper.EQUATION_29]
     rest = [_derived(name) == 0 for name in names - set(paper.EQUATION_29)]
     return Finding(
         judge(holds=all(equal) and all(rest)),
@@ -581,13 +397,13 @@ def eleven_components() -> Finding:
     )
 
 
-for _name in paper.EQUATION_29:
-    _i, _j = _name[6], _name[8]
-    entry(
-        f"E-29.{_i}.{_j}",
-        "equation",
-        f"eq. (29), β_{{{_i},{_j}}}",
-        f"Component {'xyz'[int(_j) - 1]} of B_{_i} in the offsets and joint values.",
-        test="test_boundary.py::test_derived_component_is_the_printed_formula_by_identity",
-        chapter="05_boundary_functions#equation-eq-29",
-    )(_component(_name))
+@computes_each({"E-29.{}.{}".format(*paper.indices(name)): name for name in paper.EQUATION_29})
+def component(name: str) -> Finding:
+    import sympy as sp
+
+    printed = sp.expand(paper.expression(paper.EQUATION_29[name]))
+    return Finding(
+        judge(holds=_differs(name) == 0),
+        f"The component derived from the chain has {len(sp.Add.make_args(printed))}"
+        f" terms; printed minus derived is {_differs(name)}, symbol by symbol.",
+    )

@@ -7,55 +7,62 @@ from itertools import pairwise, permutations
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.ledger.entries import Finding, entry, judge, require, undetermined
-from lizarraga2025.ledger.facts import lettered, mended, pairs, robot, vertices
-from lizarraga2025.ledger.walks import (
+from lizarraga2025.collisions import keeps_components_positive, keeps_geometric, misses_points
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence.arms import (
+    corrected,
+    floor,
+    half_spaces,
+    pairs,
+    robot,
+    symbolic_robot,
+    symmetric,
+    tool_form,
+)
+from lizarraga2025.evidence.joint_region import (
+    SCALE,
+    bodies_allow,
+    body_gap,
+    by_clearances,
+    by_windows,
+    depth_below_edges,
+    drawn,
+    largest_scale,
+    least_height,
+    scaled,
+    share_of_square,
+    vertices,
+)
+from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.tool_paths import (
+    AROUND,
     LEFT,
     PLANE,
     RIGHT,
-    SCALE,
     asymmetry,
-    body_gap,
-    by_points,
-    by_windows,
+    asymmetry_of_the_symmetric,
     crossings,
-    drawn,
-    floor,
-    largest_scale,
-    least_height,
     other_posture,
-    scaled,
-    simple,
+    path_through,
+    simple_sequences,
     stretched,
-    symmetric,
-    tool_form,
-    walk,
     workspace,
 )
+from lizarraga2025.verdicts import Finding, judge, require, undetermined
 from qbound import pair_vector
 from qbound.geometry import polygon
 from qbound.measures import scaling
 from qbound.model.robot import Robot, joint_symbols
 from qbound.region import paper_rule
 from qbound.region.region import solve, state
-from qbound.sampling import keeps_clear, keeps_components_positive, keeps_geometric, misses_points
-
-MEETS = 1e-9
-"""Value of a component, cm, under which a vertex lies on its bound: offsets carry 1e-2."""
-
-REGION, SPACE, SAMPLES = "07_joint_region", "08_workspace", "09_sampling"
+from qbound.sampling import keeps_clear
 
 
-@entry(
-    "F-1", "figure", "Figure 1 and caption",
-    "The picture shows the labels: a vector says from where to where it runs and who sees it.",
-    test="test_frames.py::test_frame_is_the_relative_homogeneous_matrix",
-    chapter="02_vector_labelling#fig-1",
-)  # fmt: skip
+@computes("F-1")
 def labels_close_a_triangle() -> Finding:
     import sympy as sp
 
-    frames = lettered()[0].frames(joint_symbols(robot()))
+    frames = symbolic_robot()[0].frames(joint_symbols(robot()))
     seen = sp.Matrix(frames.rotation("0", "1")) * sp.Matrix(frames.position("1", "2", "1"))
     path = sp.Matrix(frames.position("0", "1", "0")) + seen
     closed = sp.simplify(path - sp.Matrix(frames.position("0", "2", "0"))) == sp.zeros(3, 1)
@@ -66,12 +73,7 @@ def labels_close_a_triangle() -> Finding:
     )
 
 
-@entry(
-    "F-2", "figure", "Figure 2, caption",
-    "Nodes a and b are joints between consecutive links; the points are on adjacent links.",
-    test="test_boundary.py::test_theorem_1_holds_for_any_chain_and_either_order",
-    chapter="03_theorem_1#fig-2",
-)  # fmt: skip
+@computes("F-2")
 def points_lie_on_adjacent_links() -> Finding:
     chain = [robot().base, *(joint.frame for joint in robot().joints)]
     apart = [
@@ -84,12 +86,7 @@ def points_lie_on_adjacent_links() -> Finding:
     )
 
 
-@entry(
-    "F-3", "figure", "Figure 3, caption",
-    "The kinematic chain of the case study runs through frames 0, 1, 2 and 3.",
-    test="test_robot.py::test_direct_kinematics_are_table_2",
-    chapter="04_planar_robot#fig-3",
-)  # fmt: skip
+@computes("F-3")
 def chain_of_the_robot() -> Finding:
     frames = robot().frames(robot().home)
     order = ["0", "1", "2", robot().tool]
@@ -105,12 +102,7 @@ def _edges() -> set[str]:
     return {b.label for corner in paper_rule.vertices(robot()) for b in corner.bounds}
 
 
-@entry(
-    "F-4.1", "figure", "Figure 4, caption",
-    "Six curves determine the region: of B1 and B2 one each, of B3 and B4 one each, of B7 two.",
-    test="test_paper_rule.py::test_six_vertices_use_six_curves_each_twice",
-    chapter=f"{REGION}#fig-4",
-)  # fmt: skip
+@computes("F-4.1")
 def six_curves() -> Finding:
     named, found = set(paper.FIGURE_4_BOUNDS), _edges()
     lines = [{label.rpartition(",")[0] for label in labels} for labels in (named, found)]
@@ -121,12 +113,7 @@ def six_curves() -> Finding:
     )
 
 
-@entry(
-    "F-4.2", "figure", "Figure 4, caption",
-    "The bound of component 3 of B3 is the one with k = 2.",
-    test="test_paper_rule.py::test_caption_of_figure_4_names_one_bound_a_turn_away",
-    chapter="06_theorem_2#the-index-in-the-caption-of-figure-4",
-)  # fmt: skip
+@computes("F-4.2")
 def the_index_of_one_bound() -> Finding:
     side = float(paper_rule.box(robot()).upper[1])
     values = {k: _beta_3_3(k, "atan2") for k in (1, 2)}
@@ -146,29 +133,23 @@ def the_index_of_one_bound() -> Finding:
 
 def _beta_3_3(k: int, reading: paper.Reading) -> float:
     printed = paper.expression(paper.TABLE_6[f"beta_{{3,3,{k}}}"], arctan=reading)
-    return float(printed.subs(lettered()[1]))
+    return float(printed.subs(symbolic_robot()[1]))
 
 
-@entry(
-    "F-4.3", "figure", "Figure 4, caption",
-    "The other (red) lines play no part in the region.",
-    test="test_paper_rule.py::test_unused_boundaries_do_not_bound",
-    chapter=f"{REGION}#fig-4",
-)  # fmt: skip
+@computes("F-4.3")
 def red_lines_play_no_part() -> Finding:
-    walls = [robot().boundary(name) for name in ("B5", "B6", "B7")]
     box = paper_rule.box(robot())
     ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
     names = [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")]
     home = robot().home
     areas = [
         sum(c.area for c in solve(state(robot(), used, ranges, names), home).components)
-        for used in (walls[2:], walls[1:], walls)
+        for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
     ]
     windows = paper_rule.windows(robot())
     outside = all(w.lower <= box.lower[w.joint] and w.upper >= box.upper[w.joint] for w in windows)
     return Finding(
-        judge(holds=outside and np.ptp(areas) < MEETS, under=outside),
+        judge(holds=outside and np.ptp(areas) < SMALL, under=outside),
         f"True of the {len(windows)} windows of the point pairs. The walls B5 and B6 of Table 5"
         " cross"
         f" the region: with B6 in force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with"
@@ -177,12 +158,7 @@ def red_lines_play_no_part() -> Finding:
     )
 
 
-@entry(
-    "F-5.1", "figure", "Figure 5, caption",
-    "The region's corners are six points in which two of the selected functions intersect.",
-    test="test_paper_rule.py::test_vertex_lies_on_both_named_curves_and_in_every_window",
-    chapter=f"{REGION}#six-points",
-)  # fmt: skip
+@computes("F-5.1")
 def six_points_on_two_curves_each() -> Finding:
     residuals = []
     for corner in paper_rule.vertices(robot()):
@@ -195,28 +171,21 @@ def six_points_on_two_curves_each() -> Finding:
             )
             residuals.append(abs(float(form(corner.q))))
     exact = sorted(v.q.tolist() for v in by_windows().vertices)
-    same = np.allclose(exact, sorted(vertices().tolist()), atol=MEETS)
+    same = np.allclose(exact, sorted(vertices().tolist()), atol=SMALL)
     return Finding(
-        judge(holds=len(vertices()) == 6 and same and max(residuals) < MEETS),
+        judge(holds=len(vertices()) == 6 and same and max(residuals) < SMALL),
         f"{len(vertices())} corners in closed form; both components vanish in each to less than"
-        f" {MEETS:g} cm, and a complete decomposition of the region finds the same corners.",
+        f" {SMALL:g} cm, and a complete decomposition of the region finds the same corners.",
     )
 
 
-@entry(
-    "F-5.2", "figure", "Figure 5, caption",
-    "Joining the six points gives a closed, continuous boundary of a feasible area.",
-    test="test_scaling.py::test_straight_edges_of_the_six_vertices_leave_the_region",
-    chapter=f"{REGION}#do-the-edges-stay-inside",
-    mended="Four straight sides and two arcs of B7 bound the region; both arcs bend inward.",
-)  # fmt: skip
+@computes("F-5.2")
 def six_points_joined() -> Finding:
-    t = np.linspace(0, 1, 4001)
-    depth = -floor()(polygon.along_edges(vertices(), t)).min(axis=1)
-    leaving = [i + 1 for i in range(6) if depth[i] > MEETS]
+    depth = depth_below_edges()
+    leaving = [i + 1 for i in range(6) if depth[i] > SMALL]
     arcs = [arc for loop in by_windows().loops for arc in loop]
     ends = np.array([arc.points[[0, -1]] for arc in arcs])
-    closed = np.allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=MEETS)
+    closed = np.allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=SMALL)
     return Finding(
         judge(holds=not leaving, under=closed and len(by_windows().loops) == 1),
         f"Joined by straight lines, as drawn, edges {' and '.join(map(str, leaving))} leave the"
@@ -226,12 +195,7 @@ def six_points_joined() -> Finding:
     )
 
 
-@entry(
-    "F-6.1", "figure", "Figure 6, caption",
-    "Scaling about the centroid takes the region off the boundary functions.",
-    test="test_scaling.py::test_floor_of_the_papers_polygon_against_brute_force",
-    chapter=f"{REGION}#second-remedy-scaling-about-the-centroid",
-)  # fmt: skip
+@computes("F-6.1")
 def scaling_takes_the_region_off() -> Finding:
     safe = largest_scale()
     bad, good = least_height(0.97), [least_height(s) for s in (0.96, 0.95, 0.9, 0.5)]
@@ -242,12 +206,7 @@ def scaling_takes_the_region_off() -> Finding:
     )
 
 
-@entry(
-    "F-6.2", "figure", "Figure 6, caption",
-    "The scaling leaves a safety margin.",
-    test="test_scaling.py::test_scaling_about_any_centre_touches_the_nearest_wall",
-    chapter=f"{REGION}#second-remedy-scaling-about-the-centroid",
-)  # fmt: skip
+@computes("F-6.2")
 def scaling_leaves_a_margin() -> Finding:
     scales = (0.97, 0.96, 0.95, 0.9, 0.8)
     heights = [least_height(s) for s in scales]
@@ -263,12 +222,7 @@ def scaling_leaves_a_margin() -> Finding:
     )
 
 
-@entry(
-    "F-6.3", "figure", "Figure 6, caption",
-    "The scale factor keeps the workspace free of collision.",
-    test="test_bodies.py::test_no_pose_that_the_papers_rule_allows_makes_bodies_overlap",
-    chapter="17_bodies#does-the-scaled-region-keep-the-bodies-apart",
-)  # fmt: skip
+@computes("F-6.3")
 def scaled_region_is_free_of_collision() -> Finding:
     t, factors = np.linspace(0, 1, 41), np.linspace(0.02, 1, 50)
     inside = [polygon.along_edges(scaled(float(0.999 * f)), t) for f in factors]
@@ -282,12 +236,7 @@ def scaled_region_is_free_of_collision() -> Finding:
     )
 
 
-@entry(
-    "F-6.4", "figure", "Figure 6, caption and text",
-    "The region is scaled by a certain factor about its centroid.",
-    test="test_polygon.py::test_centroid_of_the_area_is_not_that_of_the_vertices",
-    chapter=f"{REGION}#second-remedy-scaling-about-the-centroid",
-)  # fmt: skip
+@computes("F-6.4")
 def which_factor_and_which_centroid() -> Finding:
     middles = polygon.centroid(vertices()), vertices().mean(axis=0)
     fits = {
@@ -309,14 +258,9 @@ def which_factor_and_which_centroid() -> Finding:
     )
 
 
-@entry(
-    "F-7.1", "figure", "Figure 7, caption and text",
-    "The six points, visited in the region's order, give the tool a path that is not in order.",
-    test="test_traversal.py::test_crossings_are_those_that_shapely_finds",
-    chapter=f"{SPACE}#fig-7",
-)  # fmt: skip
+@computes("F-7.1")
 def tool_path_of_the_six_points() -> Finding:
-    counts = [crossings(walk((0, 1, 2, 3, 4, 5, 0), s)) for s in (1.0, 0.96, SCALE, 0.9, 0.8)]
+    counts = [crossings(path_through(AROUND, s)) for s in (1.0, 0.96, SCALE, 0.9, 0.8)]
     return Finding(
         judge(holds=min(counts) > 0),
         f"The closed path of the tool crosses itself once, at every scale tried ({counts[0]}"
@@ -325,15 +269,10 @@ def tool_path_of_the_six_points() -> Finding:
     )
 
 
-@entry(
-    "F-7.2", "figure", "Figure 7, caption",
-    "The robot is shown in the final pose of that traversal.",
-    test="test_traversal.py::test_joint_path_is_straight_from_stop_to_stop",
-    chapter=f"{SPACE}#fig-7",
-)  # fmt: skip
+@computes("F-7.2")
 def final_pose_of_the_six_points() -> Finding:
     ends = {
-        f"from {start + 1} {name}": walk(
+        f"from {start + 1} {name}": path_through(
             [(start + sense * i) % 6 for i in range(6 + back)]
         ).final_pose
         for start in range(6)
@@ -349,14 +288,9 @@ def final_pose_of_the_six_points() -> Finding:
     )
 
 
-@entry(
-    "F-8.1", "figure", "Figure 8, caption",
-    "A certain sequence of five points gives the tool an ordered path, on the right.",
-    test="test_traversal.py::test_orders_without_crossing_are_shapelys",
-    chapter=f"{SPACE}#five-points",
-)  # fmt: skip
+@computes("F-8.1")
 def which_five_points() -> Finding:
-    fits = {"-".join(str(i + 1) for i in order): True for order in simple()}
+    fits = {"-".join(str(i + 1) for i in order): True for order in simple_sequences()}
     return Finding(
         undetermined(fits),
         f"Of 360 orders of five of the six points (a walk and its reverse counted once) {len(fits)}"
@@ -364,32 +298,22 @@ def which_five_points() -> Finding:
     )
 
 
-@entry(
-    "F-8.2", "figure", "Figure 8, caption",
-    "A sequence of five points, though ordered, stays open.",
-    test="test_traversal.py::test_tool_and_reach_are_forward_kinematics",
-    chapter=f"{SPACE}#fig-8",
-)  # fmt: skip
+@computes("F-8.2")
 def five_points_stay_open() -> Finding:
     places = tool_form()(np.array([scaled(1.0), scaled(SCALE), scaled(0.8)]))[..., PLANE]
     apart = np.linalg.norm(places[:, :, None] - places[:, None], axis=-1)
     least = float(apart[:, ~np.eye(6, dtype=bool)].min())
     number = len(list(permutations(range(6), 5)))
     return Finding(
-        judge(holds=least > MEETS),
+        judge(holds=least > SMALL),
         f"All {number} sequences: five different points have first and last places of the tool at"
         f" least {least:.4f} cm apart, at scales 1, 0.95 and 0.8.",
     )
 
 
-@entry(
-    "F-9", "figure", "Figure 9, caption",
-    "A second sequence of five points is feasible and runs along the other side.",
-    test="test_scaling.py::test_floor_of_the_papers_polygon_against_brute_force",
-    chapter=f"{SPACE}#fig-9",
-)  # fmt: skip
+@computes("F-9")
 def a_second_sequence() -> Finding:
-    right, left = walk(RIGHT), walk(LEFT)
+    right, left = path_through(RIGHT), path_through(LEFT)
     feasible = all(paper_rule.feasible(robot(), w.q).all() for w in (right, left))
     ends = [float(w.tool[-1, 0]) for w in (right, left)]
     ordered = crossings(right) == crossings(left) == 0
@@ -400,14 +324,9 @@ def a_second_sequence() -> Finding:
     )
 
 
-@entry(
-    "F-10.1", "figure", "Figure 10, caption",
-    "Laid over each other, the two regions are not symmetric.",
-    test="test_paper_rule.py::test_printed_offsets_have_no_mirror_image",
-    chapter=f"{SPACE}#right-against-left",
-)  # fmt: skip
+@computes("F-10.1")
 def the_regions_are_not_symmetric() -> Finding:
-    printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), mended()))
+    printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), corrected()))
     rounding = 2 * np.hypot(0.005, 0.005)
     return Finding(
         judge(holds=printed > rounding),
@@ -417,61 +336,43 @@ def the_regions_are_not_symmetric() -> Finding:
     )
 
 
-@entry(
-    "F-10.2", "figure", "Figure 10, caption",
-    "The asymmetry comes from the scaling about the centroid.",
-    test="test_paper_rule.py::test_symmetric_robot_has_a_symmetric_region",
-    chapter=f"{SPACE}#right-against-left",
-    mended="It comes from the data: an exactly symmetric arm has symmetric paths at every scale.",
-)  # fmt: skip
+@computes("F-10.2")
 def asymmetry_from_scaling() -> Finding:
     unscaled = asymmetry(robot(), 1.0)
-    exact = [asymmetry(symmetric(), s) for s in (1.0, SCALE, 0.8)]
-    require(max(exact) < MEETS, "symmetric paths of the symmetric arm")
+    exact = asymmetry_of_the_symmetric()
+    require(exact < SMALL, "symmetric paths of the symmetric arm")
     return Finding(
-        judge(holds=unscaled < MEETS < max(exact)),
+        judge(holds=unscaled < SMALL < exact),
         f"Without scaling the paths are {unscaled:.4f} cm apart already; on the exactly symmetric"
         " arm"
-        f" they agree to {MEETS:g} cm at scales 1, 0.95 and 0.8.",
+        f" they agree to {SMALL:g} cm at scales 1, 0.95 and 0.8.",
     )
 
 
-@entry(
-    "F-10.3", "figure", "Figure 10, caption",
-    "The asymmetry comes from the nonlinearity of the trajectory.",
-    test="test_paper_rule.py::test_mirrored_robot_has_the_mirrored_region",
-    chapter=f"{SPACE}#right-against-left",
-    mended="It comes from the data: nonlinear kinematics with symmetric offsets is symmetric.",
-)  # fmt: skip
+@computes("F-10.3")
 def asymmetry_from_nonlinearity() -> Finding:
     bends = [_bend(arm) for arm in (robot(), symmetric())]
     exact = asymmetry(symmetric(), SCALE)
-    require(exact < MEETS, "symmetric paths of the symmetric arm")
+    require(exact < SMALL, "symmetric paths of the symmetric arm")
     return Finding(
-        judge(holds=exact > MEETS or min(bends) < MEETS),
+        judge(holds=exact > SMALL or min(bends) < SMALL),
         f"The tool's path bends away from its chords by up to {bends[0]:.4f} cm on the printed"
         " arm and"
-        f" {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {MEETS:g}"
+        f" {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {SMALL:g}"
         f" cm.",
     )
 
 
-@entry(
-    "F-10.4", "figure", "Figure 10, caption and text",
-    "The paths of Figures 8 and 9 bound the feasible geometric regions.",
-    test="test_statements.py::test_the_image_of_the_boundary_encloses_a_part_of_the_workspace",
-    chapter=f"{SPACE}#what-the-path-does-not-enclose",
-    mended="They and the image of the singular line together bound the geometric workspace.",
-)  # fmt: skip
+@computes("F-10.4")
 def paths_bound_the_workspace() -> Finding:
     import shapely
 
-    areas, lines = workspace(), [walk(order).tool[:, PLANE] for order in (RIGHT, LEFT)]
+    areas, lines = workspace(), [path_through(order).tool[:, PLANE] for order in (RIGHT, LEFT)]
     closed = shapely.node(shapely.MultiLineString([[*line, line[0]] for line in lines]))
     within = shapely.union_all(shapely.polygonize([closed]))
     pose = np.array([polygon.centroid(vertices())[0], stretched()])
     out = float(within.distance(shapely.Point(tool_form()(pose)[PLANE])))
-    rest = areas["enclosed"] + areas["twice"] - areas["union"]
+    rest = areas["enclosed"] - areas["once"]
     require(abs(rest) < 1e-3, "what the path round the region leaves out both postures reach")
     require(bool(paper_rule.feasible(robot(), pose)), "the witness is feasible")
     return Finding(
@@ -488,17 +389,12 @@ def _bend(arm: Robot) -> float:
     """Farthest that the tool's path on the right is from the straight lines between its stops."""
     import shapely
 
-    path = walk(RIGHT, SCALE, arm)
+    path = path_through(RIGHT, SCALE, arm)
     line, chords = path.tool[:, PLANE], path.tool[path.stops][:, PLANE]
     return float(shapely.LineString(line).hausdorff_distance(shapely.LineString(chords)))
 
 
-@entry(
-    "F-11.1", "figure", "Figure 11, caption",
-    "Red points are collisions, blue points are not.",
-    test="test_sampling.py::test_predicate_is_what_its_equation_says",
-    chapter=f"{SAMPLES}#what-is-a-collision",
-)  # fmt: skip
+@computes("F-11.1")
 def what_a_red_point_is() -> Finding:
     q = drawn().q
     free = {
@@ -507,7 +403,7 @@ def what_a_red_point_is() -> Finding:
         "clearances, eqs. (11) and (12)": keeps_clear(robot(), q),
         "windows of Table 6": paper_rule.feasible(robot(), q),
         "signs of all components, eq. (9)": keeps_components_positive(robot(), q),
-        "whole bodies and the tool's limit": (body_gap(q) > 0) & (floor()(q) >= 0),
+        "whole bodies and the tool's limit": bodies_allow(q),
     }
     parts = ", ".join(f"{name}: {100 * x.mean():.2f} %" for name, x in free.items())
     return Finding(
@@ -518,16 +414,11 @@ def what_a_red_point_is() -> Finding:
     )
 
 
-@entry(
-    "F-11.2", "figure", "Figure 11, caption",
-    "In the plane of the tool there are places with both colours.",
-    test="test_sampling.py::test_fraction_free_approaches_the_exact_area_of_the_papers_region",
-    chapter=f"{SAMPLES}#why-the-colours-overlap-in-the-plane",
-)  # fmt: skip
+@computes("F-11.2")
 def both_colours_at_one_place() -> Finding:
     draw = drawn()
     second = other_posture(draw.q)
-    same = np.allclose(tool_form()(second), draw.tool, atol=MEETS)
+    same = np.allclose(tool_form()(second), draw.tool, atol=SMALL)
     other = paper_rule.feasible(robot(), second)
     mixed = other[draw.free].mean(), other[~draw.free].mean()
     return Finding(
@@ -538,12 +429,7 @@ def both_colours_at_one_place() -> Finding:
     )
 
 
-@entry(
-    "F-11.3", "figure", "Figure 11, caption",
-    "The free places show the lateral shapes of the workspace.",
-    test="test_sampling.py::test_tool_is_forward_kinematics",
-    chapter=f"{SAMPLES}#the-two-plots",
-)  # fmt: skip
+@computes("F-11.3")
 def lateral_shapes() -> Finding:
     places = drawn().tool[drawn().free]
     low = places[places[:, 2] < robot().joints[0].origin[2]]
@@ -557,19 +443,14 @@ def lateral_shapes() -> Finding:
     )
 
 
-@entry(
-    "F-11.4", "figure", "Figure 11, first plot",
-    "Sampling shows the feasible region of joint space.",
-    test="test_sampling.py::test_fraction_free_approaches_the_exact_area_of_the_papers_region",
-    chapter=f"{SAMPLES}#what-sampling-costs",
-)  # fmt: skip
+@computes("F-11.4")
 def sampling_shows_the_region() -> Finding:
-    part, draw = by_windows().area / (2 * np.pi) ** 2, drawn()
+    part, draw = share_of_square(), drawn()
     off = abs(draw.fraction_free - part) / draw.standard_error
     return Finding(
         judge(holds=bool(off < 3)),
         f"{100 * draw.fraction_free:.3f} % of the draw are free by the paper's rule,"
         f" {100 * part:.4f} %"
         f" of the square exactly: {off:.2f} standard errors apart. The clearance rule, a different"
-        f" test, leaves {100 * by_points().area / (2 * np.pi) ** 2:.2f} %.",
+        f" test, leaves {100 * by_clearances().area / (2 * np.pi) ** 2:.2f} %.",
     )
