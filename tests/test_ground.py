@@ -580,6 +580,8 @@ WRONG_IMPORTS = [
     ("qbound.cli.region", "lizarraga2025.ledger.entries", "a library that reads the paper"),
     ("lizarraga2025.printed", "qbound.geometry.polygon", "data that computes"),
     ("lizarraga2025.results", "lizarraga2025.ledger.entries", "a call upward"),
+    ("lizarraga2025.evidence.arms", "lizarraga2025.computations.tables", "a call upward"),
+    ("lizarraga2025.computations.tables", "lizarraga2025.ledger.entries", "a call upward"),
     ("qbound.check", "qbound.tolerances", "a checker that does not stand alone"),
 ]
 RIGHT_IMPORTS = [
@@ -588,8 +590,8 @@ RIGHT_IMPORTS = [
     ("qbound.region.paper_rule", "qbound.forms.circle"),
     ("qbound.sampling", "qbound.boundary.functions"),
     ("qbound.model.robotfile", "qbound.model.robot"),
-    ("lizarraga2025.ledger.tables", "lizarraga2025.printed"),
-    ("lizarraga2025.ledger.tables", "qbound.region.region"),
+    ("lizarraga2025.computations.tables", "lizarraga2025.printed"),
+    ("lizarraga2025.computations.tables", "qbound.region.region"),
     ("qbound.forms.circle", "qbound.tolerances"),
 ]
 

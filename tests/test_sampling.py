@@ -8,6 +8,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from oracles import equation_29, packaged_table, point_seen_from, row_of, table_6
 from scipy.integrate import quad
 
+from lizarraga2025.collisions import (
+    keeps_components_positive,
+    keeps_geometric,
+    misses_points,
+)
 from qbound import load_robot
 from qbound.model.robotfile import parse_robot
 from qbound.region import paper_rule
@@ -15,9 +20,6 @@ from qbound.sampling import (
     Sample,
     joint_ranges,
     keeps_clear,
-    keeps_components_positive,
-    keeps_geometric,
-    misses_points,
     sample,
 )
 

@@ -1,7 +1,7 @@
 """The companion of J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383: what it prints, what holds.
 
-`printed`: tables and formulas as printed.  `ledger`: each statement and its verdict.
-`computations`: the function that judges each.  `evidence`: arms, regions and proofs they share.
-`verdicts`: from outcome to verdict.  `collisions`: what a red point of Figure 11 may mean.
-`results`, `recorded`: numbers of the book, written and read.  `commands`: `qbound claims`, `results`.
+`printed`: tables and formulas, as data.  `ledger`: every statement and its verdict.
+`computations`: the function that judges each.  `verdicts`: from its outcome to the verdict.
+`evidence`: arms, regions and proofs that they share.  `collisions`: what Figure 11 may draw red.
+`results`, `recorded`: the book's numbers, written and read.  `commands`: `claims` and `results`.
 """

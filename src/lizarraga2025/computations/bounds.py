@@ -213,11 +213,10 @@ def bound_of_a_half_space(label: str) -> Finding:
         judge(
             holds=found.part == 100 and right_side, under=found.residual < RESIDUAL and right_side
         ),
-        f"A root of the component for the {found.part:.1f} % of a turn of the first joint where"
-        " it exists: elsewhere the wall does not cut the circle of the second joint. The"
-        f" component is {'positive' if right_side else 'negative'} just"
-        f" {'below' if is_upper else 'above'} it."
-        f"{'' if right_side else _counterexample(label)}",
+        f"A root of the component for the {found.part:.1f} % of a turn of the first joint where it"
+        " exists: elsewhere the wall does not cut the circle of the second joint. The component is"
+        f" {'positive' if right_side else 'negative'} just {'below' if is_upper else 'above'}"
+        f" it.{'' if right_side else _counterexample(label)}",
     )
 
 

@@ -68,8 +68,8 @@ def labels_close_a_triangle() -> Finding:
     closed = sp.simplify(path - sp.Matrix(frames.position("0", "2", "0"))) == sp.zeros(3, 1)
     return Finding(
         judge(holds=closed),
-        "Labels are enough to compute with: r_{0,1} and r_{1,2}, the second turned by R_{0,1}, add"
-        " up to r_{0,2} by identity. The picture itself is drawn anew.",
+        "Labels are enough to compute with: r_{0,1} and r_{1,2}, the second turned by"
+        " R_{0,1}, add up to r_{0,2} by identity. The picture itself is drawn anew.",
     )
 
 
@@ -151,10 +151,8 @@ def red_lines_play_no_part() -> Finding:
     return Finding(
         judge(holds=outside and np.ptp(areas) < SMALL, under=outside),
         f"True of the {len(windows)} windows of the point pairs. The walls B5 and B6 of Table 5"
-        " cross"
-        f" the region: with B6 in force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with"
-        " B5"
-        f" too {areas[2]:.4f}. The paper leaves them out without a word.",
+        f" cross the region: with B6 in force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left,"
+        f" with B5 too {areas[2]:.4f}. The paper leaves them out without a word.",
     )
 
 
@@ -190,8 +188,8 @@ def six_points_joined() -> Finding:
         judge(holds=not leaving, under=closed and len(by_windows().loops) == 1),
         f"Joined by straight lines, as drawn, edges {' and '.join(map(str, leaving))} leave the"
         f" region: the tool is up to {depth.max():.4f} cm below its limit. Joined along the"
-        " functions"
-        f" themselves, {len(arcs)} arcs close one loop around {by_windows().area:.6f} rad².",
+        f" functions themselves, {len(arcs)} arcs close one loop around {by_windows().area:.6f}"
+        " rad².",
     )
 
 
@@ -217,8 +215,7 @@ def scaling_leaves_a_margin() -> Finding:
         judge(holds=min(*heights, *gaps) > 0, under=grows and min(heights[1:]) > 0),
         f"A margin in length, and growing, once the scale is below {largest_scale().scale:.6f}: at"
         f" 0.96 the tool keeps {heights[1]:.4f} cm from its limit and the bodies {gaps[1]:.4f} cm"
-        " from"
-        f" each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
+        f" from each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
     )
 
 
@@ -252,8 +249,7 @@ def which_factor_and_which_centroid() -> Finding:
     return Finding(
         undetermined(fits),
         f"No factor is printed, nor which centroid: all {len(fits)} combinations tried are safe."
-        " The"
-        f" two centroids are {apart:.4f}° apart and allow scales up to {both[0]:.9f} and"
+        f" The two centroids are {apart:.4f}° apart and allow scales up to {both[0]:.9f} and"
         f" {both[1]:.9f}.",
     )
 
@@ -264,8 +260,7 @@ def tool_path_of_the_six_points() -> Finding:
     return Finding(
         judge(holds=min(counts) > 0),
         f"The closed path of the tool crosses itself once, at every scale tried ({counts[0]}"
-        " crossing"
-        " each from scale 1 to 0.8).",
+        " crossing each from scale 1 to 0.8).",
     )
 
 
@@ -283,8 +278,7 @@ def final_pose_of_the_six_points() -> Finding:
     return Finding(
         undetermined(dict.fromkeys(ends, len(kinds) > 1)),
         f"Start, direction and return are not stated: {len(ends)} walks round the six points fit,"
-        " with"
-        f" {len(kinds)} different final poses.",
+        f" with {len(kinds)} different final poses.",
     )
 
 
@@ -331,8 +325,7 @@ def the_regions_are_not_symmetric() -> Finding:
     return Finding(
         judge(holds=printed > rounding),
         f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
-        " printed"
-        f" offsets, {one_digit:.4f} cm with x_{{2,13}} mended to 9.09 cm.",
+        f" printed offsets, {one_digit:.4f} cm with x_{{2,13}} mended to 9.09 cm.",
     )
 
 
@@ -344,8 +337,7 @@ def asymmetry_from_scaling() -> Finding:
     return Finding(
         judge(holds=unscaled < SMALL < exact),
         f"Without scaling the paths are {unscaled:.4f} cm apart already; on the exactly symmetric"
-        " arm"
-        f" they agree to {SMALL:g} cm at scales 1, 0.95 and 0.8.",
+        f" arm they agree to {SMALL:g} cm at scales 1, 0.95 and 0.8.",
     )
 
 
@@ -356,10 +348,9 @@ def asymmetry_from_nonlinearity() -> Finding:
     require(exact < SMALL, "symmetric paths of the symmetric arm")
     return Finding(
         judge(holds=exact > SMALL or min(bends) < SMALL),
-        f"The tool's path bends away from its chords by up to {bends[0]:.4f} cm on the printed"
-        " arm and"
-        f" {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {SMALL:g}"
-        f" cm.",
+        f"The tool's path bends away from its chords by up to {bends[0]:.4f} cm on the printed arm"
+        f" and {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {SMALL:g}"
+        " cm.",
     )
 
 
@@ -378,10 +369,9 @@ def paths_bound_the_workspace() -> Finding:
     return Finding(
         judge(holds=out == 0),
         f"The feasible pose q1 = {np.degrees(pose[0]):.4f}°, q2 = {np.degrees(pose[1]):.4f}° puts"
-        " the"
-        f" tool {out:.2f} cm outside of all that the two paths, closed, enclose. The path round the"
-        f" whole region encloses {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are"
-        f" reached.",
+        f" the tool {out:.2f} cm outside of all that the two paths, closed, enclose. The path round"
+        f" the whole region encloses {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are"
+        " reached.",
     )
 
 
@@ -409,8 +399,7 @@ def what_a_red_point_is() -> Finding:
     return Finding(
         undetermined({name: bool(x.any() and not x.all()) for name, x in free.items()}),
         f"The test is not stated. Free parts of one draw of {len(q)}: {parts}. The first draws no"
-        " red"
-        " point at all; each of the others could be meant.",
+        " red point at all; each of the others could be meant.",
     )
 
 
@@ -424,8 +413,8 @@ def both_colours_at_one_place() -> Finding:
     return Finding(
         judge(holds=bool(same and mixed[0] < 1 and mixed[1] > 0)),
         f"Every place has two postures. Of the free configurations {100 * (1 - mixed[0]):.2f} %"
-        " have a"
-        f" colliding second posture, of the colliding ones {100 * mixed[1]:.2f} % a free one.",
+        f" have a colliding second posture, of the colliding ones {100 * mixed[1]:.2f} % a free"
+        " one.",
     )
 
 
@@ -437,9 +426,8 @@ def lateral_shapes() -> Finding:
     inner = float(np.abs(low[:, 0]).min())
     return Finding(
         judge(holds=min(sides) > 100 and inner > robot().point("6").at[0]),
-        f"Below joint 1 the free places fall apart into two lobes, {sides[0]} places of the draw"
-        " on the"
-        f" right and {sides[1]} on the left, and none within {inner:.2f} cm of the middle.",
+        f"Below joint 1 the free places fall apart into two lobes, {sides[0]} places of the draw on"
+        f" the right and {sides[1]} on the left, and none within {inner:.2f} cm of the middle.",
     )
 
 
@@ -450,7 +438,6 @@ def sampling_shows_the_region() -> Finding:
     return Finding(
         judge(holds=bool(off < 3)),
         f"{100 * draw.fraction_free:.3f} % of the draw are free by the paper's rule,"
-        f" {100 * part:.4f} %"
-        f" of the square exactly: {off:.2f} standard errors apart. The clearance rule, a different"
-        f" test, leaves {100 * by_clearances().area / (2 * np.pi) ** 2:.2f} %.",
+        f" {100 * part:.4f} % of the square exactly: {off:.2f} standard errors apart. The clearance"
+        f" rule, a different test, leaves {100 * by_clearances().area / (2 * np.pi) ** 2:.2f} %.",
     )

@@ -115,8 +115,7 @@ def order_and_nonlinearity() -> Finding:
         "A walk that ends at another point ends in another place under any map: with two slides in"
         f" place of the joints, a linear map, the sequences end in {len(ends)} places too. What a"
         f" linear map lacks is the bend: between points 1 and 2 the tool is up to {bend:.4f} cm"
-        " from"
-        " the place that a straight, even motion would give.",
+        " from the place that a straight, even motion would give.",
     )
 
 
@@ -159,10 +158,9 @@ def boundary_of_the_workspace() -> Finding:
     return Finding(
         judge(holds=bool(whole), under=bool(split)),
         "True in joint space: six closed formulas and two arcs of Theorem 2. In the plane of the"
-        " tool"
-        f" the image of that boundary encloses {areas['enclosed']:.2f} of {areas['union']:.2f}"
-        " cm²; the"
-        " rest is bounded outside by the image of the singular line, which has to be added.",
+        f" tool the image of that boundary encloses {areas['enclosed']:.2f} of {areas['union']:.2f}"
+        " cm²; the rest is bounded outside by the image of the singular line, which has to be"
+        " added.",
     )
 
 
@@ -203,8 +201,7 @@ def orthonormal_directions() -> Finding:
     return Finding(
         judge(holds=all(sp.simplify(g) == sp.eye(3) for g in gram)),
         "For both moving frames of the chain the nine dot products are those of the identity"
-        " matrix,"
-        " for all joint values, by identity.",
+        " matrix, for all joint values, by identity.",
     )
 
 
@@ -221,9 +218,8 @@ def adjacent_links_suffice() -> Finding:
         judge(holds=between > 0 and (apart < 0 or hit > 0), under=between > 0),
         "For this robot it is enough: where neighbours stay apart, base and link 2 keep"
         f" {between:.2f} cm or more. It is no general truth: on a foot plate 80 cm wide and 2 cm"
-        " high"
-        f" link 2 overlaps the base by {-hit:.2f} cm while all neighbours stay {apart:.2f} cm"
-        f" apart.",
+        f" high link 2 overlaps the base by {-hit:.2f} cm while all neighbours stay {apart:.2f} cm"
+        " apart.",
     )
 
 
@@ -241,8 +237,7 @@ def distance_of_points_and_of_links() -> Finding:
             under=bool(min(body_gap(middle), body_gap(inside).min()) > 0),
         ),
         f"In the region of the home pose it does. In the {len(others)} other regions that the"
-        " clearances"
-        f" allow the bodies overlap, at the four centroids by {-overlaps.max():.2f} to"
+        f" clearances allow the bodies overlap, at the four centroids by {-overlaps.max():.2f} to"
         f" {-overlaps.min():.2f} cm.",
     )
 
@@ -274,8 +269,7 @@ def two_rotations_about_y() -> Finding:
     return Finding(
         judge(holds=axes == [[0, 1, 0]] * 2 and not middle.any()),
         f"{len(axes)} revolute joints with axes {axes[0]} make every row of Table 2; the tool's y"
-        " is"
-        " zero by identity.",
+        " is zero by identity.",
     )
 
 
@@ -288,8 +282,7 @@ def necessary_for_a_collision() -> Finding:
     return Finding(
         judge(holds=deep <= 0, under=gap < 0.1),
         "Necessary for two points to meet, and at the first contact from home bodies do meet in"
-        " these"
-        f" points (within {gap:.4f} cm as printed). Past it they are not: at q1 ="
+        f" these points (within {gap:.4f} cm as printed). Past it they are not: at q1 ="
         f" {np.degrees(pose[0]):.1f}°, q2 = {np.degrees(pose[1]):.1f}° the bodies overlap by"
         f" {deep:.2f} cm and no pair is closer than {min(apart):.2f} cm.",
     )
@@ -301,6 +294,5 @@ def four_tables() -> Finding:
     return Finding(
         judge(holds=len(tables) == 4, corrected=len(pairs()) == 4),
         f"The offsets of the {len(pairs())} pairs stand in {len(tables)} tables, as the same"
-        " section says"
-        " two paragraphs on.",
+        " section says two paragraphs on.",
     )

@@ -39,9 +39,8 @@ def slides_enter_linearly() -> Finding:
     curvature = [sp.diff(x, q[2], 2) for x in position(arm, "3").symbolic(q)]
     return Finding(
         judge(holds=all(sp.simplify(x) == 0 for x in curvature)),
-        "The second derivative of the tool's place along a slide is zero by identity, with"
-        " lengths as"
-        " symbols.",
+        "The second derivative of the tool's place along a slide is zero by identity, with lengths"
+        " as symbols.",
     )
 
 
@@ -53,8 +52,7 @@ def same_structure() -> Finding:
     return Finding(
         judge(holds=shapes == {(3,)} and depend > 0),
         f"All {len(forms)} boundary functions of the arm with a slide are again vectors of three"
-        " forms"
-        f" in the same basis; {depend} of them depend on the slide.",
+        f" forms in the same basis; {depend} of them depend on the slide.",
     )
 
 
@@ -74,12 +72,10 @@ def affine_constraints() -> Finding:
     require(square == 1, "the clearance is quadratic in a slide, with leading coefficient 1")
     return Finding(
         judge(holds=bool(mixed == 0 and square == 0), under=along and jointly),
-        "A component or a wall is affine in each slide by itself; with slides alone it is affine"
-        " in all"
-        " of them. With a turning joint before the slide the mixed derivative is not zero, and the"
-        " clearance of a pair is quadratic in a slide between its points, with coefficient"
-        f" {square}"
-        " of the square.",
+        "A component or a wall is affine in each slide by itself; with slides alone it is affine in"
+        " all of them. With a turning joint before the slide the mixed derivative is not zero, and"
+        " the clearance of a pair is quadratic in a slide between its points, with coefficient"
+        f" {square} of the square.",
     )
 
 
@@ -104,12 +100,10 @@ def hypersurfaces() -> Finding:
     both = closest_approach(robot(), pairs()[0])[1]
     return Finding(
         judge(holds=steep > 0 and both < SMALL, under=steep > 0),
-        "True of one component or one wall: the gradient of B7 does not vanish on its zero set"
-        " (at least"
-        f" {steep:.3f} cm per unit of joint). A point pair's vector is zero where all components"
-        " are,"
-        f" which is a smaller set, and with the printed digits it is empty (|B1| >= {both:.4f}"
-        f" cm).",
+        "True of one component or one wall: the gradient of B7 does not vanish on its zero set (at"
+        f" least {steep:.3f} cm per unit of joint). A point pair's vector is zero where all"
+        " components are, which is a smaller set, and with the printed digits it is empty (|B1| >="
+        f" {both:.4f} cm).",
     )
 
 
@@ -122,8 +116,7 @@ def isosurfaces() -> Finding:
         judge(holds=order > 1.5),
         "Marching cubes on the arm with a slide: the vertices of the surface miss B7 = 0 by at most"
         f" {off[21]:.3f}, {off[41]:.3f} and {off[81]:.3f} cm on grids of 21, 41 and 81 points a"
-        " joint,"
-        f" of order {order:.2f} in the step.",
+        f" joint, of order {order:.2f} in the step.",
     )
 
 
@@ -139,11 +132,9 @@ def slices_are_enough() -> Finding:
     off = abs(part - exact) / np.sqrt(part * (1 - part) / len(q))
     return Finding(
         judge(holds=bool(off < 3)),
-        "With the slide held at 4 cm the slice is a region of two joints, found exactly and"
-        " without a"
-        f" sample: {len(whole.components)} pieces of {whole.area:.6f} rad² together; {len(q)}"
-        " random"
-        f" configurations agree within {off:.2f} standard errors.",
+        "With the slide held at 4 cm the slice is a region of two joints, found exactly and without"
+        f" a sample: {len(whole.components)} pieces of {whole.area:.6f} rad² together; {len(q)}"
+        f" random configurations agree within {off:.2f} standard errors.",
     )
 
 
@@ -159,8 +150,7 @@ def slices_stay_symbolic() -> Finding:
     return Finding(
         judge(holds=left < SMALL),
         "The form with the slide held is a form of two joints in closed form, equal to the whole"
-        " with"
-        " the value put in.",
+        " with the value put in.",
     )
 
 
@@ -172,8 +162,7 @@ def boundary_by_connecting_points() -> Finding:
         judge(holds=part > 0.999, under=len(region.loops) == 1 and len(region.vertices) == 6),
         f"Of the joint region it does: one closed curve through {len(region.vertices)} points. Of"
         f" the tool's places that curve's image encloses {100 * part:.2f} %; the rest, reached by"
-        " both"
-        " postures, ends outside at the stretched arm.",
+        " both postures, ends outside at the stretched arm.",
     )
 
 
@@ -191,8 +180,7 @@ def explicit_constraints() -> Finding:
     return Finding(
         judge(holds=all(same)),
         f"All {len(same)} components that are not zero are closed formulas of offsets and joint"
-        " values,"
-        " derived from the chain and equal to the print.",
+        " values, derived from the chain and equal to the print.",
     )
 
 
@@ -203,8 +191,7 @@ def scaling_resolves_singularities() -> Finding:
     return Finding(
         judge(holds=not any(through)),
         "The singular line crosses the scaled polygon at scales 0.95, 0.5, 0.1 and 0.01 alike: it"
-        " passes"
-        " within a degree of the point about which the region is scaled.",
+        " passes within a degree of the point about which the region is scaled.",
     )
 
 
@@ -215,8 +202,8 @@ def structured_without_scaling() -> Finding:
     number = len(free[1.0])
     return Finding(
         judge(holds=number == 0),
-        f"The same {number} of {len(neighbour_sequences())} sequences of neighbours are free of crossings at"
-        " scales 1, 0.95, 0.9 and 0.8: without scaling as with it.",
+        f"The same {number} of {len(neighbour_sequences())} sequences of neighbours are free of"
+        " crossings at scales 1, 0.95, 0.9 and 0.8: without scaling as with it.",
     )
 
 
@@ -242,10 +229,8 @@ def causes_of_asymmetry() -> Finding:
     return Finding(
         judge(holds=exact > SMALL),
         f"The symmetric arm, scaled and nonlinear, has symmetric paths (to {SMALL:g} cm); the"
-        " printed"
-        f" offsets move them {printed:.4f} cm apart. A pair of sequences that are no mirror"
-        " images ends"
-        f" unlike on the symmetric arm too (reach {other[0].reach[-1]:.4f} and"
+        f" printed offsets move them {printed:.4f} cm apart. A pair of sequences that are no mirror"
+        f" images ends unlike on the symmetric arm too (reach {other[0].reach[-1]:.4f} and"
         f" {other[1].reach[-1]:.4f} cm).",
     )
 
@@ -265,6 +250,5 @@ def spatial_manipulators() -> Finding:
     return Finding(
         judge(holds=worst < 1e-6 and leaves > 1),
         f"With the first joint turned about z the tool leaves its plane by up to {leaves:.2f} cm;"
-        " the"
-        f" clearances from eq. (16) still are the distances in space, to 1e-6 cm.",
+        " the clearances from eq. (16) still are the distances in space, to 1e-6 cm.",
     )

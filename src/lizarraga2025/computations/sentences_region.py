@@ -47,10 +47,9 @@ def all_components_at_once() -> Finding:
     apart = [d for d in alone if d > 0.5]
     return Finding(
         judge(holds=len(apart) > 0),
-        f"One component alone does not make a contact: its {len(alone)} roots include"
-        f" {len(apart)} at"
-        f" which the two points are more than 0.5 cm apart, up to {max(alone):.4f} cm. Table 6 uses"
-        " roots of single components.",
+        f"One component alone does not make a contact: its {len(alone)} roots include {len(apart)}"
+        f" at which the two points are more than 0.5 cm apart, up to {max(alone):.4f} cm. Table 6"
+        " uses roots of single components.",
     )
 
 
@@ -106,9 +105,8 @@ def combinations_of_cosine_and_sine() -> Finding:
         worst, count = max(worst, float(np.abs(rest).max())), count + 2
     return Finding(
         judge(holds=worst < SMALL),
-        f"The {count} components of the point pairs are, of one joint each; the three of the"
-        " walls are"
-        " too along either joint, with coefficients that depend on the other.",
+        f"The {count} components of the point pairs are, of one joint each; the three of the walls"
+        " are too along either joint, with coefficients that depend on the other.",
     )
 
 
@@ -121,9 +119,8 @@ def several_regions() -> Finding:
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return Finding(
         judge(holds=whole > 1, under=len(points) > 1),
-        f"By the clearances of the points there are {len(points)} ({areas} rad²). By the bodies"
-        " of the"
-        f" links there is {whole}: in the others the bodies overlap throughout.",
+        f"By the clearances of the points there are {len(points)} ({areas} rad²). By the bodies of"
+        f" the links there is {whole}: in the others the bodies overlap throughout.",
     )
 
 
@@ -159,9 +156,8 @@ def six_intersection_points() -> Finding:
     count = len(home.vertices) if home else 0
     return Finding(
         judge(holds=set(by_rule.values()) == {6} and len(by_windows().vertices) == 6),
-        "Six by the paper's rule, for the printed, the mended and the symmetric offsets alike;"
-        " by the"
-        f" clearances the home region has {count} too.",
+        "Six by the paper's rule, for the printed, the mended and the symmetric offsets alike; by"
+        f" the clearances the home region has {count} too.",
     )
 
 
@@ -196,10 +192,8 @@ def tangents_mend_it() -> Finding:
     return Finding(
         judge(holds=min(least.values()) > -SMALL),
         f"Corners of tangents at five points a curve keep every bound and {kept:.3f} % of the"
-        " region's"
-        f" area, without a margin. Chords through points on the curve do not: with {len(chord)}"
-        " points"
-        f" the tool is still {deep:.5f} cm too low.",
+        " region's area, without a margin. Chords through points on the curve do not: with"
+        f" {len(chord)} points the tool is still {deep:.5f} cm too low.",
     )
 
 
@@ -211,8 +205,7 @@ def scaling_mends_it() -> Finding:
         judge(holds=least_height(0.98) > 0, under=min(margins) > -SMALL),
         f"From scale {safe.scale:.9f} down; edge {safe.edge + 1} to {safe.edge + 2} binds, at q1 ="
         f" {np.degrees(safe.q[0]):.4f}°, q2 = {np.degrees(safe.q[1]):.4f}°. A reader has to find"
-        " the"
-        " factor: none is printed.",
+        " the factor: none is printed.",
     )
 
 
@@ -238,6 +231,5 @@ def order_is_not_kept() -> Finding:
     return Finding(
         judge(holds=simple_in_joints and crossings(around) > 0),
         "The six points are visited once each, and the tool's path crosses itself"
-        f" {crossings(around)}"
-        " time.",
+        f" {crossings(around)} time.",
     )

@@ -63,8 +63,7 @@ def scaling_settles_nothing() -> Finding:
     return Finding(
         judge(holds=passing == 0),
         "At every scale tried, 1 to 0.1, three points lie on either side of the singular line, so"
-        " any"
-        f" five of them lie on both: all walks cross it, among them the {passing} sequences of"
+        f" any five of them lie on both: all walks cross it, among them the {passing} sequences of"
         " neighbours.",
     )
 
@@ -77,9 +76,9 @@ def two_ways() -> Finding:
     forward = {min(o, o[::-1]) for o in paired}
     return Finding(
         judge(holds=len(simple_sequences()) == 2, under=len(forward) == 2),
-        f"{len(simple_sequences())} orders of five points do not cross themselves. If the five are to be"
-        f" neighbours and the two ways mirror images, {len(forward)} are left (and their reverses):"
-        " 6-1-2-3-4 on the right, 3-4-5-6-1 on the left.",
+        f"{len(simple_sequences())} orders of five points do not cross themselves. If the five are"
+        f" to be neighbours and the two ways mirror images, {len(forward)} are left (and their"
+        " reverses): 6-1-2-3-4 on the right, 3-4-5-6-1 on the left.",
     )
 
 
@@ -121,10 +120,8 @@ def mirrored_pose_on_one_trajectory() -> Finding:
         judge(holds=not (allowed and mirrored)),
         "On the symmetric arm point 4 is the mirror image of point 1, and the straight joint path"
         f" between them is feasible throughout ({len(straight)} poses checked). The book's"
-        " right-hand"
-        " way visits both too, stretched on the way (q2 from"
-        f" {np.degrees(right.q[:, 1].min()):.2f}°"
-        f" to {np.degrees(right.q[:, 1].max()):.2f}°).",
+        " right-hand way visits both too, stretched on the way (q2 from"
+        f" {np.degrees(right.q[:, 1].min()):.2f}° to {np.degrees(right.q[:, 1].max()):.2f}°).",
     )
 
 
@@ -189,8 +186,7 @@ def efficiency_and_volume() -> Finding:
     return Finding(
         judge(holds=-0.6 < slope < -0.4),
         f"The error of the area falls as the number of samples to the power {slope:.3f} (40 draws"
-        " each"
-        " of 100, 1000 and 10,000): one more digit costs a hundredfold.",
+        " each of 100, 1000 and 10,000): one more digit costs a hundredfold.",
     )
 
 
@@ -203,10 +199,9 @@ def overlap_comes_from_postures() -> Finding:
     drawn_area = float((weight * alone).sum() / len(draw.q) * (2 * np.pi) ** 2)
     return Finding(
         judge(holds=abs(drawn_area / areas["once"] - 1) < 0.05),
-        f"A place shows both colours exactly where one of its two postures is safe: {areas['once']:.2f}"
-        " cm² of the"
-        f" {areas['union']:.2f} cm² of safe places, without sampling. The draw gives"
-        f" {drawn_area:.1f} cm².",
+        "A place shows both colours exactly where one of its two postures is safe:"
+        f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² of safe places, without"
+        f" sampling. The draw gives {drawn_area:.1f} cm².",
     )
 
 
@@ -217,7 +212,6 @@ def lobes_show() -> Finding:
     return Finding(
         judge(holds=same),
         f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in two lobes, is"
-        " just the"
-        f" part with one safe posture ({areas['once']:.2f} cm²): the lateral shapes are the places of both"
-        " colours.",
+        f" just the part with one safe posture ({areas['once']:.2f} cm²): the lateral shapes are"
+        " the places of both colours.",
     )

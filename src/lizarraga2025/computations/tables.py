@@ -118,8 +118,7 @@ def kinematics() -> Finding:
     return Finding(
         judge(holds=all(rows)),
         f"{sum(rows)} of {len(rows)} rows agree by identity with the frames derived from the file,"
-        " if R_y(q) carries z towards x, as eq. (29) has it; with the other sense"
-        f" {other} would.",
+        f" if R_y(q) carries z towards x, as eq. (29) has it; with the other sense {other} would.",
     )
 
 
@@ -147,8 +146,8 @@ def offsets_of_a_pair(number: int) -> Finding:
     return Finding(
         judge(holds=gap <= limit, corrected=with_9_09 <= limit),
         f"The points are {first:.4f} and {second:.4f} cm from the joint between them. The"
-        f" difference of {gap:.4f} cm compares with {limit:.4f} cm that rounding to two"
-        f" decimals can cause.{slip if number == 4 else ''}",
+        f" difference of {gap:.4f} cm compares with {limit:.4f} cm that rounding to two decimals"
+        f" can cause.{slip if number == 4 else ''}",
     )
 
 

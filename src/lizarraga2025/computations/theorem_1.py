@@ -47,7 +47,7 @@ def sign_of_a_component() -> Finding:
     require(sp.expand((B - d) * (B + d) - B**2 + d**2) == 0, "|B|² - d² = (|B| - d)(|B| + d)")
     return Finding(
         judge(holds=not (inside and x < 0 and share > 0)),
-        f"At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
+        "At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
         f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} %"
         f" of the region some component is negative: {', '.join(kinds)}. The y components are zero"
         " everywhere.",
@@ -80,8 +80,7 @@ def joint_limits() -> Finding:
         verdict,
         f"{len(printed)} limits are printed. The windows of Table 6 end at {box[0, 0]:.2f}° and"
         f" {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and {box[1, 1]:.2f}° for"
-        " the second, so"
-        " wide limits change nothing: area around home "
+        " the second, so wide limits change nothing: area around home "
         + ", ".join(f"{a:.6f} rad² with limits {name}" for name, a in area.items())
         + ".",
     )
@@ -107,7 +106,7 @@ def least_distance() -> Finding:
 
 
 def _home(arm: Robot) -> tuple[float, int]:
-    """Return area, rad^2, and number of vertices of the region around home; zeros if it is empty."""
+    """Return area, rad^2, and number of vertices of the region around home; zeros for none."""
     home = find_region(arm).home
     return (0.0, 0) if home is None else (home.area, len(home.vertices))
 
@@ -230,9 +229,9 @@ def chain_rule() -> Finding:
     right = tuple(int(x) for x in small.position("a", "b", "0"))
     return Finding(
         judge(holds=vanishes(own) and vanishes(common), under=vanishes(own)),
-        "With each vector seen from its first index it is an identity. With one common observer,"
-        f" as rule 5 has it, it is false: with a turned a quarter about y and b one unit along x"
-        f" of a it gives {wrong} for {right}.",
+        "With each vector seen from its first index it is an identity. With one common observer, as"
+        " rule 5 has it, it is false: with a turned a quarter about y and b one unit along x of a"
+        f" it gives {wrong} for {right}.",
     )
 
 
@@ -305,8 +304,8 @@ def rotation_taken_out() -> Finding:
     return Finding(
         judge(holds=under and vanishes(from_a - g.R_0a @ g.B), under=under),
         "An identity seen from the base. The left side has the label of eq. (15), which holds seen"
-        " from a: one arrow, two observers, and two equal columns only where R_{0,a} leaves B as it"
-        " is.",
+        " from a: one arrow, two observers, and two equal columns only where R_{0,a} leaves B as"
+        " it is.",
     )
 
 
@@ -318,8 +317,8 @@ def bracket_null() -> Finding:
     needed = not (flat @ up).any() and bool(up.any())
     return Finding(
         judge(holds=back and needed),
-        "The transpose of R_{0,a} times the vector is B, identically. This is the reason that the"
-        " step needs and leaves out: R_{0,a} is invertible. With a projection, which is not,"
+        "The transpose of R_{0,a} times the vector is B, identically. This is the reason that"
+        " the step needs and leaves out: R_{0,a} is invertible. With a projection, which is not,"
         f" diag(1, 1, 0) sends {tuple(int(x) for x in up)} to null.",
     )
 
@@ -404,6 +403,6 @@ def component(name: str) -> Finding:
     printed = sp.expand(paper.expression(paper.EQUATION_29[name]))
     return Finding(
         judge(holds=_differs(name) == 0),
-        f"The component derived from the chain has {len(sp.Add.make_args(printed))}"
-        f" terms; printed minus derived is {_differs(name)}, symbol by symbol.",
+        f"The component derived from the chain has {len(sp.Add.make_args(printed))} terms; printed"
+        f" minus derived is {_differs(name)}, symbol by symbol.",
     )

@@ -208,7 +208,7 @@ def condition_for_roots() -> Finding:
     return Finding(
         judge(holds=not everywhere, under=exact and list(counts.values()) == [0, 1, 2]),
         "d² - (a cos q + b sin q)² is the square (a sin q - b cos q)², so for d > 0 the condition"
-        f" is needed, and θ + arccos(c / d) shows that it suffices. Roots for a = 3, b = 4:"
+        " is needed, and θ + arccos(c / d) shows that it suffices. Roots for a = 3, b = 4:"
         f" {numbers}. For a = b = c = 0 there are solutions and no c / d.",
     )
 
@@ -227,8 +227,8 @@ def inverse_cosine() -> Finding:
     return Finding(
         judge(holds=not solves or printed),
         f"cos q = 0 has the solution q = {plain(q)}, which would need k = {fraction}: it is not"
-        " among the printed ones. The cosine is even, so both signs solve it, and it falls"
-        " strictly on (0, π), so there are no others.",
+        " among the printed ones. The cosine is even, so both signs solve it, and it falls strictly"
+        " on (0, π), so there are no others.",
     )
 
 
@@ -285,8 +285,8 @@ def theorem_as_printed() -> Finding:
     lengths = ", ".join(f"{name} {x}°" for name, x in degrees.items())
     return Finding(
         judge(holds=degrees["eq. (31)"] == positive),
-        f"For cos q ≥ 0 the lengths are: {lengths}. The cosine is positive on {positive}°."
-        f" Its proof has {len(theorem_2())} steps, each an identity checked by computer algebra.",
+        f"For cos q ≥ 0 the lengths are: {lengths}. The cosine is positive on {positive}°. Its"
+        f" proof has {len(theorem_2())} steps, each an identity checked by computer algebra.",
     )
 
 

@@ -1,4 +1,4 @@
-"""Which arms are judged? The paper's robot as printed, and the variants that it is compared with."""
+"""Which arms are judged? The paper's robot as printed, and the variants it is compared with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far may digits be off? Those of the print, what they do to a contact, and those of doubles."""
+"""How far may digits be off? Those of the print, what they do to a contact; those of doubles."""
 
 from __future__ import annotations
 

@@ -86,8 +86,8 @@ def _tables(file: Traversable) -> list[dict[str, Any]]:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{file.name}: {error}") from None
-    tables = content.get("entry")
-    if set(content) != {"entry"} or not isinstance(tables, list):
+    tables = content.pop("entry", None)
+    if content or not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
         raise ValueError(f"{file.name}: wanted a list of tables [[entry]] and nothing else")
     return tables
 

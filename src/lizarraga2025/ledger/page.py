@@ -70,11 +70,9 @@ def _row(one: Claim) -> str:
 
 
 def _corrected(one: Claim) -> str:
-    return (
-        f'<p class="ledger-corrected"><b>Holds:</b> {typeset(one.corrected)}</p>'
-        if one.corrected
-        else ""
-    )
+    if not one.corrected:
+        return ""
+    return f'<p class="ledger-corrected"><b>Holds:</b> {typeset(one.corrected)}</p>'
 
 
 def _evidence(one: Claim) -> str:
@@ -89,7 +87,7 @@ def _citation(one: Claim) -> str:
 
 
 def _erratum(one: Claim) -> str:
-    ledger = f'<a href="{cite.PAGE.rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
+    ledger = f'<a href="{cite.page().rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
     words = (f"qbound claims {one.id}", "--recompute")
     again = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     repeat = f"{link_to_chapter(one)}; <code>{again}</code>"
