@@ -1,4 +1,4 @@
-"""Random sampling of joint space: the traditional method that the paper argues against (Figure 11).
+"""Random sampling of joint space: the traditional method, a fair opponent of the exact region.
 
 It sees boundary functions only, no region: whatever it finds, it finds by drawing. What counts as
 free is the caller's choice, a predicate.
@@ -63,7 +63,7 @@ def sample(
     limits: ArrayLike | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Sample:
-    """Draw `n` configurations evenly and judge each (Figure 11).
+    """Draw `n` configurations evenly and judge each.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Piece:
 
 
 def from_lowest(component: Component) -> Component:
-    """Let each loop, and the vertices, begin at the lowest vertex: the numbers of Figure 5.
+    """Let each loop, and the vertices, begin at the lowest vertex.
 
     Lowest is by the last joint, then by the first. A loop that goes round a joint is left alone.
     """
