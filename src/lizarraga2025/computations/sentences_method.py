@@ -121,13 +121,11 @@ def order_and_nonlinearity() -> Finding:
 
 @computes("S-6")
 def numerical_methods_and_a_boundary() -> Finding:
-    rings = effort.contour_of_grid(200)
-    closed = len(rings) == 1 and np.allclose(rings[0][0], rings[0][-1])
     q = drawn().q
     box = paper_rule.box(robot())
     near = np.abs(np.stack([*(q - box.lower).T, *(box.upper - q).T, floor()(q)])).min()
     return Finding(
-        judge(holds=not closed, under=bool(near > 0)),
+        judge(holds=not effort.contour_is_closed(200), under=bool(near > 0)),
         f"True of random points alone: none of {len(q)} lies on the boundary. A contour of the same"
         " functions on a grid of 200 by 200 is one closed curve, whose area is off by"
         f" {100 * effort.contour_error(200):.4f} %.",
@@ -136,15 +134,11 @@ def numerical_methods_and_a_boundary() -> Finding:
 
 @computes("S-7")
 def accuracy_and_effort() -> Finding:
-    nodes = {k: next(n for n in range(1, 99) if effort.closed_form_error(n) < 10.0**-k)
-             for k in (3, 6, 9)}  # fmt: skip
-    closed = {k: effort.CLOSED_FORM_START + 2 * n for k, n in nodes.items()}
-    drawn_for = {k: effort.samples_needed(10.0**-k) for k in nodes}
-    text = "; ".join(
-        f"1e-{k}: {closed[k]} against {drawn_for[k]:.2g} random samples" for k in nodes
-    )
+    closed = {k: effort.closed_form_evaluations(10.0**-k) for k in (3, 6, 9)}
+    random = {k: effort.samples_needed(10.0**-k) for k in closed}
+    text = "; ".join(f"1e-{k}: {closed[k]} against {random[k]:.2g} random samples" for k in closed)
     return Finding(
-        judge(holds=all(closed[k] < drawn_for[k] for k in nodes)),
+        judge(holds=all(closed[k] < random[k] for k in closed)),
         "Solutions of Theorem 2 for the area of the joint region within a relative error of"
         f" {text}.",
     )

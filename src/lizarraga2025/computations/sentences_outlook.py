@@ -62,10 +62,10 @@ def affine_constraints() -> Finding:
 
     arm, _ = with_symbols(sliding())
     q = joint_symbols(arm)
-    wall = clearance(arm, arm.boundary("B7")).symbolic(q)
+    height = clearance(arm, arm.boundary("B7")).symbolic(q)
     pair = sp.expand(clearance(arm, arm.boundary("B8")).symbolic(q))
-    along = sp.simplify(sp.diff(wall, q[2], 2)) == 0
-    mixed = sp.simplify(sp.diff(wall, q[0], q[2]))
+    along = sp.simplify(sp.diff(height, q[2], 2)) == 0
+    mixed = sp.simplify(sp.diff(height, q[0], q[2]))
     square = sp.simplify(sp.diff(pair, q[2], 2) / 2)
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
@@ -95,8 +95,8 @@ def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
 @computes("S-46")
 def hypersurfaces() -> Finding:
     places, _ = surface(41)
-    wall = clearance(sliding(), sliding().boundary("B7"))
-    steep = float(np.linalg.norm(wall.gradient(places), axis=-1).min())
+    height = clearance(sliding(), sliding().boundary("B7"))
+    steep = float(np.linalg.norm(height.gradient(places), axis=-1).min())
     both = closest_approach(robot(), pairs()[0])[1]
     return Finding(
         judge(holds=steep > 0 and both < SMALL, under=steep > 0),
@@ -109,8 +109,8 @@ def hypersurfaces() -> Finding:
 
 @computes("S-47")
 def isosurfaces() -> Finding:
-    wall = clearance(sliding(), sliding().boundary("B7"))
-    off = {n: float(np.abs(wall(surface(n)[0])).max()) for n in (21, 41, 81)}
+    height = clearance(sliding(), sliding().boundary("B7"))
+    off = {n: float(np.abs(height(surface(n)[0])).max()) for n in (21, 41, 81)}
     order = float(np.log2(off[41] / off[81]))
     return Finding(
         judge(holds=order > 1.5),

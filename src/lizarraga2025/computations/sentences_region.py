@@ -80,8 +80,8 @@ def exactly_where_it_meets_itself() -> Finding:
 
 @computes("S-20")
 def half_spaces_are_independent() -> Finding:
-    height = tool_form()(square(180))
-    signs = np.stack([height @ wall.normal >= wall.offset for wall in half_spaces()], axis=-1)
+    place = tool_form()(square(180))
+    signs = np.stack([place @ half.normal >= half.offset for half in half_spaces()], axis=-1)
     patterns = {tuple(p) for p in np.unique(signs.reshape(-1, 3), axis=0).tolist()}
     never = [p for p in np.ndindex(2, 2, 2) if tuple(map(bool, p)) not in patterns]
     nested = all(p[0] == 1 and p[1] == 0 for p in never)
@@ -127,12 +127,12 @@ def several_regions() -> Finding:
 @computes("S-23")
 def other_regions_are_out_of_reach() -> Finding:
     home, *others = by_clearances().components
-    holding = [c.contains_home for c in by_clearances().components]
+    with_home = [c.contains_home for c in by_clearances().components]
     names = sorted({arc.boundary for loop in home.loops for arc in loop})
     return Finding(
-        judge(holds=holding == [True, *([False] * len(others))]),
+        judge(holds=with_home == [True, *([False] * len(others))]),
         "The regions are the connected pieces of what the clearances leave; home is in one of"
-        f" {len(holding)}, walled in by {', '.join(names)}.",
+        f" {len(with_home)}, walled in by {', '.join(names)}.",
     )
 
 

@@ -49,10 +49,22 @@ def contour_of_grid(n: int) -> tuple[Floats, ...]:
     return tuple(ring * step - np.pi for ring in rings)
 
 
+def contour_is_closed(n: int) -> bool:
+    """Tell whether the outlines on an n by n grid are one closed curve."""
+    rings = contour_of_grid(n)
+    return len(rings) == 1 and np.allclose(rings[0][0], rings[0][-1])
+
+
 def contour_error(n: int) -> float:
     """Return the relative error of the area inside the contour of an n by n grid."""
     (ring,) = contour_of_grid(n)
     return abs(abs(polygon.area(ring[:-1])) / by_windows().area - 1)
+
+
+def closed_form_evaluations(relative: float) -> int:
+    """Return how many solutions of Theorem 2 give the area with less than this relative error."""
+    nodes = next(n for n in range(1, 99) if closed_form_error(n) < relative)
+    return CLOSED_FORM_START + 2 * nodes
 
 
 def closed_form_error(nodes: int) -> float:
