@@ -21,8 +21,8 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.computations import bounds, registry, tables, theorem_1, theorem_2
 from lizarraga2025.evidence import arms, proofs, rounding
-from lizarraga2025.ledger import Claim, cite
-from lizarraga2025.ledger.claims import claim, from_content, identifiers, join, save
+from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.claims import Claim, claim, from_content, identifiers, join, save
 from lizarraga2025.ledger.entries import KINDS, entries, read
 from lizarraga2025.verdicts import VERDICTS, Finding, judge, require, undetermined
 from qbound.cli import main

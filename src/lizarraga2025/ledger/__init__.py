@@ -4,7 +4,3 @@
 function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `cite` tells
 how to cite it.
 """
-
-from lizarraga2025.ledger.claims import Claim, claims
-
-__all__ = ["Claim", "claims"]
