@@ -82,9 +82,6 @@ def _lines(region: Region) -> Iterator[str]:
 
 
 def _draw(region: Region) -> bytes:
-    from qbound.figures.pictures import Chart, pose_picture
+    from qbound.figures.pictures import region_picture
 
-    robot, problem = region.robot, region.problem
-    q = robot.with_held(robot.home[list(problem.joints)], problem.held)
-    numbered = region.components[0] if region.components else None
-    return pose_picture(robot, q, Chart(region, problem.joints, numbered), None)
+    return region_picture(region)
