@@ -30,11 +30,13 @@ from qbound.proofs.crossings import (
     crossings,
     folds,
     judged,
+    placed_at,
     side_roots,
     sides,
 )
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
+from qbound.proofs.verdict import Verdict
 from qbound.region.arcs import Arc
 from qbound.region.region import Component, Region
 
@@ -319,7 +321,7 @@ class _Prover:
         name, problem = self._name(run.curve), self.problem
         if run.sign and not Curve(problem, run).is_graph():
             raise Unproved(f"{name}: a run is not proved to be a graph")
-        if judged(problem, run.middle, (name, name), (run.curve,)).others != "positive":
+        if judged(problem, run.middle, (name, name), (run.curve,)).others is not Verdict.PROVED:
             raise Unproved(f"{name}: a run is not proved to be feasible")
         if not on_the_left(problem, run):
             raise Unproved(f"{name}: the region is not on the left of a run")
@@ -338,13 +340,13 @@ class _Prover:
         if not self.runs:
             middle = [sum(ends, start=ball(0)) / 2 + ball(LINE) for ends in self.problem.ends]
             word = judged(self.problem, (middle[0], middle[1]), ("", ""), ()).others
-            if word != ("positive" if count else "negative"):
+            if word is not (Verdict.PROVED if count else Verdict.REFUTED):
                 raise Unproved(f"{count} components without a boundary are proposed")
         for points in (self.points, self.folds):
-            hidden = [" and ".join(c.names) for c in points.found if c.others == "undecided"]
+            hidden = [" and ".join(c.names) for c in points.found if c.others is Verdict.UNDECIDED]
             if points.undecided or hidden:
                 raise Unproved(f"not proved complete: {', '.join([*points.undecided, *hidden])}")
-        feasible = [k for k, c in enumerate(self.points.found) if c.others == "positive"]
+        feasible = [k for k, c in enumerate(self.points.found) if c.others is Verdict.PROVED]
         if sorted(self.used) != feasible:
             raise Unproved(f"{len(self.used)} vertices are proposed, {len(feasible)} are proved")
         for fold in self.folds.feasible:
@@ -364,14 +366,13 @@ class _Prover:
                 self._known_if_feasible(i, q)
         for k, other in enumerate(self.sides, start=m):
             if other.joint != side.joint:
-                q = (side.value, other.value) if side.joint == 0 else (other.value, side.value)
-                self._known_if_feasible(k, q)
+                self._known_if_feasible(k, placed_at(side.joint, side.value, other.value))
 
     def _known_if_feasible(self, curve: int, q: Balls) -> None:
         word = judged(self.problem, q, ("", ""), (curve,)).others
-        if word == "undecided":
+        if word is Verdict.UNDECIDED:
             raise Unproved(f"{self._name(curve)}: a point on a line is on two boundaries")
-        if word == "positive":
+        if word is Verdict.PROVED:
             self._known(curve, q)
 
     def _known(self, curve: int, q: Balls) -> None:
