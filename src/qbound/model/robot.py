@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.extras import require
 from qbound.model.frames import Frame, Frames, axis_rotation
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -175,6 +176,7 @@ class Robot:
 
 def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:
     r"""Return a real SymPy symbol for each joint: :math:`q_1, q_2, \ldots`."""
+    require("sympy")
     import sympy
 
     return tuple(sympy.Symbol(_subscripted(joint.name), real=True) for joint in robot.joints)
@@ -193,6 +195,7 @@ def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
     dict
         The value of each symbol, in the robot's length unit.
     """
+    require("sympy")
     values: dict[sympy.Symbol, float] = {}
     joints = tuple(
         replace(j, origin=_labelled(j.parent, j.frame, j.origin, values)) for j in robot.joints
