@@ -14,7 +14,7 @@ paper; the search for certificates, their checkers and the scaling of polygons r
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from qbound.forms.harmonic import HarmonicForm
 from qbound.forms.waves import Waves
@@ -81,12 +81,14 @@ def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool =
     return np.tensordot(bend, size, axes=([-1], [-1]))
 
 
-def worst_edges(form: HarmonicForm, cells: Floats, which: ArrayLike = ()) -> NDArray[np.intp]:
+def worst_edges(
+    form: HarmonicForm, cells: Floats, which: NDArray[np.intp] | None = None
+) -> NDArray[np.intp]:
     """Return for each simplex the edge along which a form may bend most: where to cut it.
 
     Parameters
     ----------
-    which : array_like of int, shape (N,)
+    which : ndarray of int, shape (N,), optional
         Of a stack, the form that counts on each cell.
 
     Returns
@@ -96,8 +98,8 @@ def worst_edges(form: HarmonicForm, cells: Floats, which: ArrayLike = ()) -> NDA
     """
     steps = edges(cells)
     bend = bending(form, cells, steps)
-    if form.shape:
-        bend = bend[np.arange(len(cells)), :, np.asarray(which)]
+    if which is not None:
+        bend = bend[np.arange(len(cells)), :, which]
     flat = bend.max(axis=1, keepdims=True) <= 0
     return np.asarray(np.where(flat, np.square(steps).sum(axis=2), bend).argmax(axis=1))
 

@@ -80,7 +80,7 @@ def largest_safe_scale(
     order, in floating point. A violation found on the way starts the search anew from there.
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    stacked = _stacked(forms, p, g)
+    stacked = _stacked(forms, g + highest * (p - g), g)
     if not (stacked(g) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
     best = _coarse(stacked, p, g, highest)
@@ -114,11 +114,11 @@ def first_exit(
         Its index; -1 where none stops the ray.
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
-    return _exits(_stacked(forms, g, rays), g, rays, highest)
+    return _exits(_stacked(forms, g + highest * rays, g), g, rays, highest)
 
 
 def least(
-    form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike, tolerance: float = 1e-9
+    form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike, tolerance: float = 1e-12
 ) -> tuple[float, Floats]:
     """Return the least value of a form over a polygon, and where, to within a tolerance.
 
@@ -164,7 +164,7 @@ def least_along_edges(
 
 def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, Floats]:
     """Halve simplices until no part can hold a value below the least one found at a corner."""
-    _refuse_infinite(form.coefficients, cells)
+    _refuse_infinite(form, cells)
     slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, cells[0, 0]
     while len(cells):
         corners = form(cells)
@@ -179,17 +179,21 @@ def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, 
 # --- all forms at once ----------------------------------------------------------------------------
 
 
-def _stacked(forms: Sequence[HarmonicForm], *numbers: Floats) -> HarmonicForm:
-    """Return forms as one stack, if these and the numbers are finite."""
+def _stacked(forms: Sequence[HarmonicForm], points: Floats, centre: Floats) -> HarmonicForm:
+    """Return forms as one stack, if all is finite in the box around some points."""
     kinds = forms[0].kinds if forms else ("revolute", "revolute")
     table = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
-    _refuse_infinite(table, *numbers)
-    return HarmonicForm(table, kinds)
+    stacked = HarmonicForm(table, kinds)
+    _refuse_infinite(stacked, np.vstack([points, centre]))
+    return stacked
 
 
-def _refuse_infinite(*numbers: Floats) -> None:
-    """Refuse NaN, which every comparison would take for safe, and infinity."""
-    if not all(np.isfinite(x).all() for x in numbers):
+def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
+    """Refuse NaN, which comparisons would take for safe, infinity, and what grows beyond it."""
+    reach = np.abs(points).reshape(-1, 2).max(axis=0)
+    with np.errstate(all="ignore"):
+        size = form.size(reach)
+    if not (np.isfinite(reach).all() and np.isfinite(size).all()):
         raise ValueError("joint values and coefficients must be finite numbers")
 
 

@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -304,17 +304,16 @@ def _check_margin(margin: str) -> None:
 def _deepest(
     robot: Robot, statement: Statement, cells: Sequence[Any], searches: dict[str, Search]
 ) -> dict[str, Any]:
-    """Follow each violated boundary to where it is violated most; return the deepest as witness."""
+    """Follow each violated boundary to where it is violated most: the deepest is the witness."""
     corners = np.array(cells, dtype=float) * units(robot)
     wider = asked_for_more(robot, float(Fraction(statement["margin"])))
     found = []
     for name, result in searches.items():
-        if result.cell is None or result.q is None:
-            continue
-        form = clearance(wider, wider.boundary(name))
-        weights = _lowest(form, corners[result.cell], result.q)
-        value = float(form(weights @ corners[result.cell]))
-        found.append((_depth(wider, name, value), name, result.cell, weights))
+        if result.cell is not None and result.q is not None:
+            form = clearance(wider, wider.boundary(name))
+            cell, weights = _lowest(form, corners, result.cell, result.q)
+            value = float(form(weights @ corners[cell]))
+            found.append((_depth(wider, name, value), name, cell, weights))
     _, name, cell, weights = max(found, key=lambda item: item[0])
     return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
 
@@ -345,19 +344,23 @@ def _depth(robot: Robot, name: str, value: float) -> float:
     return distance - math.sqrt(max(0.0, distance**2 + value))
 
 
-def _lowest(form: Callable[[Floats], Floats], cell: Floats, start: Floats) -> Floats:
-    """Return the weights of a configuration in a cell at which a form is low, from `start` down.
+def _lowest(form: HarmonicForm, cells: Floats, cell: int, q: Floats) -> tuple[int, Floats]:
+    """Return the cell, and the weights of its corners, where a form is lowest, by a local search.
 
-    A copy of the cell shrinks around the lowest of its corners, middles and centre so far.
+    In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
+    the search starts at the centres and, in one cell, at a configuration that is known to be low.
     """
-    k = len(cell)
+    count, k = cells.shape[:2]
     i, j = np.triu_indices(k, 1)
     tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
-    lowest = _weights(cell, start)
+    lowest, rows = np.full((count, k), 1 / k), np.arange(count)
+    lowest[cell] = _weights(cells[cell], q)
     for size in 0.75 ** np.arange(80):
-        around = np.vstack([lowest, (1 - size) * lowest + size * tries])
-        lowest = around[form(around @ cell).argmin()]
-    return np.asarray(lowest)
+        near = (1 - size) * lowest[:, None] + size * tries
+        around = np.concatenate([lowest[:, None], near], axis=1)
+        lowest = around[rows, form(around @ cells).argmin(axis=1)]
+    best = int(form(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
+    return best, lowest[best]
 
 
 def _weights(cell: Floats, q: Floats) -> Floats:
