@@ -2,8 +2,12 @@
 and one browser for all tests that look at pages.
 """
 
-from browsers import browser
+import pytest
 from hypothesis import settings
+
+pytest.register_assert_rewrite("support")  # before its first import: its assertions show values
+
+from support.browser import browser  # noqa: E402
 
 __all__ = ["browser"]
 

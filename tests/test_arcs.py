@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from shapely import LineString, Point
-from test_region import inside_limits, random_robot, relative
 
 from qbound import find_region, load_robot
 from qbound.region.arcs import integrate
+from support.regions import inside_limits, relative
+from support.robots import random_robot
 
 SEEDS = [3, 8, 13, 21, 34, 36, 44, 55]
 

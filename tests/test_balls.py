@@ -10,17 +10,9 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import magnitude
-
-KINDS = ("revolute", "prismatic")
-
-
-def random_form(seed: int, joints: int) -> HarmonicForm:
-    rng = np.random.default_rng(seed)
-    kinds = tuple(KINDS[k] for k in rng.integers(0, 2, joints))
-    return HarmonicForm(rng.normal(size=(2, *(3,) * joints)), kinds)
+from support.forms import random_form
 
 
 def by_hand(coefficients, kinds, q):

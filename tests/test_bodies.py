@@ -11,13 +11,12 @@ import pytest
 import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from oracles import PACKAGED, frame_matrix
 
 from qbound import clearance, load_robot
 from qbound.measures import bodies
 from qbound.model.robot import Body
-from qbound.region import paper_rule
-from qbound.region.region import solve, state
+from qbound.region import paper_rule, solve, state
+from support.oracles import PACKAGED, frame_matrix
 
 PRINTED, MENDED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-mended", "-symmetric")

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsers import refuse_remote, settle
 
-HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
+from support.browser import HTML, open_page, refuse_remote, settle
+
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
 WIDTHS = {"wide screen": 1280, "phone": 390}
@@ -33,15 +33,6 @@ class Seen:
     broken: dict[str, list[str]] = field(default_factory=dict)
     small: dict[str, list[str]] = field(default_factory=dict)
     faint: dict[str, list[str]] = field(default_factory=dict)
-
-
-def open_page(page: Any, name: str) -> None:
-    """Open a page of the book and wait until its formulas are typeset."""
-    file = HTML / name
-    assert file.exists(), "run `python3 run.py book` first"
-    page.goto(file.as_uri())
-    page.evaluate("() => window.MathJax?.startup?.promise.then(() => {})")
-    settle(page)
 
 
 @pytest.fixture(scope="module", params=PAGES)

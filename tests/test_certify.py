@@ -13,7 +13,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from robots_at_random import box_of, robot_file
 from scipy.optimize import minimize
 
 from qbound import check, cli
@@ -28,7 +27,8 @@ from qbound.proofs import certify as prover
 from qbound.proofs import check_arb, statements
 from qbound.proofs.certify import bracket_scale, certify
 from qbound.proofs.triangulation import triangulate
-from qbound.region.region import find_region
+from qbound.region import find_region
+from support.robot_files import box_of, robot_file
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
 """Random robots; a longer run is written down in docs/decisions/0233."""

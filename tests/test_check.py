@@ -17,7 +17,6 @@ import mpmath
 import numpy as np
 import pytest
 from jsonschema import ValidationError, validate
-from robots_at_random import robot_file
 
 import qbound
 from qbound import check, cli
@@ -25,6 +24,7 @@ from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb, statements
 from qbound.proofs.certify import certify
+from support.robot_files import robot_file
 
 FILE = Path(check.__file__)
 ONE = 2**check.BITS

@@ -5,18 +5,16 @@ from __future__ import annotations
 import json
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
 from bs4 import BeautifulSoup
-from test_book_browser import open_page, refuse_remote
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.entries import KINDS, VERDICTS, from_content
+from support.browser import HTML, open_page, refuse_remote
 
-HTML = Path(__file__).resolve().parents[1] / "book" / "_build" / "html"
 LEDGER = [from_content(content) for content in recorded.claims()]
 PAGE, ERRATA = "chapters/15_what_holds.html", "chapters/16_errata.html"
 

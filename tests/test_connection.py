@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import label
-from test_crossings import stated
-from test_decomposition import RR
-from test_region import random_robot
 
 from qbound import find_region, load_robot
 from qbound.cli import main
 from qbound.proofs.connection import connection, outer_groups, separated, wall
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
-from qbound.region.region import solve
+from qbound.region import solve
+from support.exact import stated
+from support.forms import RR
+from support.robots import random_robot
 
 PAPER = exact_problem(exact_robot("minervabot-v2"))
 REGION = find_region(load_robot("minervabot-v2"))

@@ -4,34 +4,20 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
-from flint import arb, fmpq
+from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.optimize import root
-from test_decomposition import PP, PR, RP, RR, forms
-from test_region import random_robot
 
 from qbound import find_region
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import precision
 from qbound.proofs.crossings import crossings, folds
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
-
-NAMES = (("q1.lower", "q1.upper"), ("q2.lower", "q2.upper"))
-SQUARE = ((-1, 1), (-1, 1))
-ROUND = (None, None)
-
-
-def stated(kinds, terms, ranges=ROUND) -> ExactProblem:
-    """A problem with rational coefficients, from the rows of the edge table."""
-    stack = forms(kinds, *terms)
-    exact = [fmpq(*float(c).as_integer_ratio()) for c in stack.coefficients.ravel()]
-    table = np.empty(stack.coefficients.shape, dtype=object)
-    table.ravel()[:] = exact
-    balls = tuple(None if r is None else (arb(r[0]), arb(r[1])) for r in ranges)
-    names = tuple(f"f{i}" for i in range(len(terms)))
-    return ExactProblem(HarmonicForm(table, kinds), names, balls, NAMES)
+from qbound.proofs.exact import exact_problem, exact_robot
+from support.exact import stated
+from support.forms import PP, PR, RP, RR, SQUARE
+from support.robots import random_robot
 
 
 def places(found) -> np.ndarray:

@@ -9,10 +9,10 @@ import pytest
 from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
-from test_balls import random_form
 
 from qbound.proofs.balls import precision
 from qbound.proofs.dyadic import Cells, Room
+from support.forms import random_form
 
 
 def random_room(seed: int, joints: int) -> Room:

@@ -18,96 +18,17 @@ from numpy.testing import assert_allclose
 from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
-from qbound.explorer.page import explorer_data, explorer_page
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import ARITHMETIC, SCRIPTS, explore, explorer_page
 from qbound.measures.scaling import least_along_edges
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region import paper_rule
-from qbound.region.region import solve, violated
+from qbound.region import paper_rule, violated
 from qbound.workspace.planar import planar_arm, postures
+from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"
 POSES = 3000
-
-
-def joint(kind, parent, frame, origin, axis, **more):
-    return {
-        "name": f"q{frame}",
-        "type": kind,
-        "parent": parent,
-        "frame": frame,
-        "origin": origin,
-        "axis": axis,
-    } | more
-
-
-def robot_table(joints, home, tool_frame, **more):
-    """Return a small planar arm: a tool, a point on the base, a floor, a pair."""
-    return {
-        "schema": 1,
-        "name": "arm",
-        "length_unit": "m",
-        "angle_unit": "rad",
-        "home": home,
-        "tool": "t",
-        "joint": joints,
-        "point": [
-            {"name": "t", "frame": tool_frame, "at": [0.7, 0.0, 0.2], "radius": 0.05},
-            {"name": "b", "frame": "0", "at": [-0.3, 0.0, 0.4], "radius": 0.1},
-        ],
-        "boundary": [
-            {"name": "P", "type": "pair", "points": ["t", "b"], "clearance": 0.15},
-            {
-                "name": "F",
-                "type": "half-space",
-                "point": "t",
-                "normal": [0.1, 0.0, 1.0],
-                "offset": -0.8,
-            },
-        ],
-    } | more
-
-
-SIDE = [0.0, 1.0, 0.0]
-ALONG = [1.0, 0.0, 0.3]
-SLIDE = {"limits": [-0.6, 0.9]}
-ORIGINS = [0.2, 0.0, 0.3], [0.9, 0.0, -0.2]
-
-
-def two_joints(first, second, turn=SIDE):
-    kinds = {"R": ("revolute", turn, {}), "P": ("prismatic", ALONG, SLIDE)}
-    rows = []
-    for i, letter in enumerate(first + second):
-        kind, axis, more = kinds[letter]
-        axis = [-0.2, 0.0, 1.0] if (i, letter) == (1, "P") else axis
-        rows.append(joint(kind, str(i), str(i + 1), ORIGINS[i], axis, **more))
-    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2"))
-
-
-def three_joints():
-    rows = [joint("revolute", str(i), str(i + 1), [0.5, 0.0, 0.1], SIDE) for i in range(3)]
-    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4, "q3": -0.2}, "3"))
-
-
-def out_of_plane():
-    rows = [
-        joint("revolute", "0", "1", ORIGINS[0], [0.3, -0.2, 1.0], rpy=[0.2, -0.4, 0.5]),
-        joint("revolute", "1", "2", ORIGINS[1], [0.5, 1.0, -0.7]),
-    ]
-    return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2"))
-
-
-ROBOTS = {
-    "paper": lambda: (load_robot("minervabot-v2"), {}),
-    "RR": lambda: (two_joints("R", "R"), {}),
-    "RR, axes opposed": lambda: (two_joints("R", "R", [0.0, -1.0, 0.0]), {}),
-    "RP": lambda: (two_joints("R", "P"), {}),
-    "PR": lambda: (two_joints("P", "R"), {}),
-    "PP": lambda: (two_joints("P", "P"), {}),
-    "3R, first held": lambda: (three_joints(), {0: 0.4}),
-    "3R, second held": lambda: (three_joints(), {1: -0.9}),
-    "3R, third held": lambda: (three_joints(), {2: 0.7}),
-}
 
 
 class Script:
@@ -116,7 +37,7 @@ class Script:
     def __init__(self, data):
         self.data = data
         self.context = quickjs.Context()
-        self.context.eval((TEMPLATES / "explorer_math.js").read_text(encoding="utf-8"))
+        self.context.eval("".join((TEMPLATES / name).read_text("utf-8") for name in ARITHMETIC))
         self.context.eval(f"const robot = {json.dumps(data)};")
         self.context.eval("const map = toolMap(robot, robot.q); const arm = armOf(map);")
 
@@ -128,14 +49,11 @@ class Script:
         )
 
 
-SPATIAL = {"out of the plane": lambda: (out_of_plane(), {})}
-
-
 @cache
 def case(name):
     robot, held = (ROBOTS | SPATIAL)[name]()
     region = find_region(robot, held)
-    return robot, held, region, Script(explorer_data(robot, region, held=held))
+    return robot, held, region, Script(explorer_data(region))
 
 
 def poses(data, n=POSES, seed=5):
@@ -377,7 +295,7 @@ def test_the_smallest_clearance_of_a_scaled_polygon_is_that_of_its_edges(factor)
 
 def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
-    data = explorer_data(robot, solve(paper_rule.problem(robot), robot.home), rule="paper")
+    data = explorer_data(find_region(robot, rule="paper"))
     corners = [vertex.q for vertex in paper_rule.vertices(robot)]
     assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
@@ -444,8 +362,8 @@ def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_page_is_one_small_file_that_loads_nothing(name):
-    robot, held, region, _ = case(name)
-    page = explorer_page(robot, region, held=held)
+    _, _, region, _ = case(name)
+    page = explorer_page(region)
     found = parts(page)
     assert len(page.encode()) < 300_000
     assert [a for a in found.addresses if not a.startswith(("#", "data:"))] == []
@@ -460,7 +378,7 @@ def test_a_robots_names_cannot_become_markup():
     table = robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2", name=nasty)
     table["boundary"][0]["name"] = nasty
     robot = parse_robot(table)
-    found = parts(explorer_page(robot, find_region(robot)))
+    found = parts(explorer_page(find_region(robot)))
     assert set(found.scripts) == {"robot-data", "code"}
     assert json.loads(found.scripts["robot-data"])["name"] == nasty
     assert "alert(1)" not in found.scripts["code"]
@@ -468,9 +386,82 @@ def test_a_robots_names_cannot_become_markup():
 
 
 def test_the_script_writes_names_as_text_only():
-    code = "".join((TEMPLATES / name).read_text() for name in ("explorer.js", "explorer_math.js"))
+    code = "".join((TEMPLATES / name).read_text("utf-8") for name in SCRIPTS)
     assert re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
     assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
+
+
+def code_of(name):
+    text = (TEMPLATES / name).read_text(encoding="utf-8")
+    return re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+
+
+def test_every_name_of_a_script_is_used():
+    code = "".join(map(code_of, SCRIPTS))
+    names = re.findall(r"^(?:function|const|let) (\w+)", code, re.MULTILINE)
+    assert len(names) > 100
+    assert [name for name in names if len(re.findall(rf"\b{name}\b", code)) < 2] == []
+
+
+def test_every_script_stands_in_the_page():
+    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize(
+    ("interface", "pick"),
+    [
+        ("Robot", lambda data: data),
+        ("Joint", lambda data: data["joints"][0]),
+        ("RobotPoint", lambda data: data["points"][0]),
+        ("View", lambda data: data["views"][0]),
+        ("Limit", lambda data: data["limits"][0]),
+        ("Component", lambda data: data["components"][0]),
+        ("VertexPolygon", lambda data: data["polygon"]),
+    ],
+)
+def test_what_the_scripts_are_told_has_the_declared_fields(interface, pick):
+    robot = load_robot("minervabot-v2")
+    data = explorer_data(find_region(robot, rule="paper"))
+    declared = (TEMPLATES / "explorer.d.ts").read_text(encoding="utf-8")
+    [fields] = re.findall(rf"interface {interface} {{\n(.*?)\n}}", declared, re.DOTALL)
+    assert re.findall(r"^  (\w+):", fields, re.MULTILINE) == list(pick(data))
+
+
+# --- in a notebook -------------------------------------------------------------------------------
+
+
+class Frame(HTMLParser):
+    """The one frame of a notebook's output, with its attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.attributes = [], {}
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes |= dict(attributes)
+
+
+def test_a_notebook_shows_the_page_in_a_frame_of_its_own():
+    _, _, region, _ = case("RR")
+    shown = explore(region)
+    frame = Frame()
+    frame.feed(shown._repr_html_())
+    assert frame.tags == ["iframe"]
+    assert frame.attributes["srcdoc"] == shown.html == explorer_page(region)
+    assert frame.attributes["sandbox"] == "allow-scripts"
+
+
+def test_an_explorer_is_named_in_one_short_line():
+    _, _, region, _ = case("RR")
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(region)))
+
+
+def test_an_explorer_is_saved_as_the_page(tmp_path):
+    _, _, region, _ = case("RR")
+    shown = explore(region)
+    shown.save(tmp_path / "arm.html")
+    assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
 
 
 # --- the command ---------------------------------------------------------------------------------

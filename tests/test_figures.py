@@ -17,8 +17,6 @@ from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import packaged_table, point_seen_from
-from test_region import random_robot
 
 from qbound import figures, find_region, load_robot
 from qbound.figures.pictures import Chart, pose_picture, traversal_picture, workspace_picture
@@ -27,6 +25,8 @@ from qbound.paths.traversal import traverse
 from qbound.region.paper_rule import vertices
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
+from support.oracles import packaged_table, point_seen_from
+from support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
 KINDS = ("joint", "point", "boundary")

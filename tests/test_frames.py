@@ -8,10 +8,10 @@ import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import ANGLES, AXES, VECTORS, homogeneous
 from scipy.spatial.transform import Rotation
 
 from qbound.model.frames import Frame, Frames, axis_rotation, roll_pitch_yaw
+from support.oracles import ANGLES, AXES, VECTORS, homogeneous
 
 EYE = np.eye(3)
 

@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+PINS = [f"tests/javascript/{name}" for name in ("package.json", "package-lock.json")]
 
 
 def load_run() -> ModuleType:
@@ -44,13 +45,13 @@ def run() -> ModuleType:
 @pytest.fixture
 def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small copy of the repository's layout to which run.py's paths point."""
-    for folder in ("src/qbound/forms", "notebooks", "book"):
+    for folder in ("src/qbound/forms", "notebooks", "book", "tests/javascript"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "src/qbound/forms/circle.py").write_text("TURN = 6.28\n")
     (tmp_path / "notebooks/01_a.ipynb").write_text(notebook({"source": ["1 + 1"]}))
     (tmp_path / "book/conf.py").write_text("project = 'qbound'\n")
-    for name in ("pyproject.toml", "requirements.lock"):
-        shutil.copy(ROOT / name, tmp_path)
+    for name in ("pyproject.toml", "requirements.lock", *PINS):
+        shutil.copy(ROOT / name, tmp_path / name)
     book = tmp_path / "book"
     places = {
         "ROOT": tmp_path,
@@ -61,6 +62,8 @@ def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
         "GENERATED": book / "generated",
         "FRONT_PAGE": book / "_build/html/index.html",
         "BOOK_STAMP": book / "_build/made-from",
+        "CHECKERS": tmp_path / "tests/javascript",
+        "NODE_MODULES": tmp_path / ".venv/javascript/node_modules",
     }
     for name, place in places.items():
         monkeypatch.setattr(run, name, place)
@@ -374,6 +377,7 @@ def test_a_failing_step_ends_the_run_with_its_status(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run, "install_checkers", lambda _: None)
     monkeypatch.setattr(run, "call", lambda *_, **__: 3)
     assert run.main(["book"]) == 3
     assert "Stopped at: Executing 1 notebooks" in capsys.readouterr().out
@@ -456,6 +460,93 @@ def test_a_browser_that_prints_nothing_is_a_failure_and_leaves_no_old_pdf(
     assert "Printing" in steps
     assert "has printed nothing" in capsys.readouterr().out
     assert not (run.BUILD / "qbound.pdf").exists()
+
+
+# --- run.py: JavaScript ---------------------------------------------------------------------------
+
+
+@pytest.fixture
+def without_node(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine without Node on which every step succeeds."""
+    for name in ("CI", "QBOUND_REQUIRE_NODE"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run, "call", lambda *_, **__: 0)
+    monkeypatch.setattr(run.shutil, "which", lambda _: None)
+
+
+def test_without_node_lint_says_so_and_checks_the_rest(
+    run: ModuleType, without_node: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run.main(["lint"]) == 0
+    [line] = capsys.readouterr().out.splitlines()
+    assert "JavaScript is not checked: there is no Node here." in line
+
+
+@pytest.mark.parametrize(("name", "value"), [("CI", "true"), ("QBOUND_REQUIRE_NODE", "1")])
+def test_where_node_is_required_its_absence_is_a_failure(
+    run: ModuleType, without_node: None, monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    assert run.main(["lint"]) == 1
+
+
+def test_the_environments_node_comes_first(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run.shutil, "which", lambda name: f"/opt/{name}")
+    assert run.find_node("node") == "/opt/node"
+    install(run)
+    run.in_venv("node").touch()
+    assert run.find_node("node") == run.in_venv("node")
+
+
+def test_the_checkers_are_installed_once_for_a_lock_and_again_after_a_failure(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = record_steps(run, monkeypatch)
+    works = run.must
+
+    def fails(*_: object, **__: object) -> None:
+        works("failed")
+        raise run.Failed("no network")
+
+    install(run)
+    monkeypatch.setattr(run, "must", fails)
+    with pytest.raises(run.Failed):
+        run.install_checkers("npm")
+    monkeypatch.setattr(run, "must", works)
+    for _ in range(2):
+        run.install_checkers("npm")
+    assert len(steps) == 2
+    with (run.CHECKERS / "package-lock.json").open("a") as lock:
+        lock.write("\n")
+    run.install_checkers("npm")
+    assert len(steps) == 3
+
+
+def test_every_script_of_the_repository_is_checked(run: ModuleType) -> None:
+    scripts = {p.relative_to(ROOT) for p in tracked() if p.suffix == ".js"}
+    styled = {s for s in scripts for place in map(Path, run.SCRIPTS) if s.is_relative_to(place)}
+    typed = {
+        path.resolve().relative_to(ROOT)
+        for name in run.PROGRAMS
+        for pattern in json.loads((run.CHECKERS / f"{name}.json").read_text())["include"]
+        for path in run.CHECKERS.glob(pattern)
+        if path.suffix == ".js"
+    }
+    assert len(scripts) > 10
+    assert styled == typed == scripts
+
+
+def test_the_lock_of_the_checkers_pins_by_hash_and_holds_no_address() -> None:
+    package, lock = ((ROOT / name).read_text(encoding="utf-8") for name in PINS)
+    wanted = json.loads(package)["devDependencies"]
+    pins = {name: pin for name, pin in json.loads(lock)["packages"].items() if name}
+    assert {name: pins[f"node_modules/{name}"]["version"] for name in wanted} == wanted
+    assert all(pin["integrity"].startswith("sha512-") for pin in pins.values())
+    assert "://" not in lock
+    assert "resolved" not in lock
 
 
 # --- the lock and the metadata --------------------------------------------------------------------
@@ -665,6 +756,19 @@ def test_no_file_names_a_registry_or_a_place_on_this_machine() -> None:
         if word.encode() in path.read_bytes()
     ]
     assert not found
+
+
+def test_no_test_file_imports_another() -> None:
+    """What two of them need is in `tests/support`: a file can be changed for its own sake."""
+    files = sorted((ROOT / "tests").rglob("*.py"))
+    names = {file.stem for file in files if file.stem.startswith(("test_", "conftest"))}
+    assert len(names) > 40
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+        modules = {node.module or "" for node in imports if isinstance(node, ast.ImportFrom)}
+        modules |= {alias.name for node in imports for alias in node.names}
+        assert not names & {part for module in modules for part in module.split(".")}, file.name
 
 
 def test_the_products_are_not_committed(run: ModuleType) -> None:

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import ANGLES, form_value
 
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
+from support.oracles import ANGLES, form_value
 
 KINDS = st.lists(st.sampled_from(["revolute", "prismatic"]), min_size=1, max_size=4).map(tuple)
 COEFFICIENTS = st.integers(-40, 40).map(float)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import sympy
 from numpy.testing import assert_allclose
-from oracles import OFFSETS, arctan_of_quotient, equation_29, table_6
 
 from lizarraga2025 import printed as paper
+from support.oracles import OFFSETS, arctan_of_quotient, equation_29, table_6
 
 Q = (0.4, -0.9)
 """Where every printed formula has a value (q1 of row 6 included)."""

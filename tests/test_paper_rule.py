@@ -6,19 +6,6 @@ from math import degrees, pi
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import (
-    Table,
-    angle_gap,
-    arctan_of_quotient,
-    circle_zeros,
-    equation_29,
-    feasible_by_paper,
-    in_unit,
-    packaged_table,
-    point_seen_from,
-    row_of,
-    table_6,
-)
 
 from lizarraga2025 import printed as paper
 from qbound import load_robot
@@ -35,6 +22,19 @@ from qbound.region.paper_rule import (
     geometric_bounds,
     vertices,
     windows,
+)
+from support.oracles import (
+    Table,
+    angle_gap,
+    arctan_of_quotient,
+    circle_zeros,
+    equation_29,
+    feasible_by_paper,
+    in_unit,
+    packaged_table,
+    point_seen_from,
+    row_of,
+    table_6,
 )
 
 MINERVA = load_robot("minervabot-v2")

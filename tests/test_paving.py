@@ -9,14 +9,14 @@ import pytest
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_crossings import stated
-from test_region import random_robot
 
 from qbound import find_region
 from qbound.cli import main
 from qbound.proofs.balls import precision
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave, start
+from support.exact import stated
+from support.robots import random_robot
 
 PPP = ("prismatic",) * 3
 

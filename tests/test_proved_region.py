@@ -7,17 +7,16 @@ import numpy as np
 import pytest
 from flint import arb
 from numpy.testing import assert_allclose
-from test_crossings import stated
-from test_decomposition import EDGES
-from test_region import LIMITS, random_robot
 
 from qbound import find_region, load_robot
 from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import Unproved, prove_region
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, solve
+from qbound.region import Problem, Region, paper_rule, solve
+from support.exact import stated
+from support.forms import EDGES, LIMITS
+from support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")

@@ -5,102 +5,35 @@ By hand, for many more robots than the suite takes: `python tests/test_region.py
 
 import sys
 import warnings
-from dataclasses import replace
-from functools import partial
 from math import atan2, pi
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from oracles import circle_zeros, equation_29
 from scipy.ndimage import label
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from test_decomposition import PP, PR, RP, RR, TURN, forms, pieces
 
 from qbound import load_robot
 from qbound.boundary.functions import clearance
-from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
-from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, find_region, solve, violated
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import HalfSpace, Robot
+from qbound.region import Problem, Region, find_region, paper_rule, solve, violated
+from support.forms import LIMITS, PP, RR, TURN, forms
+from support.oracles import circle_zeros, equation_29
+from support.regions import (
+    SMALL,
+    check_arcs,
+    check_grid,
+    check_roles,
+    relative,
+    same_pieces,
+    summary,
+    sure_masks,
+)
+from support.robots import drawn_robot, in_centimetres, mirror, random_robot, turned
 
 MINERVA = load_robot("minervabot-v2")
-LIMITS = (("q1.lower", "q1.upper"), ("q2.lower", "q2.upper"))
-GRID = 160
-SMALL = 1e-5
-"""Area under which a component may be left out of a comparison: two ways round it differently."""
 
 # --- random robots -------------------------------------------------------------------------------
-
-
-def random_robot(seed: int) -> Robot:
-    """A planar chain of two joints, eight points, up to four pairs and three walls."""
-    rng = np.random.default_rng(seed)
-    kinds = (RR, RP, PR, PP)[seed % 4]
-    points = [Point(f"p{i}", str(rng.integers(0, 3)), in_plane(rng)) for i in range(8)]
-    joints = tuple(random_joint(rng, j, kind) for j, kind in enumerate(kinds))
-    boundaries = [random_pair(rng, i, points) for i in range(rng.integers(0, 5))]
-    boundaries += [random_wall(rng, i, points) for i in range(rng.integers(0, 4))]
-    home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot("r", joints, tuple(points), tuple(boundaries), home, "p0", "m", "rad")
-
-
-def in_plane(rng) -> np.ndarray:
-    x, z = rng.uniform(-2, 2, 2)
-    return np.array([x, 0, z])
-
-
-def random_joint(rng, j: int, kind: str) -> Joint:
-    angle = rng.uniform(0, TURN)
-    low, high = np.sort(rng.uniform(-4, 4, 2)) + np.array([-0.3, 0.3])
-    limits = None if kind == "revolute" and rng.random() < 0.6 else (low, high)
-    slide = np.array([np.cos(angle), 0, np.sin(angle)])
-    axis = np.array([0.0, 1, 0]) if kind == "revolute" else slide
-    return Joint(f"q{j + 1}", kind, str(j), str(j + 1), in_plane(rng), np.eye(3), axis, limits)
-
-
-def random_pair(rng, i: int, points: list[Point]) -> Pair:
-    one = points[rng.integers(0, 8)]
-    others = [p for p in points if p.frame != one.frame] or [Point("p0", "0", np.zeros(3))]
-    other = others[rng.integers(0, len(others))]
-    return Pair(f"B{i}", (one.name, other.name), rng.uniform(0.2, 1.5))
-
-
-def random_wall(rng, i: int, points: list[Point]) -> HalfSpace:
-    angle = rng.uniform(0, TURN)
-    normal = np.array([np.cos(angle), 0, np.sin(angle)])
-    return HalfSpace(f"W{i}", points[rng.integers(0, 8)].name, normal, rng.uniform(-3, 1))
-
-
-def drawn_robot(seed: int) -> Robot:
-    """A robot as an engineer draws it: small whole numbers, points in line, walls along the axes.
-
-    Here curves touch, coincide, are parallel and meet three at a time.
-    """
-    rng = np.random.default_rng(seed)
-    kinds, whole = (RR, RP, PR, PP)[seed % 4], partial(rng.integers, endpoint=True)
-    places = [np.array([whole(-2, 2), 0.0, whole(-2, 2) * rng.integers(0, 2)]) for _ in range(8)]
-    points = [Point(f"p{i}", str(rng.integers(0, 3)), place) for i, place in enumerate(places)]
-    joints = tuple(drawn_joint(rng, j, kind) for j, kind in enumerate(kinds))
-    pairs = [random_pair(rng, i, points) for i in range(rng.integers(0, 5))]
-    pairs = [replace(pair, clearance=whole(1, 4) / 2) for pair in pairs]
-    axes = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 0, 1], [0, 0, -1]])
-    walls = [
-        HalfSpace(f"W{i}", f"p{rng.integers(0, 8)}", axes[rng.integers(0, 4)], float(whole(-4, 0)))
-        for i in range(rng.integers(0, 4))
-    ]
-    home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot("d", joints, tuple(points), (*pairs, *walls), home, "p0", "m", "rad")
-
-
-def drawn_joint(rng, j: int, kind: str) -> Joint:
-    limits = (-pi / 2, pi / 2) if kind == "revolute" else (-2.0, 2.0)
-    if kind == "revolute" and rng.random() < 0.6:
-        limits = None
-    axis = [0.0, 1, 0] if kind == "revolute" else [[1.0, 0, 0], [0, 0, 1.0]][rng.integers(0, 2)]
-    origin = np.array([rng.integers(0, 3), 0.0, rng.integers(0, 2)])
-    return Joint(f"q{j + 1}", kind, str(j), str(j + 1), origin, np.eye(3), np.array(axis), limits)
 
 
 # --- what is checked of each ---------------------------------------------------------------------
@@ -117,154 +50,11 @@ def check(robot: Robot) -> None:
     check_symmetries(robot, region)
 
 
-def relative(problem: Problem, q: np.ndarray) -> np.ndarray:
-    """Value of every form beside the sum of its terms' sizes, shape (k, m)."""
-    sizes = 1.0
-    for j, kind in enumerate(problem.forms.kinds):
-        factor = np.abs(basis(kind, q[:, j])).max(axis=-1)
-        sizes = sizes * np.maximum(factor, 1)
-    largest = np.abs(problem.forms.coefficients).max(axis=(1, 2))
-    return problem.forms(q) / np.where(largest > 0, largest, 1) / np.asarray(sizes)[:, None]
-
-
-def inside_limits(problem: Problem, q: np.ndarray, slack: float = 0.0) -> np.ndarray:
-    held = np.ones(len(q), dtype=bool)
-    for j, side in enumerate(problem.ranges):
-        if side is not None:
-            held &= (q[:, j] >= side[0] - slack) & (q[:, j] <= side[1] + slack)
-    return held
-
-
-def normal_of(problem: Problem, boundary: str, q: np.ndarray) -> np.ndarray:
-    """Unit vector into the feasible side of a form or a limit, shape (2,); zero at a saddle."""
-    for j, names in enumerate(problem.limits):
-        if boundary in names:
-            return np.eye(2)[j] * (1 if boundary == names[0] else -1)
-    gradient = problem.forms[problem.names.index(boundary)].gradient(q)
-    return gradient / max(np.linalg.norm(gradient), 1e-300)
-
-
-def check_arcs(region: Region) -> None:
-    problem = region.problem
-    for component in region.components:
-        for arc in (arc for loop in component.loops for arc in loop):
-            values = relative(problem, arc.points)
-            assert inside_limits(problem, arc.points, 1e-9).all()
-            assert (values >= -1e-9).all()
-            if arc.boundary in problem.names:
-                assert np.abs(values[:, problem.names.index(arc.boundary)]).max() < 1e-9
-            if component.area > SMALL:
-                check_sides(problem, arc)
-
-
-def check_sides(problem: Problem, arc) -> None:
-    """The region lies on the left: a step to the left is feasible, to the right is not."""
-    step = 1e-6
-    k = len(arc.points) // 2
-    before, after = arc.points[k - 1], arc.points[min(k + 1, len(arc.points) - 1)]
-    q = arc.points[k] if len(arc.points) > 2 else (before + after) / 2
-    along = after - before
-    normal = normal_of(problem, arc.boundary, q)
-    left = np.array([-along[1], along[0]])
-    if np.linalg.norm(along) < 1e-3 or not normal.any() or crowded(problem, arc.boundary, q):
-        return
-    assert left @ normal > 0
-    one, other = q[None] + step * normal, q[None] - step * normal
-    assert inside_limits(problem, one).all()
-    assert (problem.forms(one) > 0).all()
-    assert not (inside_limits(problem, other).all() and (problem.forms(other) > 0).all())
-
-
-def crowded(problem: Problem, boundary: str, q: np.ndarray) -> bool:
-    """Whether another boundary passes within a few steps, or the form itself is flat here."""
-    values = np.abs(relative(problem, q[None])[0])
-    if boundary in problem.names:
-        row = problem.names.index(boundary)
-        scale = np.abs(problem.forms.coefficients[row]).max()
-        if np.linalg.norm(problem.forms[row].gradient(q)) < 1e-2 * scale:
-            return True
-        values[row] = np.inf
-    walls = [side for j, side in enumerate(problem.ranges) if side for side in np.abs(side - q[j])]
-    near = sorted(walls)[(0 if boundary in problem.names else 1) :]
-    return bool((values < 1e-3).any() or (np.array(near) < 1e-3).any())
-
-
 def check_home(robot: Robot, region: Region) -> None:
     """There is a home component exactly where nothing is violated at home."""
     margin = relative(region.problem, robot.home[None])[0]
     if np.abs(margin).min(initial=1) > 1e-6:
         assert (region.home is None) == bool(violated(robot, robot.home))
-
-
-def sure_masks(problem: Problem, n: int = GRID):
-    """Cells of a grid that are feasible for sure, cells that may be, and the cells' sides.
-
-    A form moves from the middle of a cell by its gradient and a bound on its second derivatives.
-    """
-    ends = [side or (-pi, pi) for side in problem.ranges]
-    h = np.array([(high - low) / n for low, high in ends])
-    q = [low + (np.arange(n) + 0.5) * step for (low, _), step in zip(ends, h, strict=True)]
-    table, kinds = problem.forms.coefficients, problem.forms.kinds
-    value = [basis(kind, x) for kind, x in zip(kinds, q, strict=True)]
-    slope = [basis_slope(kind, x) for kind, x in zip(kinds, q, strict=True)]
-    middle, first, second = (
-        np.einsum("mij,ai,bj->abm", table, one, other)
-        for one, other in ((value[0], value[1]), (slope[0], value[1]), (value[0], slope[1]))
-    )
-    bend = np.einsum(
-        "mij,i,j->m", np.abs(table), *(largest(k, e) for k, e in zip(kinds, ends, strict=True))
-    )
-    reach = np.abs(first) * h[0] / 2 + np.abs(second) * h[1] / 2 + bend * (h.sum() / 2) ** 2 / 2
-    return (middle > reach).all(axis=-1), (middle >= -reach).all(axis=-1), h, q
-
-
-def largest(kind: str, ends: tuple[float, float]) -> np.ndarray:
-    """Bounds of 1, cos, sin (or 1, q, q^2) and of their first two derivatives over a range."""
-    far = max(map(abs, ends))
-    return np.ones(3) if kind == "revolute" else np.array([1, max(far, 1), max(far**2, 2 * far, 2)])
-
-
-def flood(mask: np.ndarray, rounds: tuple[bool, bool], corners: bool) -> np.ndarray:
-    """Label the pieces of a mask from 1, glued where a joint turns all the way round."""
-    labels, count = label(mask, structure=np.ones((3, 3)) if corners else None)
-    pairs = [np.zeros((2, 0), dtype=int)]
-    for axis in (0, 1):
-        if rounds[axis]:
-            first, last = np.take(labels, 0, axis), np.take(labels, -1, axis)
-            shifts = (-1, 0, 1) if corners else (0,)
-            pairs += [np.stack([np.roll(first, s), last]) for s in shifts]
-    one, other = np.concatenate(pairs, axis=1)
-    both = (one > 0) & (other > 0)
-    glue = coo_array((np.ones(both.sum()), (one[both], other[both])), shape=(count + 1,) * 2)
-    return np.where(mask, connected_components(glue, directed=False)[1][labels] + 1, 0)
-
-
-def check_grid(region: Region) -> None:
-    """Area between that of the sure and of the possible cells; components by flood fill."""
-    problem = region.problem
-    sure, possible, h, q = sure_masks(problem)
-    cell = h.prod()
-    doubt = (possible & ~sure).sum() * cell
-    assert sure.sum() * cell - 1e-9 <= region.area <= possible.sum() * cell + 1e-9
-    rounds = tuple(side is None for side in problem.ranges)
-    lots, lumps = flood(sure, rounds, corners=False), flood(possible, rounds, corners=True)
-    n_lots, n_lumps = len(np.unique(lots[sure])), len(np.unique(lumps[sure]))
-    areas = sorted((c.area for c in region.components), reverse=True)
-    assert sum(area > doubt + 1e-9 for area in areas) <= n_lots
-    assert len(areas) >= n_lumps
-    if n_lots == n_lumps:  # the grid is fine enough to be sure of every piece
-        sizes = np.sort(np.unique(lots[sure], return_counts=True)[1])[::-1] * cell
-        assert (np.array(areas[:n_lots]) >= sizes - 1e-9).all()
-    if not any(rounds):
-        check_moments(region, sure, doubt, h, q)
-
-
-def check_moments(region: Region, sure: np.ndarray, doubt: float, h, q) -> None:
-    """First moments of the whole region, within what the doubtful cells can add."""
-    moment = sum((c.area * c.centroid for c in region.components), np.zeros(2))
-    counted = np.array([(sure * q[0][:, None]).sum(), (sure * q[1]).sum()]) * h.prod()
-    far = np.array([np.abs(x).max() for x in q]) + h
-    assert (np.abs(moment - counted) <= doubt * far + 1e-9).all()
 
 
 def check_polygons(region: Region) -> None:
@@ -288,32 +78,6 @@ def shoelace(loop) -> np.ndarray:
     x2, y2 = np.roll(x, -1), np.roll(y, -1)
     cross = x * y2 - x2 * y
     return np.array([cross.sum() / 2, ((x + x2) * cross).sum() / 6, ((y + y2) * cross).sum() / 6])
-
-
-def summary(region: Region, *, swap: bool = False) -> list[tuple[float, tuple[bool, bool], int]]:
-    """Area, wraps and number of loops of the components that are not tiny."""
-    rows = [(c.area, c.wraps[::-1] if swap else c.wraps, len(c.loops)) for c in region.components]
-    return sorted((row for row in rows if row[0] > SMALL), reverse=True)
-
-
-def same_pieces(found, expected, scale: float = 1.0) -> None:
-    assert len(found) == len(expected)
-    assert_allclose(
-        [row[0] for row in found],
-        [row[0] * scale for row in expected],
-        rtol=1e-7,
-        atol=1e-7 * scale,
-    )
-    assert [tuple(map(bool, row[1])) for row in found] == [tuple(map(bool, r[1])) for r in expected]
-    assert [row[2] for row in found] == [row[2] for row in expected]
-
-
-def check_roles(region: Region) -> None:
-    """Either joint may be the base."""
-    problem = region.problem
-    for base in (0, 1):
-        found = pieces(problem.forms, problem.ranges, base)
-        same_pieces([row for row in found if row[0] > SMALL], summary(region))
 
 
 def check_symmetries(robot: Robot, region: Region) -> None:
@@ -350,56 +114,6 @@ def swap_joints(problem: Problem) -> Problem:
     table = np.swapaxes(problem.forms.coefficients, 1, 2)
     turned_round = HarmonicForm(table, problem.forms.kinds[::-1])
     return Problem(turned_round, problem.names, problem.ranges[::-1], problem.limits[::-1])
-
-
-FLIP = np.array([-1.0, 1, 1])
-
-
-def mirror(robot: Robot) -> Robot:
-    """Send x to -x: turns change their sense, slides their axis."""
-    points = tuple(replace(p, at=p.at * FLIP) for p in robot.points)
-    walls = tuple(
-        replace(b, normal=b.normal * FLIP) if isinstance(b, HalfSpace) else b
-        for b in robot.boundaries
-    )
-    joints = tuple(mirrored(joint) for joint in robot.joints)
-    return replace(robot, joints=joints, points=points, boundaries=walls)
-
-
-def mirrored(joint: Joint) -> Joint:
-    moved = replace(joint, origin=joint.origin * FLIP)
-    if joint.kind == "prismatic":
-        return replace(moved, axis=joint.axis * FLIP)
-    limits = joint.limits and (-joint.limits[1], -joint.limits[0])
-    return replace(moved, limits=limits)
-
-
-def in_centimetres(robot: Robot) -> Robot:
-    points = tuple(replace(p, at=100 * p.at) for p in robot.points)
-    boundaries = tuple(
-        replace(b, offset=100 * b.offset)
-        if isinstance(b, HalfSpace)
-        else replace(b, clearance=100 * b.clearance)
-        for b in robot.boundaries
-    )
-    joints = tuple(longer(joint) for joint in robot.joints)
-    return replace(robot, joints=joints, points=points, boundaries=boundaries)
-
-
-def longer(joint: Joint) -> Joint:
-    moved = replace(joint, origin=100 * joint.origin)
-    if joint.kind == "revolute" or joint.limits is None:
-        return moved
-    return replace(moved, limits=(100 * joint.limits[0], 100 * joint.limits[1]))
-
-
-def turned(robot: Robot, j: int, angle: float) -> Robot:
-    """Mount joint j turned by an angle about its own axis: what was q is now q - angle."""
-    c, s = np.cos(angle), np.sin(angle)
-    joint = replace(robot.joints[j], mount=np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]))
-    if joint.limits:
-        joint = replace(joint, limits=(joint.limits[0] - angle, joint.limits[1] - angle))
-    return replace(robot, joints=(*robot.joints[:j], joint, *robot.joints[j + 1 :]))
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -538,11 +252,11 @@ def test_home_outside_belongs_to_no_component():
     assert len(region.components) == 1
 
 
-def test_home_at_a_touching_point_belongs_to_no_component():
+def test_home_at_a_touching_point_belongs_to_both_components():
     saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
     region = solve(saddle, (0, 0))
-    assert region.home is None
-    assert len(region.components) == 2
+    assert [component.contains_home for component in region.components] == [True, True]
+    assert region.home is region.components[0]
 
 
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])

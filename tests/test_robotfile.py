@@ -19,7 +19,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import OFFSETS, Table, packaged_table, robot_tables, row_of
 
 from lizarraga2025 import printed as paper
 from qbound import RobotFileError, load_robot, packaged_robots
@@ -28,6 +27,7 @@ from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Robot, with_symbols
 from qbound.model.robotfile import parse_robot, save_robot
 from qbound.model.schema import SENTENCES
+from support.oracles import OFFSETS, Table, packaged_table, robot_tables, row_of
 
 MINIMAL = """
 schema = 1

@@ -5,7 +5,6 @@ from math import pi
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import equation_29, packaged_table, point_seen_from, row_of, table_6
 from scipy.integrate import quad
 
 from qbound import load_robot
@@ -20,6 +19,7 @@ from qbound.sampling import (
     misses_points,
     sample,
 )
+from support.oracles import equation_29, packaged_table, point_seen_from, row_of, table_6
 
 MINERVA = load_robot("minervabot-v2")
 USED = {"1": ("1", "3"), "2": ("1", "3"), "3": ("1", "3"), "4": ("1", "3"), "7": ("3",)}

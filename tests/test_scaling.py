@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from oracles import equation_29
 
 from qbound import clearance, load_robot
 from qbound.forms.harmonic import HarmonicForm
@@ -20,6 +19,7 @@ from qbound.measures.scaling import (
     worst_margins,
 )
 from qbound.region.paper_rule import vertices
+from support.oracles import equation_29
 
 MINERVA = load_robot("minervabot-v2")
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
@@ -155,12 +155,12 @@ def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
     """Not even what is too large on the way: the least of NaN was infinite, and so safe."""
     p, wide = SQUARE.copy(), slides(one=1, x=bad, yy=bad)
     p[0, 0] = bad
-    for form, vertices in ((DISC, p), (wide, 3 * SQUARE)):
+    for form, corners in ((DISC, p), (wide, 3 * SQUARE)):
         with np.errstate(all="ignore"):
             for asks in (
-                lambda f=form, v=vertices: least(f, v, [0, 0]),
-                lambda f=form, v=vertices: least_along_edges(f, v),
-                lambda f=form, v=vertices: first_exit([f], [0, 0], v),
+                lambda f=form, v=corners: least(f, v, [0, 0]),
+                lambda f=form, v=corners: least_along_edges(f, v),
+                lambda f=form, v=corners: first_exit([f], [0, 0], v),
             ):
                 with pytest.raises(ValueError, match="finite numbers"):
                     asks()

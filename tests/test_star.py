@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from shapely import Polygon
-from test_measures import plate
 
 from qbound import find_region, load_robot
 from qbound.geometry import polygon
 from qbound.measures.star import exact_scale, inner_polygon
-from qbound.region import paper_rule
-from qbound.region.region import solve
+from qbound.region import paper_rule, solve
+from support.regions import plate
 
 MINERVA = load_robot("minervabot-v2")
 

@@ -1,6 +1,6 @@
 """What the ledger says of the paper's sentences, each checked in another way than it was computed.
 
-Kinematics and components come from the formulas expanded by hand in `oracles`, regions from
+Kinematics and components come from the formulas expanded by hand in `support.oracles`, regions from
 sampling, derivatives from differences.
 """
 
@@ -11,7 +11,6 @@ from itertools import pairwise, permutations
 import numpy as np
 import pytest
 import shapely
-from oracles import OFFSETS, equation_29
 from skimage.measure import marching_cubes
 
 from lizarraga2025.ledger import effort, walks
@@ -21,6 +20,7 @@ from qbound import clearance, find_region, load_robot
 from qbound.geometry import polygon
 from qbound.measures import bodies
 from qbound.region import paper_rule
+from support.oracles import OFFSETS, equation_29
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")

@@ -7,7 +7,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from oracles import (
+
+from qbound import load_robot
+from qbound.geometry.polygon import centroid, scaled
+from qbound.model.robotfile import parse_robot
+from qbound.paths.traversal import self_crossings, simple_orders, traverse
+from qbound.region.paper_rule import vertices
+from support.oracles import (
     crosses_itself,
     crossing_points,
     frame_matrix,
@@ -15,12 +21,6 @@ from oracles import (
     point_seen_from,
     robot_tables,
 )
-
-from qbound import load_robot
-from qbound.geometry.polygon import centroid, scaled
-from qbound.model.robotfile import parse_robot
-from qbound.paths.traversal import self_crossings, simple_orders, traverse
-from qbound.region.paper_rule import vertices
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()

@@ -13,16 +13,15 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
-from test_region import in_centimetres, mirror, random_robot, turned
 
 from qbound import load_robot
 from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import paper_rule
-from qbound.region.region import Problem, clearance_problem
+from qbound.region import Problem, clearance_problem, paper_rule
 from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
+from support.robots import in_centimetres, mirror, random_robot, turned
 
 MINERVA = load_robot("minervabot-v2")
 seeds = st.integers(0, 10_000)

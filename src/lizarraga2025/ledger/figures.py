@@ -36,8 +36,7 @@ from qbound import pair_vector
 from qbound.geometry import polygon
 from qbound.measures import scaling
 from qbound.model.robot import Robot, joint_symbols
-from qbound.region import paper_rule
-from qbound.region.region import solve, state
+from qbound.region import paper_rule, solve, state
 from qbound.sampling import keeps_clear, keeps_components_positive, keeps_geometric, misses_points
 
 MEETS = 1e-9

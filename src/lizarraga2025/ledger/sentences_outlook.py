@@ -27,7 +27,7 @@ from lizarraga2025.ledger.walks import (
 from qbound import clearance, components
 from qbound.boundary.functions import closest_approach, position
 from qbound.model.robot import Joint, Pair, Robot, joint_symbols, with_symbols
-from qbound.region.region import clearance_problem, solve
+from qbound.region import clearance_problem, solve
 
 
 @cache

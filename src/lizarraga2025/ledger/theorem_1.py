@@ -17,8 +17,7 @@ from qbound import clearance, components, pair_vector
 from qbound.boundary.functions import closest_approach, observer
 from qbound.model.frames import Frame, Frames
 from qbound.model.robot import joint_symbols
-from qbound.region import paper_rule
-from qbound.region.region import find_region
+from qbound.region import find_region, paper_rule
 
 PAGE = "03_theorem_1#equation-eq-"
 

@@ -17,8 +17,7 @@ from qbound.measures import bodies, scaling
 from qbound.measures.scaling import SafeScale
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal, self_crossings, simple_orders, traverse
-from qbound.region import paper_rule
-from qbound.region.region import Component, Region, solve
+from qbound.region import Component, Region, paper_rule, solve
 from qbound.sampling import Sample, sample
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm

@@ -22,7 +22,7 @@ from qbound.extras import require
 from qbound.measures.bodies import outline
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Region
+from qbound.region import Region
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -19,7 +19,7 @@ from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Component, Region
+from qbound.region import Component, Region
 from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:
@@ -124,9 +124,28 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
     return _picture(1, draw, kind, size=(7, 6))
 
 
+def plot_region(region: Region, ax: Axes | None = None) -> Axes:
+    """Draw a robot's region with home marked, on axes of one's own or those of the moment."""
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.gca()
+    robot, problem = region.robot, region.problem
+    home = robot.home[list(problem.joints)]
+    q = robot.with_held(home, problem.held)
+    _joint_panel(ax, robot, Chart(region, problem.joints, region.home), q[None])
+    ax.plot(*(home * figures.joint_scales(region)), "P", color=INK, ms=9, mec="white", zorder=7)
+    return ax
+
+
+def region_picture(region: Region, kind: str = "svg") -> bytes:
+    """Return the picture of `plot_region`, home's vertices numbered."""
+    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
+
+
 def _picture(
     panels: int,
-    draw: Callable[[Sequence[Axes]], None],
+    draw: Callable[[Sequence[Axes]], object],
     kind: str,
     size: tuple[float, float] = PANEL,
 ) -> bytes:

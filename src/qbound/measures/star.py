@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.polylines import tangent_corners
 from qbound.measures.scaling import first_exit, least_along_edges
+from qbound.region import Component, Problem
 from qbound.region.arcs import Arc
-from qbound.region.region import Component, Problem
 from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
 
 Floats = NDArray[np.float64]

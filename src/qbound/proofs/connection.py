@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.extras import require
-from qbound.forms.circle import nearest_turn
+from qbound.forms.angles import nearest_turn
 from qbound.proofs.dyadic import DEEPEST, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.paving import Paving, start

@@ -22,7 +22,7 @@ from qbound.proofs.exact import BITS, ExactProblem
 from qbound.proofs.proved_region import BITS as AREA_BITS
 from qbound.proofs.proved_region import ProvedComponent, prove_region
 from qbound.proofs.runs import area_under
-from qbound.region.region import Problem, solve
+from qbound.region import Problem, solve
 from qbound.workspace import planar
 
 if TYPE_CHECKING:

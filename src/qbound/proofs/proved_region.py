@@ -37,8 +37,8 @@ from qbound.proofs.crossings import (
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
 from qbound.proofs.verdict import Verdict
+from qbound.region import Component, Region
 from qbound.region.arcs import Arc
-from qbound.region.region import Component, Region
 
 if TYPE_CHECKING:
     from flint import arb

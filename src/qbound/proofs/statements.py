@@ -18,7 +18,7 @@ from qbound import check
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.proofs.triangulation import triangulate
-from qbound.region.region import Component, find_region
+from qbound.region import Component, find_region
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]

@@ -1,12 +1,14 @@
-"""The system's Chromium, without a network, for the tests that look at pages."""
+"""The system's Chromium, without a network, and pages of the built book in it."""
 
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+HTML = Path(__file__).resolve().parents[2] / "book" / "_build" / "html"
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
 HOW_TO_GET_CHROMIUM = (
     "The browser tests need Chromium: install it from your system's packages "
@@ -59,3 +61,12 @@ def refuse_remote(page: Any, requests: list[str]) -> None:
 def settle(page: Any) -> None:
     """Wait for two frames: by then a new width is laid out."""
     page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
+
+
+def open_page(page: Any, name: str) -> None:
+    """Open a page of the book and wait until its formulas are typeset."""
+    file = HTML / name
+    assert file.exists(), "run `python3 run.py book` first"
+    page.goto(file.as_uri())
+    page.evaluate("() => window.MathJax?.startup?.promise.then(() => {})")
+    settle(page)

@@ -103,7 +103,7 @@ def _quiet(f: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 # --- robots as plain tables ----------------------------------------------------------------------
 
-PACKAGED = Path(__file__).parents[1] / "src/qbound/robots/minervabot-v2.toml"
+PACKAGED = Path(__file__).parents[2] / "src/qbound/robots/minervabot-v2.toml"
 
 
 def packaged_table() -> Table:
