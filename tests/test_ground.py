@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tomllib
 import zipfile
 from importlib.metadata import version
@@ -633,30 +634,118 @@ def test_the_citation_is_of_this_package_and_refers_to_the_paper() -> None:
 # --- the package ----------------------------------------------------------------------------------
 
 
-def test_the_wheel_holds_every_file_of_the_package(tmp_path: Path) -> None:
-    copy = tmp_path / "copy"
-    skip = shutil.ignore_patterns("__pycache__", "*.egg-info")
-    shutil.copytree(ROOT / "src", copy / "src", ignore=skip)
-    shutil.copytree(ROOT / "results", copy / "results")
-    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, copy)
-    build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
-    subprocess.run(
-        [sys.executable, "-c", build, tmp_path], cwd=copy, check=True, capture_output=True
+def build(kind: str, source: Path, target: Path) -> Path:
+    """Build a wheel or an sdist of the tree at `source`, without a network."""
+    call = f"import sys, setuptools.build_meta as b; print(b.build_{kind}(sys.argv[1]))"
+    done = subprocess.run(
+        [sys.executable, "-c", call, target], cwd=source, check=True, capture_output=True, text=True
     )
-    (wheel,) = tmp_path.glob("*.whl")
-    assert wheel.name.startswith(f"qbound-{PROJECT['version']}-py3-none-any")
-    with zipfile.ZipFile(wheel) as archive:
-        packed = {name for name in archive.namelist() if ".dist-info/" not in name}
-        folder = "lizarraga2025/recorded_results"
-        recorded = {f"{folder}/{p.name}": p for p in ROOT.glob("results/*.json")}
-        for name, path in recorded.items():
-            assert archive.read(name) == path.read_bytes(), "the wheel carries results/ itself"
-    files = (p.relative_to(copy / "src").as_posix() for p in (copy / "src").rglob("*.*"))
-    sources = {name for name in files if ".egg-info" not in name}
-    assert {"qbound/py.typed", "lizarraga2025/py.typed"} <= sources
-    assert packed == sources | set(recorded)
+    return target / done.stdout.splitlines()[-1]
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sdist, unpacked."""
+    copy, target = (tmp_path_factory.mktemp(name) for name in ("copy", "sdist"))
+    skip = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    for name in ("src", "results"):
+        shutil.copytree(ROOT / name, copy / name, ignore=skip)
+    for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, copy)
+    with tarfile.open(build("sdist", copy, target)) as archive:
+        archive.extractall(target, filter="data")
+    return target / f"qbound-{PROJECT['version']}"
+
+
+@pytest.fixture(scope="module")
+def wheel(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel that is built from the sdist, unpacked as an installation would."""
+    target = tmp_path_factory.mktemp("wheel")
+    file = build("wheel", sdist, target)
+    assert file.name == f"qbound-{PROJECT['version']}-py3-none-any.whl"
+    with zipfile.ZipFile(file) as archive:
+        archive.extractall(target / "site-packages")
+    return target / "site-packages"
+
+
+def files_below(folder: Path) -> dict[str, bytes]:
+    return {
+        p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*") if p.is_file()
+    }
+
+
+def of_both_packages(folder: Path) -> dict[str, bytes]:
+    """The files of both packages, without what tools leave among them."""
+    left = re.compile(r"__pycache__/|\.(egg|dist)-info/|\.pyc$")
+    return {name: data for name, data in files_below(folder).items() if not left.search(name)}
+
+
+def test_the_sdist_holds_every_file_of_both_packages_and_the_results(sdist: Path) -> None:
+    assert of_both_packages(sdist / "src") == of_both_packages(ROOT / "src")
+    assert files_below(sdist / "results") == files_below(ROOT / "results")
+    assert not (sdist / "notebooks").exists()
+
+
+def test_the_wheel_from_the_sdist_holds_every_file_of_both_packages(wheel: Path) -> None:
+    """And results/ itself, so that `qbound claims` needs no repository."""
+    results = files_below(ROOT / "results")
+    recorded = {f"lizarraga2025/recorded_results/{name}": data for name, data in results.items()}
+    sources = of_both_packages(ROOT / "src")
+    assert {"qbound/py.typed", "lizarraga2025/py.typed"} <= set(sources)
+    assert "lizarraga2025/ledger/statements/equations.toml" in sources
     assert recorded
+    assert of_both_packages(wheel) == sources | recorded
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("claims E-34", "E-34  eq. (34)"),
+        ("claims E-34 --bibtex", "15\\_what\\_holds"),
+        ("claims E-5 --recompute", "E-5  eq. (5)"),
+        ("results region/vertex.1", "region/vertex.1 = "),
+        ("robots show minervabot-v2", 'name = "MinervaBotV2"'),
+    ],
+)
+def test_the_wheel_answers_without_the_repository(
+    wheel: Path, tmp_path: Path, words: str, said: str
+) -> None:
+    lines = "from qbound.cli import main; sys.exit(main())"
+    done = run_installed(wheel, tmp_path, lines, *words.split())
+    assert (done.returncode, done.stderr) == (0, "")
+    assert said in done.stdout
+
+
+def test_the_wheel_loads_its_robots_and_all_its_modules(wheel: Path, tmp_path: Path) -> None:
+    lines = """
+import importlib, pkgutil
+import lizarraga2025, qbound
+for package in (lizarraga2025, qbound):
+    assert package.__file__.startswith(sys.argv[1]), package.__file__
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
+robots = [qbound.load_robot(name).name for name in qbound.packaged_robots()]
+print(len(robots))
+"""
+    done = run_installed(wheel, tmp_path, lines, str(wheel))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert int(done.stdout) == len(list((ROOT / "src/qbound/robots").glob("*.toml")))
+
+
+def run_installed(
+    wheel: Path, folder: Path, lines: str, *words: str
+) -> subprocess.CompletedProcess[str]:
+    """Run lines of Python that find the unpacked wheel before anything else."""
+    return subprocess.run(
+        [sys.executable, "-P", "-c", f"import sys\n{lines}", *words],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(wheel), "PYTHONUTF8": "1"},
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+    )
 
 
 WRONG_IMPORTS = [
@@ -671,6 +760,8 @@ WRONG_IMPORTS = [
     ("qbound.cli.region", "lizarraga2025.ledger.entries", "a library that reads the paper"),
     ("lizarraga2025.printed", "qbound.geometry.polygon", "data that computes"),
     ("lizarraga2025.results", "lizarraga2025.ledger.entries", "a call upward"),
+    ("lizarraga2025.evidence.arms", "lizarraga2025.computations.tables", "a call upward"),
+    ("lizarraga2025.computations.tables", "lizarraga2025.ledger.entries", "a call upward"),
     ("qbound.check", "qbound.tolerances", "a checker that does not stand alone"),
 ]
 RIGHT_IMPORTS = [
@@ -679,8 +770,8 @@ RIGHT_IMPORTS = [
     ("qbound.region.paper_rule", "qbound.forms.circle"),
     ("qbound.sampling", "qbound.boundary.functions"),
     ("qbound.model.robotfile", "qbound.model.robot"),
-    ("lizarraga2025.ledger.tables", "lizarraga2025.printed"),
-    ("lizarraga2025.ledger.tables", "qbound.region.region"),
+    ("lizarraga2025.computations.tables", "lizarraga2025.printed"),
+    ("lizarraga2025.computations.tables", "qbound.region.region"),
     ("qbound.forms.circle", "qbound.tolerances"),
 ]
 

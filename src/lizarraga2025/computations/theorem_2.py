@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lizarraga2025.ledger.entries import Finding, entry, judge, require
-from lizarraga2025.ledger.facts import lettered, pairs, robot
-from lizarraga2025.ledger.proofs import theorem_2
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot
+from lizarraga2025.evidence.proofs import theorem_2
+from lizarraga2025.verdicts import Finding, judge, require
 from qbound import circle_arc, circle_roots, components, pair_vector
 from qbound.forms.circle import ALL
 from qbound.model.robot import joint_symbols
@@ -17,13 +18,6 @@ from qbound.region import paper_rule
 
 if TYPE_CHECKING:
     import sympy
-
-PAGE = "06_theorem_2#equation-eq-"
-RESTATED = (
-    "For d > 0 and |c| ≤ d the angles with a cos q + b sin q ≥ c are those from θ - arccos(c / d)"
-    " to θ + arccos(c / d), plus 2πk, θ = atan2(b, a); for c < -d all, for c > d none; for d = 0"
-    " all if c ≤ 0, else none."
-)
 
 
 @dataclass(frozen=True)
@@ -102,7 +96,7 @@ def _forms_of_the_robot() -> tuple[int, int]:
     """Count the components of eq. (29), and those that are of the form in each of their joints."""
     import sympy as sp
 
-    symbolic, _ = lettered()
+    symbolic, _ = symbolic_robot()
     q = joint_symbols(robot())
     total = of_the_form = 0
     for boundary in symbolic.boundaries:
@@ -121,36 +115,18 @@ def _is_of_the_form(form: sympy.Expr, q: sympy.Symbol) -> bool:
     return not any(q in part.free_symbols for part in (a, b, rest))
 
 
-def _equation(number: int, where: str) -> None:
-    @entry(
-        f"E-{number}",
-        "equation",
-        f"eq. ({number}), {where}",
-        "Components have the form a cos q + b sin q = c in a joint variable q.",
-        test="test_circle.py::test_roots_are_those_found_by_bisection",
-        chapter=f"{PAGE}{number}",
+@computes("E-30")
+@computes("E-32")
+def form_of_the_components() -> Finding:
+    total, of_the_form = _forms_of_the_robot()
+    return Finding(
+        judge(holds=total == of_the_form > 0),
+        f"{of_the_form} of {total} components of eq. (29) are of this form in every joint they"
+        " depend on, identically in the offsets, the other joint held.",
     )
-    def equation() -> Finding:
-        total, of_the_form = _forms_of_the_robot()
-        return Finding(
-            judge(holds=total == of_the_form > 0),
-            f"{of_the_form} of {total} components of eq. (29) are of this form in every joint they"
-            " depend on, identically in the offsets, the other joint held.",
-        )
 
 
-_equation(30, "Theorem 2")
-
-
-@entry(
-    "E-31",
-    "equation",
-    "eq. (31), Theorem 2",
-    "A solution q lies between θ - arccos(c / d) + 2πk - 2π and θ + arccos(c / d) + 2πk.",
-    test="test_circle.py::test_printed_intervals_are_longer_than_the_arc",
-    chapter="06_theorem_2#three-intervals-under-one-name",
-    mended=RESTATED,
-)
+@computes("E-31")
 def bounds_as_printed() -> Finding:
     theta, alpha = symbols()
     interval, at = printed_interval(), smallest()
@@ -166,17 +142,7 @@ def bounds_as_printed() -> Finding:
     )
 
 
-_equation(32, "proof of Theorem 2")
-
-
-@entry(
-    "E-33",
-    "equation",
-    "eq. (33), proof of Theorem 2",
-    "The left side is one cosine, d cos(q - θ).",
-    test="test_circle.py::test_slope_is_the_sign_of_the_derivative",
-    chapter=PAGE + "33",
-)
+@computes("E-33")
 def one_cosine() -> Finding:
     steps = theorem_2()
     (identity,) = (name for name in steps if "θ = atan2" in name)
@@ -187,15 +153,7 @@ def one_cosine() -> Finding:
     )
 
 
-@entry(
-    "E-34",
-    "equation",
-    "eq. (34), proof of Theorem 2",
-    "d is the root of a² + b², and θ the inverse tangent of b / a.",
-    test="test_circle.py::test_printed_arctan_solves_another_equation_when_a_is_negative",
-    chapter=PAGE + "34",
-    mended="θ = atan2(b, a), with d > 0.",
-)
+@computes("E-34")
 def amplitude_and_phase() -> Finding:
     import sympy as sp
 
@@ -208,7 +166,7 @@ def amplitude_and_phase() -> Finding:
     positive, negative = sp.Symbol("a", positive=True), sp.Symbol("a", negative=True)
     right = missing(positive, sp.atan(b / positive)) == 0
     left = missing(negative, sp.atan(b / negative)) == 0
-    mended = all(missing(a, sp.atan2(b, a)) == 0 for a in (positive, negative))
+    corrected = all(missing(a, sp.atan2(b, a)) == 0 for a in (positive, negative))
     behind = [
         f"β_{{{window.boundary[1:]},{window.component}}}"
         for window in paper_rule.windows(robot())
@@ -216,7 +174,7 @@ def amplitude_and_phase() -> Finding:
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
     return Finding(
-        judge(holds=right and left, under=right and mended),
+        judge(holds=right and left, under=right and corrected),
         "d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 the arctangent"
         f" turns it round: a = -1, b = 0 at q = 0 gives {at} for -1. For a = 0 the quotient does"
         " not exist. With atan2(b, a) it is an identity in all quadrants. Of the robot's point"
@@ -224,15 +182,7 @@ def amplitude_and_phase() -> Finding:
     )
 
 
-@entry(
-    "E-35",
-    "equation",
-    "eq. (35), proof of Theorem 2",
-    "Dividing by d gives cos(q - θ) = c / d.",
-    test="test_circle.py::test_every_case_of_theorem_2",
-    chapter=PAGE + "35",
-    mended="For d > 0; for d = 0 every q solves the equation if c = 0, and none otherwise.",
-)
+@computes("E-35")
 def divided() -> Finding:
     import sympy as sp
 
@@ -247,15 +197,7 @@ def divided() -> Finding:
     )
 
 
-@entry(
-    "E-36",
-    "equation",
-    "eq. (36), proof of Theorem 2",
-    "Real solutions exist only if c / d lies between -1 and 1.",
-    test="test_circle.py::test_every_case_of_theorem_2",
-    chapter=PAGE + "36",
-    mended="For d > 0 real solutions exist exactly if |c| ≤ d; one double root if |c| = d.",
-)
+@computes("E-36")
 def condition_for_roots() -> Finding:
     steps = theorem_2()
     exact = all(steps.values())
@@ -266,21 +208,12 @@ def condition_for_roots() -> Finding:
     return Finding(
         judge(holds=not everywhere, under=exact and list(counts.values()) == [0, 1, 2]),
         "d² - (a cos q + b sin q)² is the square (a sin q - b cos q)², so for d > 0 the condition"
-        f" is needed, and θ + arccos(c / d) shows that it suffices. Roots for a = 3, b = 4:"
+        " is needed, and θ + arccos(c / d) shows that it suffices. Roots for a = 3, b = 4:"
         f" {numbers}. For a = b = c = 0 there are solutions and no c / d.",
     )
 
 
-@entry(
-    "E-37",
-    "equation",
-    "eq. (37), proof of Theorem 2",
-    "From the cosine follows q - θ = + arccos(c / d) + 2πk.",
-    test="test_circle.py::test_both_roots_are_returned_where_the_proof_keeps_one",
-    chapter=PAGE + "37",
-    mended="q - θ = ± arccos(c / d) + 2πk: two roots a turn for |c| < d, one double root for"
-    " |c| = d.",
-)
+@computes("E-37")
 def inverse_cosine() -> Finding:
     import sympy as sp
 
@@ -294,30 +227,21 @@ def inverse_cosine() -> Finding:
     return Finding(
         judge(holds=not solves or printed),
         f"cos q = 0 has the solution q = {plain(q)}, which would need k = {fraction}: it is not"
-        " among the printed ones. The cosine is even, so both signs solve it, and it falls"
-        " strictly on (0, π), so there are no others.",
+        " among the printed ones. The cosine is even, so both signs solve it, and it falls strictly"
+        " on (0, π), so there are no others.",
     )
 
 
-@entry(
-    "E-38",
-    "equation",
-    "eq. (38), proof of Theorem 2",
-    "q = arctan(b / a) + arccos(c / d) + 2πk.",
-    test="test_circle.py::test_both_roots_are_returned_where_the_proof_keeps_one",
-    chapter=PAGE + "38",
-    mended="One of the two roots, that at which a cos q + b sin q falls, with θ = atan2(b, a),"
-    " d > 0 and |c| ≤ d.",
-)
+@computes("E-38")
 def one_root() -> Finding:
     turn = np.linspace(-np.pi, np.pi, 73)[:-1]
     a, b = np.cos(turn), np.sin(turn)
     c = np.linspace(-0.99, 0.99, 45)[:, None]
     with np.errstate(divide="ignore"):
         printed = np.arctan(b / a) + np.arccos(c)
-    mended = np.arctan2(b, a) + np.arccos(c)
-    wrong, left = (np.abs(a * np.cos(q) + b * np.sin(q) - c) > 1e-12 for q in (printed, mended))
-    falls = (b * np.cos(mended) - a * np.sin(mended) < 0).all()
+    corrected = np.arctan2(b, a) + np.arccos(c)
+    wrong, left = (np.abs(a * np.cos(q) + b * np.sin(q) - c) > 1e-12 for q in (printed, corrected))
+    falls = (b * np.cos(corrected) - a * np.sin(corrected) < 0).all()
     share = 100 * wrong.mean()
     behind = np.array_equal(wrong, (a < 0) & (np.abs(c) > 1e-12))
     which = "those with a < 0 and c not 0" if behind else "others than those with a < 0 too"
@@ -330,16 +254,7 @@ def one_root() -> Finding:
     )
 
 
-@entry(
-    "E-39",
-    "equation",
-    "eq. (39), proof of Theorem 2",
-    "q lies between two successive values of eq. (38).",
-    test="test_circle.py::test_printed_intervals_are_longer_than_the_arc",
-    chapter="06_theorem_2#three-intervals-under-one-name",
-    mended="With k fixed and q counted on the real line: a joint that starts inside does not leave"
-    " without passing the root of eq. (38). As a bound on a solution it excludes nothing.",
-)
+@computes("E-39")
 def interval_between_roots() -> Finding:
     theta, alpha = symbols()
     interval, at = interval_of_the_proof(), smallest()
@@ -353,15 +268,7 @@ def interval_between_roots() -> Finding:
     )
 
 
-@entry(
-    "TH-2",
-    "sentence",
-    "Theorem 2",
-    "The solution of a cos q + b sin q = c is bounded by eq. (31).",
-    test="test_circle.py::test_arc_is_where_the_inequality_holds",
-    chapter="06_theorem_2#the-theorem-as-the-book-uses-it",
-    mended=RESTATED,
-)
+@computes("TH-2")
 def theorem_as_printed() -> Finding:
     theta, alpha = symbols()
     intervals = {
@@ -378,8 +285,8 @@ def theorem_as_printed() -> Finding:
     lengths = ", ".join(f"{name} {x}°" for name, x in degrees.items())
     return Finding(
         judge(holds=degrees["eq. (31)"] == positive),
-        f"For cos q ≥ 0 the lengths are: {lengths}. The cosine is positive on {positive}°."
-        f" Its proof has {len(theorem_2())} steps, each an identity checked by computer algebra.",
+        f"For cos q ≥ 0 the lengths are: {lengths}. The cosine is positive on {positive}°. Its"
+        f" proof has {len(theorem_2())} steps, each an identity checked by computer algebra.",
     )
 
 

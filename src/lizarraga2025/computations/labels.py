@@ -6,22 +6,13 @@ from itertools import permutations
 
 import numpy as np
 
-from lizarraga2025.ledger.entries import Finding, entry, judge
-from lizarraga2025.ledger.proofs import UNTURNED, general, vanishes
-from qbound.model.frames import Frame, Frames, axis_rotation
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence.proofs import UNTURNED, general, vanishes
+from lizarraga2025.verdicts import Finding, judge
+from qbound.model.frames import Frame, Frames
 
-PAGE = "02_vector_labelling#equation-eq-"
 
-
-@entry(
-    "E-1",
-    "equation",
-    "eq. (1), rule 1 of Section 2",
-    "A frame b seen from a frame a is a 3 by 4 matrix: three orthonormal columns and the vector"
-    " to its origin.",
-    test="test_frames.py::test_frame_is_the_relative_homogeneous_matrix",
-    chapter=PAGE + "1",
-)
+@computes("E-1")
 def frame() -> Finding:
     g = general()
     o_ab = g.chain.frame("a", "b")
@@ -35,14 +26,7 @@ def frame() -> Finding:
     )
 
 
-@entry(
-    "E-2",
-    "equation",
-    "eq. (2), rule 1 of Section 2",
-    "A frame with one letter looks at itself: it is the canonical frame at its own origin.",
-    test="test_frames.py::test_a_frame_stands_at_its_own_origin",
-    chapter=PAGE + "2",
-)
+@computes("E-2")
 def frame_of_itself() -> Finding:
     chain = general().chain
     own = [chain.frame(name, name) - np.eye(3, 4, dtype=int) for name in ("a", "b")]
@@ -53,14 +37,7 @@ def frame_of_itself() -> Finding:
     )
 
 
-@entry(
-    "E-3",
-    "equation",
-    "eq. (3), rule 4 of Section 2",
-    "A vector has a start a, an end b and an observer c that measures its components.",
-    test="test_frames.py::test_observer_turns_a_vector_and_nothing_else",
-    chapter=PAGE + "3",
-)
+@computes("E-3")
 def vector_and_observer() -> Finding:
     g = general()
     from_0, from_a = (g.chain.position("a+n", "b+m", observer) for observer in ("0", "a"))
@@ -75,14 +52,7 @@ def vector_and_observer() -> Finding:
     )
 
 
-@entry(
-    "E-4",
-    "equation",
-    "eq. (4), rule 4 of Section 2",
-    "The vector from a frame to itself is null.",
-    test="test_frames.py::test_a_frame_stands_at_its_own_origin",
-    chapter=PAGE + "4",
-)
+@computes("E-4")
 def null_vector() -> Finding:
     chain = general().chain
     null = [vanishes(chain.position(name, name, o)) for name in "ab" for o in ("0", "a", "b")]
@@ -92,14 +62,7 @@ def null_vector() -> Finding:
     )
 
 
-@entry(
-    "E-5",
-    "equation",
-    "eq. (5), rule 6 of Section 2",
-    "Frames of a chain are ordered: a precedes b and b precedes c.",
-    test="test_frames.py::test_precedence_follows_the_parents",
-    chapter=PAGE + "5",
-)
+@computes("E-5")
 def precedence() -> Finding:
     names = ["a", "b", "c"]
     links = [Frame(n, p, UNTURNED, np.zeros(3)) for p, n in zip(["0", *names], names, strict=False)]
@@ -115,14 +78,7 @@ def precedence() -> Finding:
     )
 
 
-@entry(
-    "E-6",
-    "equation",
-    "eq. (6), rule 9 of Section 2",
-    "Seen from itself a frame has the canonical unit vectors.",
-    test="test_frames.py::test_a_frame_stands_at_its_own_origin",
-    chapter=PAGE + "6",
-)
+@computes("E-6")
 def canonical_orientation() -> Finding:
     chain = general().chain
     left = [vanishes(chain.rotation(name, name) - UNTURNED) for name in ("0", "a", "b")]
@@ -133,14 +89,7 @@ def canonical_orientation() -> Finding:
     )
 
 
-@entry(
-    "E-7",
-    "equation",
-    "eq. (7), rule 10 of Section 2",
-    "The unit vectors of b seen from a are its directional cosines.",
-    test="test_frames.py::test_columns_of_a_rotation_are_the_unit_vectors",
-    chapter=PAGE + "7",
-)
+@computes("E-7")
 def directional_cosines() -> Finding:
     chain = general().chain
     axes_a, axes_b = chain.rotation("0", "a").T, chain.rotation("0", "b").T
@@ -153,15 +102,7 @@ def directional_cosines() -> Finding:
     )
 
 
-@entry(
-    "E-8",
-    "equation",
-    "eq. (8), rule 11 of Section 2",
-    "The unit vector of r is r divided by its length.",
-    test="test_frames.py::test_unit_vector_is_the_direction",
-    chapter="02_vector_labelling#unit-vectors",
-    mended="u = r / |r| for two different origins.",
-)
+@computes("E-8")
 def unit_vector() -> Finding:
     import sympy as sp
 
@@ -175,16 +116,4 @@ def unit_vector() -> Finding:
         "Length 1 and the direction of r, identically, where r is not null. At r = 0, where points"
         f" collide, there is none: along x the limits from the two sides are {max(limits)} and"
         f" {min(limits)}.",
-    )
-
-
-def quarter_turn() -> Frames:
-    """Return the smallest chain in which eqs. (15) and (25) differ: a turned, b one unit away."""
-    turn = np.rint(axis_rotation([0, 1, 0], np.pi / 2)).astype(int)
-    return Frames(
-        "0",
-        [
-            Frame("a", "0", turn, np.zeros(3, int)),
-            Frame("b", "a", UNTURNED, np.array([1, 0, 0])),
-        ],
     )

@@ -1,17 +1,27 @@
-"""How far printed digits may be off, and what this does to a contact of two points."""
+"""How far may digits be off? Those of the print, what they do to a contact; those of doubles."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from lizarraga2025.ledger.facts import robot
+from lizarraga2025.evidence.arms import robot
 from qbound.model.robot import Pair, Robot
 
 HALF_DIGIT = 0.005
 """Largest error of a length rounded to two decimals, cm."""
 
+SMALL = 1e-9
+"""A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
-def arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+
+def degrees(angle: Any) -> str:
+    """Write an angle in rad as degrees with four decimals."""
+    return f"{np.degrees(float(angle)):.4f}°"
+
+
+def _arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     """Return the vectors from the joint between a pair's points to the points, cm, home pose."""
     near, far = (of.point(name) for name in pair.points)
     joint = next(joint for joint in of.joints if joint.frame == far.frame)
@@ -20,7 +30,7 @@ def arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
 
 def radii(of: Robot, pair: Pair) -> tuple[float, float]:
     """Return the distances of a pair's points from the joint between them, cm."""
-    first, second = (float(np.linalg.norm(arm)) for arm in arms(of, pair))
+    first, second = (float(np.linalg.norm(arm)) for arm in _arms(of, pair))
     return first, second
 
 
@@ -31,7 +41,7 @@ def contact(pair: Pair) -> float:
     each times its direction cosine. The joint between the points is printed too: its two offsets
     add their own error, as those of a point do.
     """
-    first, second = arms(robot(), pair)
+    first, second = _arms(robot(), pair)
     slopes = (np.abs(v).sum() / np.linalg.norm(v) for v in (first, second, first))
     return float(sum(HALF_DIGIT * slope for slope in slopes))
 

@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from lizarraga2025.ledger.facts import robot, vertices
-from lizarraga2025.ledger.walks import by_windows, floor
+from lizarraga2025.evidence.arms import floor, robot
+from lizarraga2025.evidence.joint_region import by_windows, share_of_square, vertices
 from qbound.forms.angles import nearest_turn
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace
@@ -27,7 +27,7 @@ CLOSED_FORM_START = 12
 
 def samples_needed(relative: float) -> float:
     """Return how many random configurations give the area with this relative standard error."""
-    p = by_windows().area / (2 * np.pi) ** 2
+    p = share_of_square()
     return float((1 - p) / p / relative**2)
 
 
@@ -49,10 +49,22 @@ def contour_of_grid(n: int) -> tuple[Floats, ...]:
     return tuple(ring * step - np.pi for ring in rings)
 
 
+def contour_is_closed(n: int) -> bool:
+    """Tell whether the outlines on an n by n grid are one closed curve."""
+    rings = contour_of_grid(n)
+    return len(rings) == 1 and np.allclose(rings[0][0], rings[0][-1])
+
+
 def contour_error(n: int) -> float:
     """Return the relative error of the area inside the contour of an n by n grid."""
     (ring,) = contour_of_grid(n)
     return abs(abs(polygon.area(ring[:-1])) / by_windows().area - 1)
+
+
+def closed_form_evaluations(relative: float) -> int:
+    """Return how many solutions of Theorem 2 give the area with less than this relative error."""
+    nodes = next(n for n in range(1, 99) if closed_form_error(n) < relative)
+    return CLOSED_FORM_START + 2 * nodes
 
 
 def closed_form_error(nodes: int) -> float:

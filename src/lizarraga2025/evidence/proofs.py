@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.model.frames import Frame, Frames
+from qbound.model.frames import Frame, Frames, axis_rotation
 
 Array = NDArray[Any]
 
@@ -65,6 +65,18 @@ def general() -> General:
         ],
     )
     return General(chain, R_0a, R_ab, r_0a, r_ab, r_an, r_bm)
+
+
+def quarter_turn() -> Frames:
+    """Return the smallest chain in which eqs. (15) and (25) differ: a turned, b one unit away."""
+    turn = np.rint(axis_rotation([0, 1, 0], np.pi / 2)).astype(int)
+    return Frames(
+        "0",
+        [
+            Frame("a", "0", turn, np.zeros(3, int)),
+            Frame("b", "a", UNTURNED, np.array([1, 0, 0])),
+        ],
+    )
 
 
 def vanishes(difference: Any) -> bool:
