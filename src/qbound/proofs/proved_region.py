@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import ball, precision, turns
 from qbound.proofs.crossings import (
@@ -210,7 +211,7 @@ class _Prover:
         unrolled: list[tuple[int, Floats]] = []
         for curve, points in named[first:] + named[:first]:
             shift = self._shift(unrolled[-1][1][-1] - points[0]) if unrolled else 0
-            unrolled.append((curve, _dense(points) + shift))
+            unrolled.append((curve, _dense(points) + TURN * shift))
         return [
             (curve, np.concatenate([points for _, points in group]))
             for curve, group in groupby(unrolled, key=lambda item: item[0])
@@ -233,9 +234,9 @@ class _Prover:
         return self.problem.names.index(arc.boundary)
 
     def _shift(self, gap: Floats) -> Floats:
-        """Return the full turns next to a gap, on joints that turn all the way round."""
+        """Return the number of full turns next to a gap, of joints that turn all the way round."""
         circles = np.array([r is None for r in self.problem.ranges])
-        return np.where(circles, 2 * np.pi * np.round(gap / (2 * np.pi)), 0.0)
+        return np.where(circles, whole_turns(gap), 0.0)
 
     def _corner(self, before: int, after: int, place: Floats) -> Anchor:
         """Return the proved crossing at a proposed vertex, or any point of a loop without one."""
@@ -253,8 +254,8 @@ class _Prover:
     def _turned(self, anchor: Anchor, place: Floats) -> Anchor:
         """Shift a point by full turns next to a place."""
         index, q = anchor
-        shift = self._shift(place - np.array([float(x) for x in q])) / (2 * np.pi)
-        return index, (q[0] + turns(round(shift[0])), q[1] + turns(round(shift[1])))
+        one, other = map(int, self._shift(place - np.array(q).astype(float)))
+        return index, (q[0] + turns(one), q[1] + turns(other))
 
     def _name(self, curve: int) -> str:
         m = len(self.problem.names)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import whole_turns
 from qbound.forms.factors import FACTORS
 from qbound.proofs.balls import ball, balls, turns
 from qbound.proofs.crossings import Balls, line_roots, placed_at, sides
@@ -184,7 +185,7 @@ def root_near(
         right = (q[other] for q in points if sign_along(problem, curve, other, q) == sign)
         v = next(right, None)
         if v is not None and problem.kinds[other] == "revolute":
-            v = v + turns(round((place[other] - float(v)) / (2 * np.pi)))
+            v = v + turns(int(whole_turns(place[other] - float(v))))
     return None if v is None else placed_at(joint, t, v)
 
 
