@@ -20,7 +20,8 @@ EXTRAS: Final = {
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
-    "shapely": Extra("a polygon of shapely", "shapely", "notebooks"),
+    "scipy": Extra("a connection by cells", "SciPy", "proofs"),
+    "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
     "skimage": Extra("a surface or a count on a grid", "scikit-image", "notebooks"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
 }
