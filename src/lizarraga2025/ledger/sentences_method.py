@@ -30,7 +30,7 @@ from qbound import clearance
 from qbound.boundary.functions import closest_approach
 from qbound.geometry import polygon
 from qbound.measures.bodies import gaps
-from qbound.model.robot import Body, joint_symbols
+from qbound.model.robot import Body, Prismatic, joint_symbols
 from qbound.paths.traversal import traverse
 from qbound.region import paper_rule
 
@@ -120,7 +120,7 @@ def order_and_nonlinearity() -> Finding:
     slides = replace(
         robot(),
         joints=tuple(
-            replace(j, kind="prismatic", axis=np.array(axis), limits=(-9.0, 9.0))
+            j.as_type(Prismatic, axis=np.array(axis), limits=(-9.0, 9.0))
             for j, axis in zip(robot().joints, ([1.0, 0, 0], [0, 0, 1.0]), strict=True)
         ),
     )

@@ -26,16 +26,15 @@ from lizarraga2025.ledger.walks import (
 )
 from qbound import clearance, components
 from qbound.boundary.functions import closest_approach, position
-from qbound.model.robot import Joint, Pair, Robot, joint_symbols, with_symbols
+from qbound.model.robot import Pair, Prismatic, Robot, joint_symbols, with_symbols
 from qbound.region import clearance_problem, solve
 
 
 @cache
 def sliding() -> Robot:
     """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    slide = Joint(
+    slide = Prismatic(
         "q3",
-        "prismatic",
         "2",
         "slide",
         np.zeros(3),
@@ -109,7 +108,7 @@ def affine_constraints() -> Finding:
     square = sp.simplify(sp.diff(pair, q[2], 2) / 2)
     slides = replace(
         robot(),
-        joints=tuple(replace(j, kind="prismatic", limits=(-9.0, 9.0)) for j in robot().joints),
+        joints=tuple(j.as_type(Prismatic, limits=(-9.0, 9.0)) for j in robot().joints),
     )
     flat = clearance(slides, slides.boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.functions import clearance, pair_vector, position
+from qbound.boundary.functions import components, margin_function, position
 from qbound.geometry.polylines import meetings
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model import boundaries as model
+from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import Problem
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
@@ -220,18 +221,9 @@ def _leaves(walk: Traversal, boundary: Boundary, grid: Floats) -> Place | None:
     return Place(float(high), walk.at(high)[0])
 
 
-def _of_boundary(robot: Robot, boundary: Pair | HalfSpace) -> Boundary:
-    if isinstance(boundary, Pair):
-        vector, needed = pair_vector(robot, boundary), robot.required_distance(boundary)
-        scale = float(np.abs(vector.coefficients).max())
-
-        def distance(q: Floats) -> Floats:
-            return np.asarray(np.linalg.norm(vector(q), axis=-1) - needed)
-
-        return Boundary(boundary.name, robot.length_unit, distance, scale)
-    form = clearance(robot, boundary)
-    scale = float(np.abs(form.coefficients).max())
-    return Boundary(boundary.name, robot.length_unit, form, scale)
+def _of_boundary(robot: Robot, boundary: model.Boundary) -> Boundary:
+    scale = float(np.abs(components(robot, boundary).coefficients).max())
+    return Boundary(boundary.name, robot.length_unit, margin_function(robot, boundary), scale)
 
 
 def _limits(j: int, ends: tuple[float, float], names: tuple[str, str], unit: str) -> list[Boundary]:

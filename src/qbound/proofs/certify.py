@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -19,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import check
-from qbound.boundary.functions import clearance
-from qbound.model.robot import Pair, Robot
+from qbound.boundary.functions import clearance, margin_of
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.minorant import Bound, Waves, longest_edges, second_order, to_waves
 from qbound.proofs.statements import (
@@ -257,7 +256,7 @@ def _walls(robot: Robot, statement: Statement) -> dict[str, Waves]:
     return {
         wall.name: to_waves(clearance(wider, wall))
         for wall in wider.boundaries
-        if wall.used and not (isinstance(wall, Pair) and wider.required_distance(wall) == 0)
+        if wall.used and wider.least_distance(wall) != 0
     }
 
 
@@ -329,11 +328,7 @@ def _witness(
 
 def _depth(robot: Robot, name: str, value: float) -> float:
     """How far a boundary is violated, length."""
-    wall = robot.boundary(name)
-    if not isinstance(wall, Pair):
-        return -value
-    distance = robot.required_distance(wall)
-    return distance - math.sqrt(max(0.0, distance**2 + value))
+    return -float(margin_of(robot, robot.boundary(name), value))
 
 
 def _lowest(form: Callable[[Floats], Floats], cell: Floats, start: Floats) -> Floats:
