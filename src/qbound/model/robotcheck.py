@@ -101,10 +101,8 @@ def json_schema() -> dict[str, Any]:
             if get_origin(hint) is Literal:  # in the order of the class, not of the alphabet
                 rows[name]["properties"][key]["enum"] = [*get_args(hint)]
     draft = "https://json-schema.org/draft/2020-12/schema"
-    top: dict[str, Any] = (
-        {"$schema": draft} | rows.pop("RobotFile") | {"title": "qbound robot file, schema 1"}
-    )
-    return top | {"$defs": rows}
+    top = rows.pop("RobotFile") | {"title": "qbound robot file, schema 1"}
+    return {"$schema": draft, **top, "$defs": rows}
 
 
 def _fault(table: Table, path: Place, text: str) -> RobotFileError:
