@@ -252,11 +252,11 @@ def test_home_outside_belongs_to_no_component():
     assert len(region.components) == 1
 
 
-def test_home_at_a_touching_point_belongs_to_no_component():
+def test_home_at_a_touching_point_belongs_to_both_components():
     saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
     region = solve(saddle, (0, 0))
-    assert region.home is None
-    assert len(region.components) == 2
+    assert [component.contains_home for component in region.components] == [True, True]
+    assert region.home is region.components[0]
 
 
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])

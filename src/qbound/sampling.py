@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import clearance, components, position
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Pair, Robot
@@ -95,7 +96,7 @@ def joint_ranges(robot: Robot) -> Floats:
 
 def keeps_clear(robot: Robot, q: Floats) -> Bools:
     """Every boundary in use keeps its clearance: eqs. (11) and (12)."""
-    return _respected((clearance(robot, b) for b in robot.boundaries if b.used), q)
+    return evaluator(robot, limits=False).feasible(q)
 
 
 def misses_points(robot: Robot, q: Floats) -> Bools:

@@ -16,7 +16,7 @@ from lizarraga2025.ledger.facts import degrees, mended, pairs, robot
 from lizarraga2025.ledger.rounding import at_a_root
 from qbound import circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
-from qbound.forms.circle import nearest_turn
+from qbound.forms.angles import nearest_turn
 from qbound.model.robot import Robot, joint_symbols, with_symbols
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from lizarraga2025.ledger.facts import robot, vertices
 from lizarraga2025.ledger.walks import by_windows, floor
-from qbound.forms.circle import nearest_turn
+from qbound.forms.angles import nearest_turn
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace
 from qbound.region import paper_rule

@@ -212,14 +212,14 @@ def compiled(
 
 
 @lru_cache(maxsize=64)
-def evaluator(robot: Robot) -> Evaluator:
+def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     """Return the evaluator of a robot: every boundary in use, and the limits of all joints."""
     used = [boundary for boundary in robot.boundaries if boundary.used]
     return compiled(
         stacked(robot, used),
         [boundary.name for boundary in used],
         [robot.least_distance(boundary) for boundary in used],
-        [joint.limits for joint in robot.joints],
+        [joint.limits if limits else None for joint in robot.joints],
         [limit_names(joint.name) for joint in robot.joints],
     )
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.model.robot import HalfSpace, Robot
@@ -149,6 +150,7 @@ def _picture(
     size: tuple[float, float] = PANEL,
 ) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
+    require("matplotlib")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -176,7 +178,7 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
-                f"{axis}label": f"${figures.tex(joint.name)}$ / {unit}",
+                f"{axis}label": f"{figures.symbol(joint.name)} / {unit}",
             }
         )
     if len({robot.joints[j].kind for j in chart.joints}) == 1:
@@ -206,7 +208,7 @@ def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
 def _written(robot: Robot, q: Floats) -> str:
     """Joint values for a title, angles in degrees."""
     return ", ".join(
-        f"${figures.tex(joint.name)}$ = {value * joint.shown_scale:.4g}"
+        f"{figures.symbol(joint.name)} = {value * joint.shown_scale:.4g}"
         + ("" if joint.turns else " ")
         + joint.shown_unit(robot.length_unit)
         for joint, value in zip(robot.joints, q, strict=True)
@@ -222,6 +224,6 @@ def _wall(ax: Axes, wall: HalfSpace, normal: Floats) -> None:
         if abs(along[0]) > 0.5:  # its name at the right edge
             height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
             ax.annotate(
-                wall.name, (ax.get_xlim()[1], height), (-3, 3), textcoords="offset points",
-                ha="right", color=figures.COLLIDING,
+                figures.as_text(wall.name), (ax.get_xlim()[1], height), (-3, 3),
+                textcoords="offset points", ha="right", color=figures.COLLIDING,
             )  # fmt: skip

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.extras import require
+
 if TYPE_CHECKING:
     import sympy
 
@@ -146,6 +148,7 @@ class HarmonicForm:
         q : sequence of sympy.Expr
             One symbol a joint.
         """
+        require("sympy")
         import sympy
 
         if self.shape:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.extras import require
 from qbound.model.boundaries import Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames, whole_numbers
 from qbound.model.joints import JOINT_TYPES, Joint, Kind, Prismatic, Revolute
@@ -200,6 +201,7 @@ class Robot:
 
 def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:
     r"""Return a real SymPy symbol for each joint: :math:`q_1, q_2, \ldots`."""
+    require("sympy")
     import sympy
 
     return tuple(sympy.Symbol(_subscripted(joint.name), real=True) for joint in robot.joints)
@@ -218,6 +220,7 @@ def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
     dict
         The value of each symbol, in the robot's length unit.
     """
+    require("sympy")
     values: dict[sympy.Symbol, float] = {}
     joints = tuple(
         replace(j, origin=_labelled(j.parent, j.frame, j.origin, values)) for j in robot.joints

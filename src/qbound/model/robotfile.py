@@ -13,6 +13,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from qbound.extras import require
 from qbound.model.robot import Robot
 from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
 from qbound.model.rows import quotient
@@ -65,14 +66,12 @@ def save_robot(robot: Robot, path: str | Path) -> None:
     ------
     RobotFileError
         If the robot is none that a file may hold (an infinite offset, say); nothing is written.
-    ImportError
+    ModuleNotFoundError
         If there is no tomlkit; it comes with ``qbound[files]``.
     """
-    try:
-        import tomlkit
-    except ImportError:
-        text = "writing a robot file takes tomlkit: pip install 'qbound[files]'"
-        raise ImportError(text) from None
+    require("tomlkit")
+    import tomlkit
+
     table = _table(robot)
     try:
         read_table(table)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.extras import require
 from qbound.forms.harmonic import HarmonicForm, Kind
 
 if TYPE_CHECKING:
@@ -31,10 +32,9 @@ def precision(bits: int) -> Iterator[None]:
     ImportError
         If python-flint is missing.
     """
-    try:
-        from flint import ctx
-    except ImportError:
-        raise ImportError("proofs need python-flint: install the extra qbound[proofs]") from None
+    require("flint")
+    from flint import ctx
+
     before = ctx.prec
     ctx.prec = bits
     try:

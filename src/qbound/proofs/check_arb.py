@@ -16,6 +16,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from qbound.extras import require
+
 BITS = 160
 """Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
 
@@ -44,14 +46,11 @@ def verify(text: str) -> str:
     ValueError
         If it does not prove what it says.
     ImportError
-        Without python-flint (the extra `proofs`).
+        If python-flint is missing.
     """
-    try:
-        import flint
-    except ImportError as error:
-        raise ImportError(
-            "python-flint is missing: install qbound with the extra 'proofs'"
-        ) from error
+    require("flint")
+    import flint
+
     with _precision(flint.ctx):
         content = json.loads(text)
         robot = tomllib.loads(content["robot"], parse_float=str)
@@ -117,7 +116,7 @@ def _exact(decimal: Any) -> Any:
     """Read a decimal as a fraction."""
     from flint import fmpq
 
-    if not isinstance(decimal, str | int):
+    if not isinstance(decimal, str | int) or set(str(decimal)) - set("+-.0123456789_eE"):
         raise ValueError(f"{decimal}: wanted a decimal as text")
     digits, _, exponent = str(decimal).lower().replace("_", "").partition("e")
     whole, _, decimals = digits.partition(".")
@@ -251,10 +250,13 @@ def _waves(robot: Table, wall: Table, content: Table) -> list[Wave]:
 def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
     """Return the simplices of the set."""
     loops = [[tuple(_exact(x) for x in point) for point in loop] for loop in statement["points"]]
+    if min(map(len, loops)) < 2:
+        raise ValueError("a lone point")
     if statement["set"] == "path":
         return [[a, b] for loop in loops for a, b in itertools.pairwise(loop)]
     if statement["set"] == "box":
-        return _orders(*loops[0])
+        [[low, high]] = loops
+        return _orders(low, high)
     if statement["set"] != "polygon":
         raise ValueError("an unknown set")
     points = list(itertools.chain.from_iterable(loops))
@@ -263,6 +265,8 @@ def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
     for loop in loops:
         for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
             ring[a, b] = ring.get((a, b), 0) + 1
+    if any((b, a) in ring for a, b in ring):
+        raise ValueError("a loop goes back along itself")
     for triangle in statement["triangles"]:
         a, b, c = (points[i] for i in triangle)
         (x, y), (u, v) = ([p[j] - a[j] for j in flat] for p in (b, c))
@@ -277,7 +281,7 @@ def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
 
 def _orders(low: tuple[Any, ...], high: tuple[Any, ...]) -> list[list[tuple[Any, ...]]]:
     """Cut a box into the simplices along which its joints rise one after the other."""
-    wide = [j for j in range(len(low)) if low[j] != high[j]]
+    wide = [j for j, (a, b) in enumerate(zip(low, high, strict=True)) if a != b]
     cells = []
     for order in itertools.permutations(wide):
         corner, cell = list(low), [low]

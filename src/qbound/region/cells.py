@@ -17,7 +17,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.forms.angles import TURN
+from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.decomposition import Cell, Decomposition, Plane, Root
 from qbound.tolerances import POSITIVE, SAME_POINT, TOUCH
 
@@ -132,7 +132,7 @@ class Complex:
         t, v = place
         bases = [float(t)]
         if self.wrapped:  # beyond the cut of the circle, too
-            t -= TURN * math.floor((t - self.plane.ends[0]) / TURN)
+            t = float(first_from(self.plane.ends[0], t))
             bases = [t, t - TURN, t + TURN]
         found = [one for t in bases for one in self._placed(t, float(v))]
         return sorted(found, key=lambda one: float(np.abs(one.off).max()))
@@ -145,7 +145,7 @@ class Complex:
         if not len(chosen):
             return []
         low, high = self._interval_at(chosen, t)
-        turns = TURN * np.ceil((low - self.touch - v) / TURN) * self.circle
+        turns = TURN * turns_up_to(low - self.touch, v) * self.circle
         inside = np.clip(v + turns, low, high)
         inside = np.where(np.array(self.whole)[chosen], v + turns, inside)
         off = np.stack([np.clip(t, start[chosen], end[chosen]) - t, inside - v - turns], axis=-1)
@@ -179,7 +179,7 @@ class Complex:
         values = self._roots(chosen, t).reshape(2, -1, 2, 4)
         at, near, far, farther = np.moveaxis(values, -1, 0)
         if self.plane.lift_kind == "revolute":
-            at = at + TURN * np.round((near - at) / TURN)
+            at = at + TURN * whole_turns(near - at)
         blank = self.plane.blank(self._bounding(chosen), np.tile(t[:, [0, 4]], (2, 1)))
         lower, upper = np.where(blank.reshape(at.shape), 3 * near - 3 * far + farther, at)
         return np.stack([lower, np.maximum(lower, upper)], axis=-1)

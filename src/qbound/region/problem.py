@@ -23,6 +23,7 @@ from qbound.boundary.evaluator import (
 )
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Held, Robot
+from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
 Rule = Literal["clearance", "paper"]
@@ -157,20 +158,20 @@ def state(
 ) -> Problem:
     """Gather the clearance forms of some boundaries within given ranges of two joints.
 
-    The limits of held joints (eq. 10) come last, as forms that depend on no joint.
+    A limit that a held joint violates (eq. 10) comes last, as a form that depends on no joint.
     """
     held = held or {}
     one, other = free_pair(robot, held)
     forms = stacked(robot, used).restrict(held)
-    ends = list(_held_limits(robot, held))
-    constants = np.zeros((len(ends), 3, 3))
-    constants[:, 0, 0] = [margin for _, margin in ends]
+    beyond = list(_beyond_limits(robot, held))
+    constants = np.zeros((len(beyond), 3, 3))
+    constants[:, 0, 0] = [margin for _, margin in beyond]
     return Problem(
         forms=HarmonicForm(np.concatenate([forms.coefficients, constants]), forms.kinds),
-        names=(*(boundary.name for boundary in used), *(name for name, _ in ends)),
+        names=(*(boundary.name for boundary in used), *(name for name, _ in beyond)),
         ranges=(ranges[0], ranges[1]),
         limits=(limits[0], limits[1]),
-        distances=(*(robot.least_distance(b) for b in used), *[None] * len(ends)),
+        distances=(*(robot.least_distance(b) for b in used), *[None] * len(beyond)),
         robot=robot,
         joints=(one, other),
         held=dict(held),
@@ -178,9 +179,11 @@ def state(
     )
 
 
-def _held_limits(robot: Robot, held: Mapping[int, float]) -> Iterator[tuple[str, float]]:
+def _beyond_limits(robot: Robot, held: Mapping[int, float]) -> Iterator[tuple[str, float]]:
+    """Yield the limits that held joints violate by more than rounding, and by how much."""
     for j, value in held.items():
         joint = robot.joints[j]
-        if joint.limits is not None:
-            margins = value - joint.limits[0], joint.limits[1] - value
-            yield from zip(limit_names(joint.name), margins, strict=True)
+        low, high = joint.limits or (value, value)
+        for name, margin in zip(limit_names(joint.name), (value - low, high - value), strict=True):
+            if margin < -ROUNDING * abs(value):
+                yield name, margin

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
-from qbound.forms.angles import TURN
+from qbound.forms.angles import TURN, nearest_turn
 from qbound.model.robot import Held, Robot
 from qbound.region import paper_rule
 from qbound.region.arcs import NODES, Arc, legendre, ordered
@@ -365,7 +365,7 @@ def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list
         if own is not None:
             shift = home - own.place - TURN * np.array(sheets[own.cell])
         elif not any(wraps):
-            shift = -TURN * np.ceil((middle - math.pi) / TURN) * circles
+            shift = (nearest_turn(middle, 0) - middle) * circles
         found.append(_Found(sheets, wraps, areas.sum(), middle, shift, own is not None))
     return found
 

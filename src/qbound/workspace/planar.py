@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import position
-from qbound.forms.circle import nearest_turn
+from qbound.forms.angles import nearest_turn
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.model.robot import Robot
 from qbound.tolerances import NEGLIGIBLE, ZERO_AMPLITUDE
