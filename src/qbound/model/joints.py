@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
@@ -27,10 +28,14 @@ from qbound.model.rows import (
     quotient,
     unit_vector,
 )
+from qbound.model.schema import shown
 
 Array = NDArray[Any]
 Kind = Literal["revolute", "prismatic"]
 """Factor of a joint in a harmonic form: (1, cos q, sin q) or (1, q, q²)."""
+
+MOST_TURNS = 100
+"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
 
 AnyJoint = TypeVar("AnyJoint", bound="Joint")
 
@@ -61,7 +66,6 @@ class Joint(ABC):
     """How a file spells it."""
     turns: ClassVar[bool]
     """Whether its values are angles."""
-    needs_limits: ClassVar[bool]
 
     name: str
     parent: str
@@ -89,9 +93,17 @@ class Joint(ABC):
         """How many of the units that people are shown are one of the library's."""
         return math.degrees(1.0) if self.turns else 1.0
 
-    def scale(self, angle: float) -> float:
+    @classmethod
+    def scale(cls, angle: float) -> float:
         """Return library units in one of a file's, whose unit of angle is `angle` radians."""
-        return angle if self.turns else 1.0
+        return angle if cls.turns else 1.0
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Say what is wrong with limits in a file, where a full turn is `turn`; None: nothing."""
+        if limits is None or limits[0] < limits[1]:
+            return None
+        return f"{shown(limits)} does not rise; wanted: [lowest, highest]"
 
     def as_type(self, kind: type[AnyJoint], **changes: Any) -> AnyJoint:
         """Return a joint of another type in its place, with some attributes changed."""
@@ -120,7 +132,14 @@ class Revolute(Joint):
     kind = "revolute"
     type_name = "revolute"
     turns = True
-    needs_limits = False
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Refuse a span of hundreds of turns too."""
+        turns = 0.0 if limits is None else (limits[1] - limits[0]) / turn
+        if turns > MOST_TURNS:
+            return f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+        return super().limits_fault(limits, turn)
 
     def frame_at(self, q: Any) -> Frame:
         """Turn the frame (Table 2)."""
@@ -134,7 +153,13 @@ class Prismatic(Joint):
     kind = "prismatic"
     type_name = "prismatic"
     turns = False
-    needs_limits = True
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Ask for limits."""
+        if limits is None:
+            return f"missing; a {cls.type_name} joint needs [lowest, highest]"
+        return super().limits_fault(limits, turn)
 
     def frame_at(self, q: Any) -> Frame:
         """Move the frame's origin."""
@@ -168,20 +193,17 @@ class JointRow(Row, kw_only=True):
     def joint(self, angle: float) -> Joint:
         """Return the joint: radians, a unit axis; the file's unit of angle is `angle` radians."""
         joint_type = JOINT_TYPES[self.type]
-        scale = angle if joint_type.turns else 1.0
-        low_high = (
-            None if self.limits is UNSET else (self.limits[0] * scale, self.limits[1] * scale)
-        )
+        scale = joint_type.scale(angle)
+        low, high = self.limits or (0.0, 0.0)
+        rpy = None if self.rpy is UNSET else [x * angle for x in self.rpy]
         return joint_type(
             name=self.name,
             parent=self.parent,
             frame=self.frame,
             origin=np.array(self.origin, dtype=float),
-            mount=np.eye(3)
-            if self.rpy is UNSET
-            else roll_pitch_yaw(*(x * angle for x in self.rpy)),
+            mount=np.eye(3) if rpy is None else roll_pitch_yaw(*rpy),
             axis=unit_vector(self.axis),
-            limits=low_high,
+            limits=(low * scale, high * scale) if self.limits else None,
             velocity=None if self.velocity is UNSET else self.velocity * scale,
         )
 

@@ -22,9 +22,6 @@ from qbound.model.shapes import BodyRow, PointRow
 
 Table = Mapping[str, Any]
 
-MOST_TURNS = 100
-"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
-
 ANGLE = {"deg": math.radians(1.0), "rad": 1.0}
 """Radians in a file's unit of angle."""
 
@@ -203,20 +200,10 @@ def _check_directions(table: Table) -> None:
 
 
 def _check_limits(table: Table) -> None:
-    for i, joint in enumerate(table["joint"]):
-        path, joint_type = ("joint", i, "limits"), JOINT_TYPES[joint["type"]]
-        if "limits" not in joint:
-            if joint_type.needs_limits:
-                text = f"missing; a {joint['type']} joint needs [lowest, highest]"
-                raise _fault(table, path, text)
-        elif not joint["limits"][0] < joint["limits"][1]:
-            text = f"{shown(joint['limits'])} does not rise; wanted: [lowest, highest]"
-            raise _fault(table, path, text)
-        elif joint_type.turns:
-            turns = (joint["limits"][1] - joint["limits"][0]) / TURN[table["angle_unit"]]
-            if turns > MOST_TURNS:
-                text = f"{shown(joint['limits'])} is {turns:.0f} turns wide; at most {MOST_TURNS}"
-                raise _fault(table, path, text)
+    for i, row in enumerate(table["joint"]):
+        joint_type, turn = JOINT_TYPES[row["type"]], TURN[table["angle_unit"]]
+        if text := joint_type.limits_fault(row.get("limits"), turn):
+            raise _fault(table, ("joint", i, "limits"), text)
 
 
 def _listed(names: Sequence[str]) -> str:
