@@ -15,7 +15,7 @@ from time import process_time
 import numpy as np
 
 from qbound import find_region, load_robot
-from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import HalfSpace, Pair, Point, Revolute, Robot
 from qbound.sampling import keeps_clear
 
 GRID = 1000
@@ -27,8 +27,8 @@ def many_boundaries(count: int, seed: int) -> Robot:
     rng = np.random.default_rng(seed)
     axis, mount = np.array([0.0, 1.0, 0.0]), np.eye(3)
     joints = (
-        Joint("q1", "revolute", "0", "1", np.array([0.0, 0.0, 1.0]), mount, axis),
-        Joint("q2", "revolute", "1", "2", np.array([1.0, 0.0, 0.3]), mount, axis),
+        Revolute("q1", "0", "1", np.array([0.0, 0.0, 1.0]), mount, axis),
+        Revolute("q2", "1", "2", np.array([1.0, 0.0, 0.3]), mount, axis),
     )
     places = rng.uniform(-1, 1.3, (3, count, 2))
     points = tuple(

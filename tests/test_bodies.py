@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from qbound import clearance, load_robot
 from qbound.measures import bodies
-from qbound.model.robot import Body
+from qbound.model.robot import Body, Prismatic
 from qbound.region import paper_rule, solve, state
 from support.oracles import PACKAGED, frame_matrix
 
@@ -132,11 +132,11 @@ def test_room_ends_where_two_bodies_touch_and_no_sooner(robot, joint) -> None:
 
 def test_room_of_a_slide_is_the_distance_between_the_bodies() -> None:
     box = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
-    slide = replace(
-        PRINTED.joints[0], kind="prismatic", axis=np.array([1.0, 0, 0]), origin=np.zeros(3)
+    slide = PRINTED.joints[0].as_type(
+        Prismatic, axis=np.array([1.0, 0, 0]), origin=np.zeros(3), limits=(-5.0, 5.0)
     )
     robot = replace(
-        PRINTED, joints=(replace(slide, limits=(-5.0, 5.0)),), home=np.zeros(1), points=(),
+        PRINTED, joints=(slide,), home=np.zeros(1), points=(),
         bodies=(Body("0", box), Body("1", box + np.array([2.0, 0.5]))),
     )  # fmt: skip
     assert bodies.room(robot, 0) == pytest.approx((-1.0, 5.0), abs=1e-12)

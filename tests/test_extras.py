@@ -190,6 +190,7 @@ CALLS = {
     "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
     "sympy": "qbound.model.robot.with_symbols(robot)",
     "flint": "qbound.proofs.exact.exact_robot(robot)",
+    "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
     "IPython": "qbound.figures.table(['a'], [[1]])",
 }
 

@@ -9,7 +9,7 @@ from flint import arb
 from numpy.testing import assert_allclose
 
 from qbound import load_robot
-from qbound.model.robot import Joint, Point, Robot
+from qbound.model.robot import Point, Revolute, Robot
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_images import jacobian_determinant, proved_images
@@ -25,8 +25,8 @@ UP = np.array([0.0, 1.0, 0.0])
 def two_links(limits, axis=UP) -> Robot:
     """Links of 2 and 1 in the plane of x and z; nothing but limits."""
     joints = (
-        Joint("q1", "revolute", "0", "1", np.zeros(3), np.eye(3), UP, limits[0]),
-        Joint("q2", "revolute", "1", "2", np.array([2.0, 0, 0]), np.eye(3), axis, limits[1]),
+        Revolute("q1", "0", "1", np.zeros(3), np.eye(3), UP, limits[0]),
+        Revolute("q2", "1", "2", np.array([2.0, 0, 0]), np.eye(3), axis, limits[1]),
     )
     tool = Point("t", "2", np.array([1.0, 0.0, 0.0]))
     return Robot("two links", joints, (tool,), (), np.array([0.1, 0.2]), "t", "m", "rad")

@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
 
 from qbound import load_robot
-from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
 from qbound.region import Problem, clearance_problem, paper_rule
 from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
@@ -270,9 +270,8 @@ def chain(*joints: Joint, tool=(1.0, 0, 0), walls=(), points=()) -> Robot:
 
 
 def joint(n: int, kind: str, axis, *, origin=(0.0, 0, 0), limits=None) -> Joint:
-    return Joint(
-        f"q{n}", kind, str(n - 1), str(n), np.array(origin), np.eye(3), np.array(axis), limits
-    )
+    place = f"q{n}", str(n - 1), str(n), np.array(origin), np.eye(3)
+    return JOINT_TYPES[kind](*place, np.array(axis), limits)
 
 
 def solved(robot: Robot, held=None, **options):

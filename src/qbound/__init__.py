@@ -10,14 +10,12 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
 from qbound.region import Region, find_region
-from qbound.version import __version__
 
 __all__ = [
     "HarmonicForm",
     "Region",
     "Robot",
     "RobotFileError",
-    "__version__",
     "circle_arc",
     "circle_roots",
     "clearance",
@@ -28,3 +26,11 @@ __all__ = [
     "pair_vector",
     "save_robot",
 ]
+
+
+def __getattr__(name: str) -> str:
+    if name == "__version__":  # read from the metadata where it is asked for: the search is slow
+        from qbound.version import __version__
+
+        return __version__
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

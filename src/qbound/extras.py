@@ -24,6 +24,7 @@ EXTRAS: Final = {
     "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
     "skimage": Extra("a surface or a count on a grid", "scikit-image", "notebooks"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
+    "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
 }
 """By the name that is imported."""
 

@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 
-from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
 from support.forms import PP, PR, RP, RR, TURN
 
 
@@ -33,7 +33,8 @@ def random_joint(rng, j: int, kind: str) -> Joint:
     limits = None if kind == "revolute" and rng.random() < 0.6 else (low, high)
     slide = np.array([np.cos(angle), 0, np.sin(angle)])
     axis = np.array([0.0, 1, 0]) if kind == "revolute" else slide
-    return Joint(f"q{j + 1}", kind, str(j), str(j + 1), in_plane(rng), np.eye(3), axis, limits)
+    place = f"q{j + 1}", str(j), str(j + 1), in_plane(rng), np.eye(3)
+    return JOINT_TYPES[kind](*place, axis, limits)
 
 
 def random_pair(rng, i: int, points: list[Point]) -> Pair:
@@ -76,7 +77,8 @@ def drawn_joint(rng, j: int, kind: str) -> Joint:
         limits = None
     axis = [0.0, 1, 0] if kind == "revolute" else [[1.0, 0, 0], [0, 0, 1.0]][rng.integers(0, 2)]
     origin = np.array([rng.integers(0, 3), 0.0, rng.integers(0, 2)])
-    return Joint(f"q{j + 1}", kind, str(j), str(j + 1), origin, np.eye(3), np.array(axis), limits)
+    place = f"q{j + 1}", str(j), str(j + 1), origin, np.eye(3)
+    return JOINT_TYPES[kind](*place, np.array(axis), limits)
 
 
 # --- the same robot, otherwise -------------------------------------------------------------------

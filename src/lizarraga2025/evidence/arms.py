@@ -10,7 +10,7 @@ import numpy as np
 
 from qbound import HarmonicForm, clearance, load_robot
 from qbound.boundary.functions import position
-from qbound.model.robot import HalfSpace, Joint, Pair, Robot, with_symbols
+from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot, with_symbols
 
 if TYPE_CHECKING:
     import sympy
@@ -50,9 +50,8 @@ def in_millimetres() -> Robot:
 @cache
 def sliding() -> Robot:
     """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    slide = Joint(
+    slide = Prismatic(
         "q3",
-        "prismatic",
         "2",
         "slide",
         np.zeros(3),
@@ -74,7 +73,7 @@ def sliding() -> Robot:
 def of_slides() -> Robot:
     """Return the arm with two slides, along x and z, in place of its joints: a linear map."""
     joints = tuple(
-        replace(joint, kind="prismatic", axis=axis, limits=(-9.0, 9.0))
+        joint.as_type(Prismatic, axis=axis, limits=(-9.0, 9.0))
         for joint, axis in zip(robot().joints, np.eye(3)[[0, 2]], strict=True)
     )
     return replace(robot(), joints=joints)

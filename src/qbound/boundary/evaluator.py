@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
@@ -218,21 +218,16 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     return compiled(
         stacked(robot, used),
         [boundary.name for boundary in used],
-        [least_distance(robot, boundary) for boundary in used],
+        [robot.least_distance(boundary) for boundary in used],
         [joint.limits if limits else None for joint in robot.joints],
         [limit_names(joint.name) for joint in robot.joints],
     )
 
 
-def stacked(robot: Robot, boundaries: Sequence[Pair | HalfSpace]) -> HarmonicForm:
+def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:
     """Return the clearance forms of boundaries as one stack, shape (m,)."""
     forms = np.array([clearance(robot, boundary).coefficients for boundary in boundaries])
     return HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
-
-
-def least_distance(robot: Robot, boundary: Pair | HalfSpace) -> float | None:
-    r"""Return :math:`d_{\min}` of a pair, None of a half-space, whose form is a length already."""
-    return robot.required_distance(boundary) if isinstance(boundary, Pair) else None
 
 
 def limit_names(joint: str) -> tuple[str, str]:

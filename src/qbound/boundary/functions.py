@@ -7,14 +7,15 @@ symbols: the formulas of the paper are derived here, never typed.
 
 from __future__ import annotations
 
-from functools import reduce
+from collections.abc import Callable
+from functools import reduce, singledispatch
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm, add_constant
-from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot
 from qbound.tolerances import ZERO_AMPLITUDE
 
 Array = NDArray[Any]
@@ -78,7 +79,7 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
     return vector if sign > 0 else -vector
 
 
-def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
+def clearance(robot: Robot, boundary: Boundary) -> HarmonicForm:
     r"""Return the form that is positive exactly where the boundary is respected (eqs. 9, 11, 12).
 
     Returns
@@ -88,15 +89,36 @@ def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
         radii plus the clearance.
         A half-space: ``normal . r - offset - radius`` in length.
     """
-    if isinstance(boundary, Pair):
-        _, near, far = _near_far(robot, boundary)
-        squared = squared_distance(robot, far.name, near.frame, near.at)
-        return squared - robot.required_distance(boundary) ** 2
-    radius = robot.point(boundary.point).radius
-    return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
+    return _clearance(boundary, robot)
 
 
-def moving_joints(robot: Robot, boundary: Pair | HalfSpace) -> tuple[int, ...]:
+def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
+    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,)."""
+    return _components(boundary, robot)
+
+
+def margin_function(robot: Robot, boundary: Boundary) -> Callable[[ArrayLike], Array]:
+    """Return what gives the margin, a length, of configurations of shape (..., n).
+
+    It is ``|B| - d_min`` for a pair and the height over the wall for a half-space; negative where
+    the boundary is violated.
+    """
+    d_min = robot.least_distance(boundary)
+    if d_min is None:
+        return clearance(robot, boundary)
+    vector = components(robot, boundary)
+    return lambda q: np.asarray(np.linalg.norm(vector(q), axis=-1) - d_min)
+
+
+def margin_of(robot: Robot, boundary: Boundary, value: ArrayLike) -> Array:
+    """Return the margin, a length, of a boundary whose clearance form has the value."""
+    value, d_min = np.asarray(value), robot.least_distance(boundary)
+    if d_min is None:
+        return value
+    return np.asarray(np.sqrt(np.maximum(value + d_min**2, 0.0)) - d_min)
+
+
+def moving_joints(robot: Robot, boundary: Boundary) -> tuple[int, ...]:
     """Return the joints that change a boundary's clearance; none: it holds everywhere or nowhere.
 
     A coefficient that is rounding beside the robot's reach is no motion: a turn about an oblique
@@ -104,9 +126,10 @@ def moving_joints(robot: Robot, boundary: Pair | HalfSpace) -> tuple[int, ...]:
     """
     form, reach = clearance(robot, boundary), robot.reach
     slide = np.array([1.0, reach, reach**2])
-    powers = [np.ones(3) if kind == "revolute" else slide for kind in robot.kinds]
+    powers = [np.ones(3) if joint.turns else slide for joint in robot.joints]
     sizes = np.abs(form.coefficients) * reduce(_outer, powers)
-    rounding = ZERO_AMPLITUDE * (reach**2 if isinstance(boundary, Pair) else reach)
+    squared = robot.least_distance(boundary) is not None
+    rounding = ZERO_AMPLITUDE * (reach**2 if squared else reach)
     return HarmonicForm(np.where(sizes > rounding, sizes, 0), robot.kinds).joints()
 
 
@@ -128,7 +151,7 @@ def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
         If the distance does not depend on exactly one joint, a revolute one.
     """
     form, joints = clearance(robot, pair), moving_joints(robot, pair)
-    if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
+    if len(joints) != 1 or not robot.joints[joints[0]].turns:
         raise ValueError(
             f"{pair.name}: its distance depends on {len(joints)} joints, not on one turn"
         )
@@ -154,11 +177,43 @@ def geometric_vector(robot: Robot, boundary: HalfSpace) -> HarmonicForm:
     return position(robot, boundary.point).dot(np.outer(n, n)) - boundary.offset * n
 
 
-def components(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
-    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,)."""
-    if isinstance(boundary, Pair):
-        return pair_vector(robot, boundary)
+# --- what each type of boundary has of its own ----------------------------------------------------
+
+
+@singledispatch
+def _clearance(boundary: Boundary, robot: Robot) -> HarmonicForm:
+    raise TypeError(f"{boundary.name}: no clearance form for a {type(boundary).__name__}")
+
+
+@singledispatch
+def _components(boundary: Boundary, robot: Robot) -> HarmonicForm:
+    raise TypeError(f"{boundary.name}: eq. (29) has no row for a {type(boundary).__name__}")
+
+
+@_clearance.register
+def _(boundary: Pair, robot: Robot) -> HarmonicForm:
+    _, near, far = _near_far(robot, boundary)
+    squared = squared_distance(robot, far.name, near.frame, near.at)
+    return squared - robot.required_distance(boundary) ** 2
+
+
+@_components.register
+def _(boundary: Pair, robot: Robot) -> HarmonicForm:
+    return pair_vector(robot, boundary)
+
+
+@_clearance.register
+def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
+    radius = robot.point(boundary.point).radius
+    return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
+
+
+@_components.register
+def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
     return geometric_vector(robot, boundary)
+
+
+# --- a point carried along the chain --------------------------------------------------------------
 
 
 def _outer(left: Array, right: Array) -> Array:

@@ -18,7 +18,7 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.measures.scaling import largest_safe_scale
-from qbound.model.robot import HalfSpace, Joint, Pair, Robot
+from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
@@ -109,7 +109,7 @@ def _point(robot: Robot, i: int) -> Data:
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
-def _boundary(robot: Robot, boundary: Pair | HalfSpace, rule: str) -> Data:
+def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
     names = [point.name for point in robot.points]
     data = {"name": boundary.name, "used": boundary.used}
     form = clearance(robot, boundary)
@@ -117,7 +117,7 @@ def _boundary(robot: Robot, boundary: Pair | HalfSpace, rule: str) -> Data:
         offset = boundary.offset + robot.point(boundary.point).radius
         data |= {"kind": "half-space", "points": [names.index(boundary.point)]}
         data |= {"normal": boundary.normal.tolist(), "offset": offset}
-    else:
+    elif isinstance(boundary, Pair):
         required = robot.required_distance(boundary)
         if rule == "paper":  # eq. (17): the points must not coincide
             form, required = form + required**2, 0.0

@@ -172,10 +172,10 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
     for axis, j, ends, scale in zip(("x", "y"), chart.joints, shown, scales, strict=True):
         joint = robot.joints[j]
         values = np.concatenate([ends, q[:, j]]) * scale
-        unit = "°" if joint.kind == "revolute" else robot.length_unit
         room = 0.03 * np.ptp(values)
-        if joint.kind == "revolute":
+        if joint.turns:
             getattr(ax, f"{axis}axis").set_major_locator(figures.every(np.ptp(values)))
+        unit = joint.shown_unit(robot.length_unit)
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
@@ -208,14 +208,11 @@ def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
 
 def _written(robot: Robot, q: Floats) -> str:
     """Joint values for a title, angles in degrees."""
-    values = (
-        (joint, np.degrees(value) if joint.kind == "revolute" else value)
-        for joint, value in zip(robot.joints, q, strict=True)
-    )
     return ", ".join(
-        f"{figures.symbol(joint.name)} = {value:.4g}"
-        + ("°" if joint.kind == "revolute" else f" {robot.length_unit}")
-        for joint, value in values
+        f"{figures.symbol(joint.name)} = {value * joint.shown_scale:.4g}"
+        + ("" if joint.turns else " ")
+        + joint.shown_unit(robot.length_unit)
+        for joint, value in zip(robot.joints, q, strict=True)
     )
 
 

@@ -118,7 +118,7 @@ def _advance(robot: Robot, near: Body, far: Body, joint: int, sense: int, most: 
 
 def _largest_speed(robot: Robot, near: Body, far: Body, joint: int) -> float:
     """Return the most that a corner of either body moves, seen from the other, a unit of joint."""
-    if robot.kinds[joint] == "prismatic":
+    if not robot.joints[joint].turns:
         return 1.0
     frames = robot.frames(robot.home)
     axis = frames.position(robot.base, robot.joints[joint].frame, robot.base)[[0, 2]]

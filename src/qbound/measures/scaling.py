@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.functions import clearance
+from qbound.boundary.functions import clearance, margin_of
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
 
 Floats = NDArray[np.float64]
@@ -145,13 +145,10 @@ def worst_margins(
 
 
 def _worst(
-    robot: Robot, boundary: Pair | HalfSpace, vertices: ArrayLike, centre: ArrayLike
+    robot: Robot, boundary: Boundary, vertices: ArrayLike, centre: ArrayLike
 ) -> tuple[float, Floats]:
     value, q = least(clearance(robot, boundary), vertices, centre)
-    if isinstance(boundary, HalfSpace):
-        return value, q
-    d_min = robot.required_distance(boundary)
-    return float(np.sqrt(max(value + d_min**2, 0.0))) - d_min, q
+    return float(margin_of(robot, boundary, value)), q
 
 
 def least_along_edges(

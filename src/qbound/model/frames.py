@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.tolerances import ZERO_AMPLITUDE
+
 Array = NDArray[Any]
 
 
@@ -172,6 +174,15 @@ def transpose(matrix: Array) -> Array:
 def apply(matrix: Array, vector: Array) -> Array:
     """Matrix times vector over leading axes: (..., 3, 3), (..., 3) -> (..., 3)."""
     return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+def whole_numbers(values: Array) -> Array:
+    """Exact copies of entries that are whole numbers but for rounding: symbols meet no floats."""
+    import sympy
+
+    whole = np.rint(values).astype(int)
+    exact = np.vectorize(sympy.Integer, otypes=[object])(whole)
+    return np.where(np.abs(values - whole) <= ZERO_AMPLITUDE, exact, values)
 
 
 def _cos_sin(angle: Any) -> tuple[Array, Array]:

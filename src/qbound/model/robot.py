@@ -3,100 +3,46 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.extras import require
-from qbound.model.frames import Frame, Frames, axis_rotation
+from qbound.model.boundaries import Boundary, HalfSpace, Pair
+from qbound.model.frames import Frame, Frames, whole_numbers
+from qbound.model.joints import JOINT_TYPES, Joint, Kind, Prismatic, Revolute
 from qbound.model.schema import one_line
+from qbound.model.shapes import Body, Point
 from qbound.model.values import joint_values
-from qbound.tolerances import ZERO_AMPLITUDE
 
 if TYPE_CHECKING:
     import sympy
 
+__all__ = [
+    "JOINT_TYPES",
+    "Body",
+    "Boundary",
+    "HalfSpace",
+    "Held",
+    "Joint",
+    "Kind",
+    "Pair",
+    "Point",
+    "Prismatic",
+    "Revolute",
+    "Robot",
+    "joint_symbols",
+    "with_symbols",
+]
+
 Array = NDArray[Any]
-Kind = Literal["revolute", "prismatic"]
 Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
 """Values of joints that are held, rad or length, by index or by name."""
 
 Item = TypeVar("Item")
-
-
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """A joint that moves `frame` relative to `parent`.
-
-    Attributes
-    ----------
-    name : str
-    kind : {"revolute", "prismatic"}
-    parent, frame : str
-        Labels of the frames before and after it.
-    origin : ndarray, shape (3,)
-        From the parent to the frame at joint value 0, seen from the parent; length.
-    mount : ndarray, shape (3, 3)
-        Fixed rotation between the parent and the joint's own axes.
-    axis : ndarray, shape (3,)
-        Unit vector, seen from the mount.
-    limits : tuple of float, optional
-        Lowest and highest value (eq. 10), rad or length. None: turns all the way round.
-    velocity : float, optional
-        Largest speed, rad/s or length/s.
-    """
-
-    name: str
-    kind: Kind
-    parent: str
-    frame: str
-    origin: Array
-    mount: Array
-    axis: Array
-    limits: tuple[float, float] | None = None
-    velocity: float | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A point fixed in a frame; with a radius, the centre of a sphere. Lengths."""
-
-    name: str
-    frame: str
-    at: Array
-    radius: float = 0.0
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Point boundary function: feasible where the points keep apart (Theorem 1, eq. 11)."""
-
-    name: str
-    points: tuple[str, str]
-    clearance: float = 0.0
-    used: bool = True
-
-
-@dataclass(frozen=True, eq=False)
-class HalfSpace:
-    """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12)."""
-
-    name: str
-    point: str
-    normal: Array
-    offset: float
-    used: bool = True
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """Outline of a link in the plane of motion, shape (m, 2): x and z seen from its frame."""
-
-    frame: str
-    polygon: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,17 +52,17 @@ class Robot:
     name: str
     joints: tuple[Joint, ...]
     points: tuple[Point, ...]
-    boundaries: tuple[Pair | HalfSpace, ...]
+    boundaries: tuple[Boundary, ...]
     home: Array
     tool: str
     length_unit: str
     angle_unit: str
-    bodies: tuple[Body, ...] = field(default=())
+    bodies: tuple[Body, ...] = ()
 
     def __repr__(self) -> str:
         """Fit a line: name, joints with their kinds, number of boundaries."""
         count = len(self.boundaries)
-        joints = one_line(", ".join(f"{joint.name} ({joint.kind})" for joint in self.joints))
+        joints = one_line(", ".join(f"{joint.name} ({joint.type_name})" for joint in self.joints))
         bounds = f"{count} boundar{'y' if count == 1 else 'ies'}"
         return f"<Robot {one_line(self.name)}: {joints}; {bounds}>"
 
@@ -133,9 +79,7 @@ class Robot:
     @property
     def reach(self) -> float:
         """Length that no place of the robot's points exceeds, seen from the base."""
-        slides = (
-            max(map(abs, j.limits)) for j in self.joints if j.kind == "prismatic" and j.limits
-        )
+        slides = (max(map(abs, j.limits)) for j in self.joints if j.limits and not j.turns)
         links = (float(np.linalg.norm(joint.origin)) for joint in self.joints)
         tips = (float(np.linalg.norm(point.at)) for point in self.points)
         return sum(links) + sum(slides) + max(tips, default=0.0)
@@ -144,13 +88,20 @@ class Robot:
         """Return the point of that name."""
         return _named("point", {p.name: p for p in self.points}, name)
 
-    def boundary(self, name: str) -> Pair | HalfSpace:
+    def boundary(self, name: str) -> Boundary:
         """Return the boundary of that name."""
         return _named("boundary", {b.name: b for b in self.boundaries}, name)
 
     def required_distance(self, pair: Pair) -> float:
         r"""Return :math:`d_{\min}` of eq. (11): both radii plus the clearance asked for; length."""
-        return sum(self.point(name).radius for name in pair.points) + pair.clearance
+        return pair.least_distance(self.point)
+
+    def least_distance(self, boundary: Boundary) -> float | None:
+        r"""Return :math:`d_{\min}` of a boundary whose form is a squared length; else None.
+
+        Where it is 0 nothing can violate the boundary.
+        """
+        return boundary.least_distance(self.point)
 
     def depth(self, frame: str) -> int:
         """Count the joints between the base and a frame; ValueError if there is no such frame."""
@@ -243,7 +194,7 @@ class Robot:
         """
         names = [joint.name for joint in self.joints]
         columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
-        moved = [_joint_frame(joint, x) for joint, x in zip(self.joints, columns, strict=True)]
+        moved = [joint.frame_at(x) for joint, x in zip(self.joints, columns, strict=True)]
         fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
         return Frames(self.base, [*moved, *fixed])
 
@@ -275,17 +226,12 @@ def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
         replace(j, origin=_labelled(j.parent, j.frame, j.origin, values)) for j in robot.joints
     )
     points = tuple(replace(p, at=_labelled(p.frame, p.name, p.at, values)) for p in robot.points)
-    exact = tuple(replace(j, axis=_integers(j.axis), mount=_integers(j.mount)) for j in joints)
-    walls = _label_walls(robot.boundaries, values)
-    return replace(robot, joints=exact, points=points, boundaries=walls), values
-
-
-def _joint_frame(joint: Joint, q: Any) -> Frame:
-    if joint.kind == "revolute":
-        turn = joint.mount @ axis_rotation(joint.axis, q)
-        return Frame(joint.frame, joint.parent, turn, joint.origin)
-    slide = np.asarray(q)[..., None] * (joint.mount @ joint.axis)
-    return Frame(joint.frame, joint.parent, joint.mount, joint.origin + slide)
+    exact = tuple(
+        replace(j, axis=whole_numbers(j.axis), mount=whole_numbers(j.mount)) for j in joints
+    )
+    label = _numbered(values)
+    boundaries = tuple(boundary.with_labels(label) for boundary in robot.boundaries)
+    return replace(robot, joints=exact, points=points, boundaries=boundaries), values
 
 
 def _labelled(a: str, b: str, vector: Array, values: dict[sympy.Symbol, float]) -> Array:
@@ -299,32 +245,19 @@ def _labelled(a: str, b: str, vector: Array, values: dict[sympy.Symbol, float]) 
     return result
 
 
-def _label_walls(
-    boundaries: Sequence[Pair | HalfSpace], values: dict[sympy.Symbol, float]
-) -> tuple[Pair | HalfSpace, ...]:
+def _numbered(values: dict[sympy.Symbol, float]) -> Callable[[str, float], sympy.Symbol]:
+    """Return what makes labels x_{min,1}, x_{min,2}, ..., z_{min,1} and notes their values."""
     import sympy
 
     counts: Counter[str] = Counter()
-    result: list[Pair | HalfSpace] = []
-    for boundary in boundaries:
-        if isinstance(boundary, Pair):
-            result.append(boundary)
-            continue
-        letter = "xyz"[int(np.argmax(np.abs(boundary.normal)))]
+
+    def label(letter: str, value: float) -> sympy.Symbol:
         counts[letter] += 1
         symbol = sympy.Symbol(f"{letter}_{{min,{counts[letter]}}}", real=True)
-        values[symbol] = boundary.offset
-        result.append(replace(boundary, offset=symbol, normal=_integers(boundary.normal)))
-    return tuple(result)
+        values[symbol] = value
+        return symbol
 
-
-def _integers(values: Array) -> Array:
-    """Exact copies of entries that are whole numbers but for rounding: symbols meet no floats."""
-    import sympy
-
-    whole = np.rint(values).astype(int)
-    exact = np.vectorize(sympy.Integer, otypes=[object])(whole)
-    return np.where(np.abs(values - whole) <= ZERO_AMPLITUDE, exact, values)
+    return label
 
 
 def _subscripted(name: str) -> str:

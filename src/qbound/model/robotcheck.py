@@ -1,6 +1,6 @@
-"""What a table must fulfil to be a robot: types and keys by the JSON Schema, meaning by hand.
+"""What a table must fulfil to be a robot: types and keys by classes, meaning by hand.
 
-Meaning is what a schema cannot say: finite numbers, unique names, one chain, references and so on.
+Meaning is what types cannot say: unique names, one chain, references and so on.
 """
 
 from __future__ import annotations
@@ -8,36 +8,71 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from functools import cache
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
-from qbound.model.schema import Place, first_fault, one_line, place, shown
+import msgspec
+from msgspec import Meta, field
+
+from qbound.model.boundaries import TWO_POINTS, BoundaryRow
+from qbound.model.joints import JOINT_TYPES, JointRow
+from qbound.model.rows import LARGEST, Label, Number, Row
+from qbound.model.schema import Place, explained, one_line, place, shown
+from qbound.model.shapes import BodyRow, PointRow
 
 Table = Mapping[str, Any]
 
-LARGEST = 1e100
-"""Largest number of a file: squares of lengths, and their products, must stay within floats."""
-
-MOST_TURNS = 100
-"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
+ANGLE = {"deg": math.radians(1.0), "rad": 1.0}
+"""Radians in a file's unit of angle."""
 
 TURN = {"deg": 360.0, "rad": math.tau}
+
+LengthUnit = Literal["m", "cm", "mm"]
+AngleUnit = Literal["deg", "rad"]
 
 
 class RobotFileError(ValueError):
     """A robot file that is wrong: names the file, the key, what was found, what is allowed."""
 
 
-def check_table(table: Table) -> None:
-    """Check the content of a robot file.
+class RobotFile(Row, kw_only=True):
+    """A robot file, schema 1."""
+
+    schema: Literal[1]
+    name: Label
+    length_unit: LengthUnit
+    angle_unit: AngleUnit
+    home: Annotated[
+        dict[str, Number], Meta(min_length=1, description="a table with a number for each joint")
+    ]
+    tool: Label
+    joint: Annotated[
+        list[JointRow], Meta(min_length=1, description="a list of one or more tables [[joint]]")
+    ]
+    point: Annotated[
+        list[PointRow], Meta(min_length=1, description="a list of one or more tables [[point]]")
+    ]
+    boundary: Annotated[list[BoundaryRow], Meta(description="a list of tables [[boundary]]")] = (
+        field(default_factory=list)
+    )
+    body: Annotated[list[BodyRow], Meta(description="a list of tables [[body]]")] = field(
+        default_factory=list
+    )
+
+
+def read_table(table: Table) -> RobotFile:
+    """Read the content of a robot file, checked.
 
     Raises
     ------
     RobotFileError
         With the first fault, its place, and what is allowed there.
     """
-    _check_finite(table)  # first: a schema library cannot even print an integer of any length
-    if fault := first_fault("robot", table):
-        raise _fault(table, *fault)
+    try:
+        file = msgspec.convert(table, RobotFile)
+    except ValueError as error:  # also an integer of more digits than Python prints
+        _check_finite(table)
+        raise _fault(table, *explained(str(error), table, json_schema())) from None
     for check in (
         _check_names,
         _check_chain,
@@ -47,6 +82,24 @@ def check_table(table: Table) -> None:
         _check_limits,
     ):
         check(table)
+    return file
+
+
+@cache
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a robot file; ``schemas/robot.schema.json`` is this."""
+    (_,), rows = msgspec.json.schema_components([RobotFile], ref_template="#/$defs/{name}")
+    for row in (row for row in rows.values() if "type" in row["properties"]):
+        keys = {"name": ...} | row["properties"]  # first, also where a type tells tables apart
+        row["properties"] = {key: row["properties"][key] for key in keys}
+        row["required"] = [key for key in keys if key in row["required"]]
+    for name, table in (("RobotFile", RobotFile), ("JointRow", JointRow)):
+        for key, hint in get_type_hints(table).items():
+            if get_origin(hint) is Literal:  # in the order of the class, not of the alphabet
+                rows[name]["properties"][key]["enum"] = [*get_args(hint)]
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    top = rows.pop("RobotFile") | {"title": "qbound robot file, schema 1"}
+    return {"$schema": draft, **top, "$defs": rows}
 
 
 def _fault(table: Table, path: Place, text: str) -> RobotFileError:
@@ -109,7 +162,11 @@ def _check_references(table: Table) -> None:
         for i in range(len(_rows(table, kind))):
             _check_known(table, (kind, i, "frame"), "frame", _frames(table))
     for i, row in enumerate(_rows(table, "boundary")):
-        keys = [("points", 0), ("points", 1)] if row["type"] == "pair" else [("point",)]
+        several: Sequence[str] = row.get("points", ())
+        if len(set(several)) < len(several):
+            text = f"{shown(several)} names one thing twice; wanted: {TWO_POINTS}"
+            raise _fault(table, ("boundary", i, "points"), text)
+        keys = [("points", k) for k in range(len(several))] + [("point",)] * ("point" in row)
         for key in keys:
             _check_known(table, ("boundary", i, *key), "point", points)
 
@@ -143,19 +200,10 @@ def _check_directions(table: Table) -> None:
 
 
 def _check_limits(table: Table) -> None:
-    for i, joint in enumerate(table["joint"]):
-        path = ("joint", i, "limits")
-        if "limits" not in joint:
-            if joint["type"] == "prismatic":
-                raise _fault(table, path, "missing; a prismatic joint needs [lowest, highest]")
-        elif not joint["limits"][0] < joint["limits"][1]:
-            text = f"{shown(joint['limits'])} does not rise; wanted: [lowest, highest]"
-            raise _fault(table, path, text)
-        elif joint["type"] == "revolute":
-            turns = (joint["limits"][1] - joint["limits"][0]) / TURN[table["angle_unit"]]
-            if turns > MOST_TURNS:
-                text = f"{shown(joint['limits'])} is {turns:.0f} turns wide; at most {MOST_TURNS}"
-                raise _fault(table, path, text)
+    for i, row in enumerate(table["joint"]):
+        joint_type, turn = JOINT_TYPES[row["type"]], TURN[table["angle_unit"]]
+        if text := joint_type.limits_fault(row.get("limits"), turn):
+            raise _fault(table, ("joint", i, "limits"), text)
 
 
 def _listed(names: Sequence[str]) -> str:

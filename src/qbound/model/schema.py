@@ -1,56 +1,43 @@
-"""What is wrong with data by a JSON Schema of the package, said in one sentence.
+"""What is wrong with data by the classes of its tables, said in one sentence.
 
-Schemas describe themselves: their `description` reads on after "is not" and "wanted:".
+msgspec finds the first fault in the order of the file and says where it is and of what sort. What
+is allowed there is read off the JSON Schema of the same classes, whose `description` reads on after
+"is not" and "wanted:".
 """
 
 from __future__ import annotations
 
-import json
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
-from importlib import resources
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 Place = Sequence[str | int]
+Node = Mapping[str, Any]
+"""What a JSON Schema has to say of one place."""
 
 LONGEST = 60
 """Characters of a value that a message shows."""
 
 
-class Fault(NamedTuple):
-    """One keyword of a schema that does not hold."""
-
-    path: Place
-    keyword: str
-    asked: Any
-    """What the schema has beside the keyword."""
-    found: Any
-    schema: Mapping[str, Any]
-
-
-def first_fault(schema: str, value: Any) -> tuple[Place, str] | None:
-    """Return the place and the sentence of the first fault, in the order of the file.
+def explained(message: str, table: Any, schema: Node) -> tuple[Place, str]:
+    """Return the place and the sentence of a fault that msgspec found.
 
     Parameters
     ----------
-    schema : str
-        Name of the schema: "robot", "results".
-    value : table or list
-        The content of a file; tables keep the order of the file.
-
-    Returns
-    -------
-    tuple of path and str, or None
-        None if there is no fault.
+    message : str
+        Its own: the sort of the fault, then the place, as in ``... - at `$.joint[0].axis```.
+    table : dict
+        The content of the file.
+    schema : dict
+        JSON Schema of the same classes.
     """
-    faults = _faults(schema, value)
-    first = min(faults, key=lambda fault: _position(value, fault), default=None)
-    return None if first is None else (first.path, SENTENCES[first.keyword](first))
+    located = re.search(r" - at `\$([^`]*)`$", message)
+    path, found, node = _follow(located[1] if located else "", table, schema)
+    for sort, sentence in SENTENCES.items():
+        if re.match(sort, message):
+            return path, sentence(found, node)
+    return path, f"{shown(found)}: {one_line(message)}"
 
 
 def place(value: Any, path: Place) -> str:
@@ -84,97 +71,91 @@ def one_line(text: str) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."
 
 
-@cache
-def _validator(schema: str) -> Draft202012Validator:
-    from jsonschema import Draft202012Validator  # where it is needed: the import is slow
-
-    file = resources.files("qbound") / "schemas" / f"{schema}.schema.json"
-    return Draft202012Validator(json.loads(file.read_text(encoding="utf-8")))
-
-
-def _faults(schema: str, value: Any) -> Iterator[Fault]:
-    for e in _validator(schema).iter_errors(value):
-        rule: Any = e.schema
-        yield Fault(tuple(e.absolute_path), str(e.validator), e.validator_value, e.instance, rule)
-
-
-def _position(value: Any, fault: Fault) -> list[int]:
-    """Return where a fault stands in the file: one number a level, to sort by.
-
-    An unknown key stands where it is written, a missing one at the end of its table.
-    """
-    position = []
-    for step in fault.path:
-        position.append(step if isinstance(step, int) else list(value).index(step))
+def _follow(where: str, value: Any, schema: Node) -> tuple[Place, Any, Node]:
+    """Walk to a place: its path, what is found there, and what the schema has to say of it."""
+    path: list[str | int] = []
+    node = _resolved(schema, schema, value)
+    for key, index in re.findall(r"\.(\w+)|\[([\d.]+)\]", where):
+        step = key or (_no_number(value) if index == "..." else int(index))
+        inner = (
+            node["properties"][key] if key else node.get("items", node.get("additionalProperties"))
+        )
         value = value[step]
-    if fault.keyword == "additionalProperties":
-        position.append(list(value).index(_unknown(fault)[0]))
-    if fault.keyword == "required":
-        position.append(len(value))
-    return position
+        node = _resolved(inner, schema, value)
+        path.append(step)
+    return path, value, node
 
 
-def _unknown_key(fault: Fault) -> str:
-    keys = _unknown(fault)
-    found = one_line(", ".join(map(repr, keys)))
-    allowed = ", ".join(fault.schema["properties"])
-    return f"unknown key{'s' * (len(keys) > 1)} {found}; allowed: {allowed}"
+def _resolved(node: Node, schema: Node, value: Any) -> Node:
+    """Replace a reference by what it refers to, and a choice of tables by the one of the type."""
+    if "$ref" in node:
+        found: Node = schema["$defs"][node["$ref"].rpartition("/")[2]]
+        return found
+    if "discriminator" not in node:
+        return node
+    choices = node["discriminator"]["mapping"]
+    tag = value.get("type") if isinstance(value, Mapping) else None
+    if isinstance(tag, str) and tag in choices:
+        return _resolved({"$ref": choices[tag]}, schema, value)
+    tables = [_resolved({"$ref": reference}, schema, value) for reference in choices.values()]
+    needed = [key for key in tables[0]["required"] if all(key in t["required"] for t in tables)]
+    return {**tables[0], "required": needed, "properties": {"type": {"enum": [*choices]}}}
 
 
-def _missing_key(fault: Fault) -> str:
-    keys = [key for key in fault.asked if key not in fault.found]
+def _no_number(table: Mapping[str, Any]) -> str:
+    """Return the key that msgspec leaves out of a place in a table of numbers."""
+    return next(key for key, item in table.items() if type(item) not in (int, float))
+
+
+def _unknown_key(found: Any, node: Node) -> str:
+    keys = [key for key in found if key not in node["properties"]]
+    names = one_line(", ".join(map(repr, keys)))
+    return f"unknown key{'s' * (len(keys) > 1)} {names}; allowed: {', '.join(node['properties'])}"
+
+
+def _missing_key(found: Any, node: Node) -> str:
+    keys = [key for key in node["required"] if key not in found]
     verb = "is" if len(keys) == 1 else "are"
-    return f"{', '.join(map(repr, keys))} {verb} missing; needed: {', '.join(fault.asked)}"
+    return f"{', '.join(map(repr, keys))} {verb} missing; needed: {', '.join(node['required'])}"
 
 
-def _wrong_choice(fault: Fault) -> str:
-    choices = fault.asked if fault.keyword == "enum" else [fault.asked]
-    return f"{shown(fault.found)} is unknown; allowed: {', '.join(map(str, choices))}"
+def _wrong_choice(found: Any, node: Node) -> str:
+    return f"{shown(found)} is unknown; allowed: {', '.join(map(str, node['enum']))}"
 
 
-def _wrong_type(fault: Fault) -> str:
-    return f"{shown(fault.found)} is not {_wanted(fault)}"
+def _wrong_type(found: Any, node: Node) -> str:
+    return (
+        _wrong_choice(found, node) if "enum" in node else f"{shown(found)} is not {_wanted(node)}"
+    )
 
 
-def _wrong_length(fault: Fault) -> str:
-    return f"{shown(fault.found)} has length {len(fault.found)}; wanted: {_wanted(fault)}"
+def _wrong_length(found: Any, node: Node) -> str:
+    return f"{shown(found)} has length {len(found)}; wanted: {_wanted(node)}"
 
 
-def _too_small(fault: Fault) -> str:
-    words = "at least" if fault.keyword == "minimum" else "more than"
-    return f"{shown(fault.found)} is too small; allowed: {words} {fault.asked}"
+def _too_small(found: Any, node: Node) -> str:
+    more = "exclusiveMinimum" in node
+    least = f"more than {node['exclusiveMinimum']}" if more else f"at least {node['minimum']}"
+    return f"{shown(found)} is too small; allowed: {least}"
 
 
-def _repeated(fault: Fault) -> str:
-    return f"{shown(fault.found)} names one thing twice; wanted: {_wanted(fault)}"
-
-
-SENTENCES: Mapping[str, Callable[[Fault], str]] = {
-    "additionalProperties": _unknown_key,
-    "required": _missing_key,
-    "enum": _wrong_choice,
-    "const": _wrong_choice,
-    "type": _wrong_type,
-    "minLength": _wrong_length,
-    "minItems": _wrong_length,
-    "maxItems": _wrong_length,
-    "minProperties": _wrong_length,
-    "minimum": _too_small,
-    "exclusiveMinimum": _too_small,
-    "uniqueItems": _repeated,
+SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {
+    "Object contains unknown field": _unknown_key,
+    "Object missing required field": _missing_key,
+    "Invalid": _wrong_choice,
+    r"Expected `\w+`, got": _wrong_type,
+    r"Expected `\w+` of length": _wrong_length,
+    "Expected `float` >": _too_small,
 }
-"""From the keyword of a schema that fails to the sentence that says how."""
+"""From the sort of a fault, as msgspec begins to say it, to the sentence that says all."""
 
 
-def _wanted(fault: Fault) -> str:
+def _wanted(node: Node) -> str:
     """Return what the schema asks for, in its own words or by the name of the type."""
     types = {"number": "a number", "string": "a text", "boolean": "true or false"}
     types |= {"object": "a table", "array": "a list"}
-    return str(fault.schema.get("description") or types[fault.schema["type"]])
-
-
-def _unknown(fault: Fault) -> list[str]:
-    return [key for key in fault.found if key not in fault.schema["properties"]]
+    in_words = "description" in node and "title" not in node  # a title: the class of a table
+    return str(node["description"] if in_words else types[node["type"]])
 
 
 def _key(key: str) -> str:

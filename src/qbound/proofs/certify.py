@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -19,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import check
-from qbound.boundary.functions import clearance
+from qbound.boundary.functions import clearance, margin_of
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
-from qbound.model.robot import Pair, Robot
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.minorant import Bound
 from qbound.proofs.statements import (
@@ -266,7 +265,7 @@ def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     return {
         wall.name: clearance(wider, wall)
         for wall in wider.boundaries
-        if wall.used and not (isinstance(wall, Pair) and wider.required_distance(wall) == 0)
+        if wall.used and wider.least_distance(wall) != 0
     }
 
 
@@ -337,11 +336,7 @@ def _witness(
 
 def _depth(robot: Robot, name: str, value: float) -> float:
     """How far a boundary is violated, length."""
-    wall = robot.boundary(name)
-    if not isinstance(wall, Pair):
-        return -value
-    distance = robot.required_distance(wall)
-    return distance - math.sqrt(max(0.0, distance**2 + value))
+    return -float(margin_of(robot, robot.boundary(name), value))
 
 
 def _lowest(form: HarmonicForm, cells: Floats, cell: int, q: Floats) -> tuple[int, Floats]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm, Kind
-from qbound.model.robot import HalfSpace, Joint, Pair, Robot
+from qbound.model.robot import Boundary, Joint, Robot
 from qbound.model.robotfile import load_robot, robot_text
 from qbound.proofs.balls import ball, pi, precision
 
@@ -109,7 +109,7 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
 
 def exact_state(
     robot: Robot,
-    used: Sequence[Pair | HalfSpace],
+    used: Sequence[Boundary],
     ranges: Sequence[Any],
     limits: Sequence[tuple[str, str]],
     held: Mapping[int, arb] | None = None,
@@ -173,15 +173,8 @@ def _from_doubles(robot: Robot) -> Robot:
     points = tuple(
         replace(p, at=_rationals(p.at), radius=_rational(p.radius)) for p in robot.points
     )
-    walls = tuple(_wall(b) for b in robot.boundaries)
+    walls = tuple(b.with_numbers(vars(b), _rational, _rationals) for b in robot.boundaries)
     return replace(robot, joints=joints, points=points, boundaries=walls)
-
-
-def _wall(boundary: Pair | HalfSpace) -> Pair | HalfSpace:
-    if isinstance(boundary, Pair):
-        return replace(boundary, clearance=_rational(boundary.clearance))
-    normal, offset = _rationals(boundary.normal), _rational(boundary.offset)
-    return replace(boundary, normal=normal, offset=offset)
 
 
 # --- from a file ----------------------------------------------------------------------------------
@@ -195,12 +188,13 @@ def _from_table(robot: Robot, table: Table) -> Robot:
         replace(p, at=_rationals(row["at"]), radius=_rational(row.get("radius", 0)))
         for p, row in zip(robot.points, table["point"], strict=True)
     )
-    walls = map(_boundary, robot.boundaries, table.get("boundary", ()))
-    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=tuple(walls))
+    rows = zip(robot.boundaries, table.get("boundary", ()), strict=True)
+    walls = tuple(boundary.with_numbers(row, _rational, _unit) for boundary, row in rows)
+    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=walls)
 
 
 def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:
-    in_degrees = degrees and joint.kind == "revolute"
+    in_degrees = degrees and joint.turns
     limits: Any = row.get("limits")
     if limits is not None:
         limits = tuple(_angle(x, in_degrees) for x in limits)
@@ -211,12 +205,6 @@ def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:
         axis=_unit(row["axis"]),
         limits=limits,
     )
-
-
-def _boundary(boundary: Pair | HalfSpace, row: Table) -> Pair | HalfSpace:
-    if isinstance(boundary, Pair):
-        return replace(boundary, clearance=_rational(row.get("clearance", 0)))
-    return replace(boundary, normal=_unit(row["normal"]), offset=_rational(row["offset"]))
 
 
 def _unit(vector: Sequence[Any]) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound import check
 from qbound.geometry import polygon
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import Robot
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region
 
@@ -190,13 +190,8 @@ def inner_polygon(
 
 def asked_for_more(robot: Robot, length: float) -> Robot:
     """Return a robot whose every boundary asks for some more distance."""
-    return replace(robot, boundaries=tuple(_more(wall, length) for wall in robot.boundaries))
-
-
-def _more(wall: Pair | HalfSpace, length: float) -> Pair | HalfSpace:
-    if isinstance(wall, Pair):
-        return replace(wall, clearance=wall.clearance + length)
-    return replace(wall, offset=wall.offset + length)
+    walls = tuple(wall.with_extra_clearance(length) for wall in robot.boundaries)
+    return replace(robot, boundaries=walls)
 
 
 def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:

@@ -18,12 +18,11 @@ from qbound.boundary.evaluator import (
     Evaluator,
     Range,
     compiled,
-    least_distance,
     limit_names,
     stacked,
 )
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import HalfSpace, Held, Pair, Robot
+from qbound.model.robot import Boundary, Held, Robot
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
@@ -151,7 +150,7 @@ def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
 
 def state(
     robot: Robot,
-    used: Sequence[Pair | HalfSpace],
+    used: Sequence[Boundary],
     ranges: Sequence[Range],
     limits: Sequence[tuple[str, str]],
     held: Mapping[int, float] | None = None,
@@ -172,7 +171,7 @@ def state(
         names=(*(boundary.name for boundary in used), *(name for name, _ in beyond)),
         ranges=(ranges[0], ranges[1]),
         limits=(limits[0], limits[1]),
-        distances=(*(least_distance(robot, b) for b in used), *[None] * len(beyond)),
+        distances=(*(robot.least_distance(b) for b in used), *[None] * len(beyond)),
         robot=robot,
         joints=(one, other),
         held=dict(held),

@@ -1,0 +1,196 @@
+"""What keeps a robot apart, as data? A type of boundary is a class.
+
+A new one needs its class and its table here, and its forms in `boundary.functions`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from qbound.model.frames import whole_numbers
+from qbound.model.rows import Direction, Label, Number, Row, Size, floats, unit_vector
+from qbound.model.shapes import Point
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary(ABC):
+    """What every boundary has: a name, its points, whether it is in use, and a clearance form."""
+
+    name: str
+
+    @property
+    @abstractmethod
+    def used(self) -> bool:
+        """Whether it is part of the region; else it is only drawn."""
+
+    @property
+    @abstractmethod
+    def point_names(self) -> tuple[str, ...]:
+        """Names of the points that it is about."""
+
+    @abstractmethod
+    def least_distance(self, point: Callable[[str], Point]) -> float | None:
+        r"""Return :math:`d_{\min}` where its form is :math:`|B|^2 - d_{\min}^2`; else None.
+
+        Without one its form is the margin itself, a length. `point` finds a point by its name.
+        """
+
+    @abstractmethod
+    def with_extra_clearance(self, length: float) -> Boundary:
+        """Return it asking for some more distance."""
+
+    @abstractmethod
+    def with_numbers(
+        self,
+        source: Mapping[str, Any],
+        number: Callable[[Any], Any],
+        direction: Callable[[Any], Array],
+    ) -> Boundary:
+        """Return it with the numbers of a table, or of its own attributes, of another kind."""
+
+    def with_labels(self, label: Callable[[str, float], Any]) -> Boundary:
+        """Return it with `label(letter, value)` for what Table 5 gives a label: nothing here."""
+        return self
+
+    @abstractmethod
+    def row(self) -> Row:
+        """Return its table of a file."""
+
+
+@dataclass(frozen=True)
+class Pair(Boundary):
+    """Point boundary function: feasible where the points keep apart (Theorem 1, eq. 11)."""
+
+    points: tuple[str, str]
+    clearance: float = 0.0
+    used: bool = True
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of both points."""
+        return self.points
+
+    def least_distance(self, point: Callable[[str], Point]) -> float:
+        """Return both radii plus the clearance."""
+        return sum(point(name).radius for name in self.points) + self.clearance
+
+    def with_extra_clearance(self, length: float) -> Pair:
+        """Ask for more between the spheres."""
+        return replace(self, clearance=self.clearance + length)
+
+    def with_numbers(
+        self,
+        source: Mapping[str, Any],
+        number: Callable[[Any], Any],
+        direction: Callable[[Any], Array],
+    ) -> Pair:
+        """Convert the clearance."""
+        return replace(self, clearance=number(source.get("clearance", 0)))
+
+    def row(self) -> PairRow:
+        """Return its table [[boundary]]."""
+        return PairRow(
+            name=self.name,
+            points=list(self.points),
+            clearance=float(self.clearance),
+            used=self.used,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class HalfSpace(Boundary):
+    """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12)."""
+
+    point: str
+    normal: Array
+    offset: float
+    used: bool = True
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Name of the one point."""
+        return (self.point,)
+
+    def least_distance(self, point: Callable[[str], Point]) -> None:
+        """Return None: its form is the height over the wall."""
+
+    def with_extra_clearance(self, length: float) -> HalfSpace:
+        """Move the wall inwards."""
+        return replace(self, offset=self.offset + length)
+
+    def with_numbers(
+        self,
+        source: Mapping[str, Any],
+        number: Callable[[Any], Any],
+        direction: Callable[[Any], Array],
+    ) -> HalfSpace:
+        """Convert normal and offset."""
+        return replace(self, normal=direction(source["normal"]), offset=number(source["offset"]))
+
+    def with_labels(self, label: Callable[[str, float], Any]) -> HalfSpace:
+        """Label the offset; the normal is made of whole numbers where it can be."""
+        letter = "xyz"[int(np.argmax(np.abs(self.normal)))]
+        offset = label(letter, self.offset)
+        return replace(self, offset=offset, normal=whole_numbers(self.normal))
+
+    def row(self) -> HalfSpaceRow:
+        """Return its table [[boundary]]."""
+        return HalfSpaceRow(
+            name=self.name,
+            point=self.point,
+            normal=floats(self.normal),
+            offset=float(self.offset),
+            used=self.used,
+        )
+
+
+TWO_POINTS = "a list of the names of 2 different points"
+
+
+class PairRow(Row, kw_only=True, tag_field="type", tag="pair"):
+    """A table [[boundary]] of type "pair"."""
+
+    name: Label
+    used: bool = True
+    points: Annotated[
+        list[Label],
+        Meta(
+            min_length=2,
+            max_length=2,
+            description=TWO_POINTS,
+            extra_json_schema={"uniqueItems": True},
+        ),
+    ]
+    clearance: Size = 0.0
+
+    def boundary(self) -> Pair:
+        """Return the boundary."""
+        first, second = self.points
+        return Pair(self.name, (first, second), self.clearance, self.used)
+
+
+class HalfSpaceRow(Row, kw_only=True, tag_field="type", tag="half-space"):
+    """A table [[boundary]] of type "half-space"."""
+
+    name: Label
+    used: bool = True
+    point: Label
+    normal: Direction
+    offset: Number
+
+    def boundary(self) -> HalfSpace:
+        """Return the boundary."""
+        return HalfSpace(self.name, self.point, unit_vector(self.normal), self.offset, self.used)
+
+
+BoundaryRow = PairRow | HalfSpaceRow
+"""Every table [[boundary]]."""

@@ -1,0 +1,221 @@
+"""What joints are there, and what does each know of itself? A type of joint is a class.
+
+A new one needs its class here and its name in `JointRow.type`: frames, units, limits and files
+follow. Its factor in a harmonic form (`kind`) is one that `forms` knows.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
+
+import numpy as np
+from msgspec import UNSET, Meta, UnsetType
+from numpy.typing import NDArray
+
+from qbound.model.frames import Frame, axis_rotation, roll_pitch_yaw
+from qbound.model.rows import (
+    LARGEST,
+    Direction,
+    Label,
+    Number,
+    Row,
+    Vector,
+    floats,
+    quotient,
+    unit_vector,
+)
+from qbound.model.schema import shown
+
+Array = NDArray[Any]
+Kind = Literal["revolute", "prismatic"]
+"""Factor of a joint in a harmonic form: (1, cos q, sin q) or (1, q, q²)."""
+
+MOST_TURNS = 100
+"""Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
+
+AnyJoint = TypeVar("AnyJoint", bound="Joint")
+
+
+@dataclass(frozen=True, eq=False)
+class Joint(ABC):
+    """A joint that moves `frame` relative to `parent`.
+
+    Attributes
+    ----------
+    name : str
+    parent, frame : str
+        Labels of the frames before and after it.
+    origin : ndarray, shape (3,)
+        From the parent to the frame at joint value 0, seen from the parent; length.
+    mount : ndarray, shape (3, 3)
+        Fixed rotation between the parent and the joint's own axes.
+    axis : ndarray, shape (3,)
+        Unit vector, seen from the mount.
+    limits : tuple of float, optional
+        Lowest and highest value (eq. 10), rad or length. None: turns all the way round.
+    velocity : float, optional
+        Largest speed, rad/s or length/s.
+    """
+
+    kind: ClassVar[Kind]
+    type_name: ClassVar[str]
+    """How a file spells it."""
+    turns: ClassVar[bool]
+    """Whether its values are angles."""
+
+    name: str
+    parent: str
+    frame: str
+    origin: Array
+    mount: Array
+    axis: Array
+    limits: tuple[float, float] | None = None
+    velocity: float | None = None
+
+    @abstractmethod
+    def frame_at(self, q: Any) -> Frame:
+        """Return its frame at joint values of shape (...) or a symbol, seen from the parent."""
+
+    def unit(self, length_unit: str) -> str:
+        """Return the unit of its values in the library."""
+        return "rad" if self.turns else length_unit
+
+    def shown_unit(self, length_unit: str) -> str:
+        """Return the unit in which people are shown its values: degrees for an angle."""
+        return "°" if self.turns else length_unit
+
+    @property
+    def shown_scale(self) -> float:
+        """How many of the units that people are shown are one of the library's."""
+        return math.degrees(1.0) if self.turns else 1.0
+
+    @classmethod
+    def scale(cls, angle: float) -> float:
+        """Return library units in one of a file's, whose unit of angle is `angle` radians."""
+        return angle if cls.turns else 1.0
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Say what is wrong with limits in a file, where a full turn is `turn`; None: nothing."""
+        if limits is None or limits[0] < limits[1]:
+            return None
+        return f"{shown(limits)} does not rise; wanted: [lowest, highest]"
+
+    def as_type(self, kind: type[AnyJoint], **changes: Any) -> AnyJoint:
+        """Return a joint of another type in its place, with some attributes changed."""
+        return kind(**{each.name: getattr(self, each.name) for each in fields(Joint)} | changes)
+
+    def row(self, angle: float) -> JointRow:
+        """Return its table of a file whose unit of angle is `angle` radians."""
+        scale = self.scale(angle)
+        straight = np.array_equal(self.mount, np.eye(3))
+        return JointRow(
+            name=self.name,
+            type=self.type_name,  # type: ignore[arg-type]  # one of `JOINT_TYPES`
+            parent=self.parent,
+            frame=self.frame,
+            origin=floats(self.origin),
+            axis=floats(self.axis),
+            rpy=UNSET if straight else [quotient(x, angle) for x in _rpy(self.mount)],
+            limits=UNSET if self.limits is None else [quotient(x, scale) for x in self.limits],
+            velocity=UNSET if self.velocity is None else quotient(self.velocity, scale),
+        )
+
+
+class Revolute(Joint):
+    """A joint that turns about its axis; without limits all the way round."""
+
+    kind = "revolute"
+    type_name = "revolute"
+    turns = True
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Refuse a span of hundreds of turns too."""
+        turns = 0.0 if limits is None else (limits[1] - limits[0]) / turn
+        if turns > MOST_TURNS:
+            return f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+        return super().limits_fault(limits, turn)
+
+    def frame_at(self, q: Any) -> Frame:
+        """Turn the frame (Table 2)."""
+        turn = self.mount @ axis_rotation(self.axis, q)
+        return Frame(self.frame, self.parent, turn, self.origin)
+
+
+class Prismatic(Joint):
+    """A joint that slides along its axis."""
+
+    kind = "prismatic"
+    type_name = "prismatic"
+    turns = False
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Ask for limits."""
+        if limits is None:
+            return f"missing; a {cls.type_name} joint needs [lowest, highest]"
+        return super().limits_fault(limits, turn)
+
+    def frame_at(self, q: Any) -> Frame:
+        """Move the frame's origin."""
+        slide = np.asarray(q)[..., None] * (self.mount @ self.axis)
+        return Frame(self.frame, self.parent, self.mount, self.origin + slide)
+
+
+JOINT_TYPES: dict[str, type[Joint]] = {cls.type_name: cls for cls in (Revolute, Prismatic)}
+"""From a file's spelling to the class."""
+
+Limits = Annotated[
+    list[Number],
+    Meta(min_length=2, max_length=2, description="a list of 2 numbers, the lowest and the highest"),
+]
+Speed = Annotated[float, Meta(gt=0, le=LARGEST)]
+
+
+class JointRow(Row, kw_only=True):
+    """A table [[joint]]."""
+
+    name: Label
+    type: Literal["revolute", "prismatic"]
+    parent: Label
+    frame: Label
+    origin: Vector
+    rpy: Vector | UnsetType = UNSET
+    axis: Direction
+    limits: Limits | UnsetType = UNSET
+    velocity: Speed | UnsetType = UNSET
+
+    def joint(self, angle: float) -> Joint:
+        """Return the joint: radians, a unit axis; the file's unit of angle is `angle` radians."""
+        joint_type = JOINT_TYPES[self.type]
+        scale = joint_type.scale(angle)
+        low, high = self.limits or (0.0, 0.0)
+        rpy = None if self.rpy is UNSET else [x * angle for x in self.rpy]
+        return joint_type(
+            name=self.name,
+            parent=self.parent,
+            frame=self.frame,
+            origin=np.array(self.origin, dtype=float),
+            mount=np.eye(3) if rpy is None else roll_pitch_yaw(*rpy),
+            axis=unit_vector(self.axis),
+            limits=(low * scale, high * scale) if self.limits else None,
+            velocity=None if self.velocity is UNSET else self.velocity * scale,
+        )
+
+
+def _rpy(mount: Array) -> tuple[float, float, float]:
+    """Find roll, pitch and yaw of a rotation.
+
+    Roll is read after yaw is undone, so that a pitch of a quarter turn needs no case of its own.
+    """
+    m = np.asarray(mount, dtype=float)
+    yaw = math.atan2(m[1, 0], m[0, 0])
+    c, s = math.cos(yaw), math.sin(yaw)
+    pitch = math.atan2(-m[2, 0], c * m[0, 0] + s * m[1, 0])
+    roll = math.atan2(s * m[0, 2] - c * m[1, 2], c * m[1, 1] - s * m[0, 1])
+    return roll, pitch, yaw
