@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     check_targets([options.output])
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     region = region_by_rule(robot, options.rule, values)
-    write_text(options.output, explorer_page(robot, region, rule=options.rule, held=values))
+    write_text(options.output, explorer_page(region))
     return 0 if region.home is not None else 1
 
 

@@ -1,4 +1,4 @@
-"""Scaling a polygon about a point until it is safe, and how far is far enough (Figure 6).
+"""Scaling a polygon about a point until it is safe, and how far is far enough.
 
 Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
 the scale found is covered by triangles on each of which every form is shown to be positive.
@@ -53,7 +53,7 @@ class SafeScale:
 def largest_safe_scale(
     vertices: ArrayLike, centre: ArrayLike, forms: Sequence[HarmonicForm], *, highest: float = 1.0
 ) -> SafeScale:
-    """Return the largest scale up to which a polygon stays where every form is >= 0 (Figure 6).
+    """Return the largest scale up to which a polygon stays where every form is >= 0.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The exact region scaled about a point, its star shape, and polygons that are inside it for sure.
 
 A region that is star-shaped about its centroid contains every copy of itself that is scaled down
-about it: then the largest safe scale is 1, and each smaller scale buys clearance (Figure 6).
+about it: then the largest safe scale is 1, and each smaller scale buys clearance.
 """
 
 from __future__ import annotations

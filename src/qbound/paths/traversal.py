@@ -103,7 +103,7 @@ def traverse(
     step: float = 0.01,
     deviation: float | None = None,
 ) -> Traversal:
-    """Visit vertices in the order given, along straight lines in joint space (Figures 7-9).
+    """Visit vertices in the order given, along straight lines in joint space.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ class Side:
 def crossings(problem: ExactProblem, *, within: bool = False) -> Crossings:
     """Find all crossings of two forms, of a form and a limit, and of two limits.
 
-    Not in the paper, which reads its six points off a picture (Figure 5).
+    Not in the paper, which reads its six points off a picture.
 
     Parameters
     ----------

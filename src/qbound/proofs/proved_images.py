@@ -3,7 +3,7 @@
 det J depends on the second joint alone, so it is a boundary like any other: the region of one sign
 is proved with it as one more form, and its image has the area of the integral of abs(det J), which
 Green's theorem turns into one of q1 det J dq2 along the proved arcs. Not in the paper, which
-samples (Figure 11).
+samples.
 """
 
 from __future__ import annotations

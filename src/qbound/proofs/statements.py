@@ -115,7 +115,7 @@ def usual_inset(robot: Robot) -> float:
 def home_polygon(
     robot: Robot, scale: float = 1, margin: str = "0", held: Mapping[int, float] | None = None
 ) -> Statement:
-    """State that the polygon of the home component's vertices, scaled, is safe (Figures 5 and 6).
+    """State that the polygon of the home component's vertices, scaled, is safe.
 
     Parameters
     ----------
