@@ -778,8 +778,8 @@ RIGHT_IMPORTS = [
 
 def check_imports(folder: Path, imports: list[tuple[str, str]]) -> subprocess.CompletedProcess[str]:
     """Write both packages with these imports, and those that a contract lets pass; lint them."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
-    named = [line for each in contracts["contracts"] for line in each.get("ignore_imports", ())]
+    contracts = PYPROJECT["tool"]["importlinter"]["contracts"]
+    named = [line for contract in contracts for line in contract.get("ignore_imports", ())]
     let_pass = [tuple(line.split(" -> ")) for line in dict.fromkeys(named)]
     for source in (ROOT / "src").rglob("*.py"):
         empty = folder / source.relative_to(ROOT / "src")
