@@ -777,12 +777,15 @@ RIGHT_IMPORTS = [
 
 
 def check_imports(folder: Path, imports: list[tuple[str, str]]) -> subprocess.CompletedProcess[str]:
-    """Write both packages with these imports and no others, and lint them by our contracts."""
+    """Write both packages with these imports, and those that a contract lets pass; lint them."""
+    contracts = PYPROJECT["tool"]["importlinter"]["contracts"]
+    named = [line for contract in contracts for line in contract.get("ignore_imports", ())]
+    let_pass = [tuple(line.split(" -> ")) for line in dict.fromkeys(named)]
     for source in (ROOT / "src").rglob("*.py"):
         empty = folder / source.relative_to(ROOT / "src")
         empty.parent.mkdir(parents=True, exist_ok=True)
         empty.touch()
-    for importer, imported in imports:
+    for importer, imported in [*let_pass, *imports]:
         with (folder / f"{importer.replace('.', '/')}.py").open("a") as module:
             module.write(f"import {imported}\n")
     shutil.copy(ROOT / "pyproject.toml", folder)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from qbound.export.formats import csv_text, npz_bytes
 from qbound.export.polygons import Piece, polygons
+from qbound.extras import require
 from qbound.region import Region
 
 if TYPE_CHECKING:
@@ -112,6 +113,7 @@ def outlines_npz(drawn: Outlines) -> bytes:
 
 def outlines_shapely(drawn: Outlines) -> MultiPolygon:
     """Return the polygons of all components as one shapely geometry."""
+    require("shapely")
     from shapely import MultiPolygon, Polygon
 
     pieces = (piece for pieces in drawn.pieces for piece in pieces)
