@@ -10,6 +10,7 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import magnitude
 from support.forms import random_form
@@ -115,10 +116,38 @@ def test_outward_doubles_lie_outside(middle, radius):
     assert below(ball) <= middle <= above(ball)
 
 
-def test_a_missing_library_is_named_with_its_extra():
+@settings(max_examples=20)
+@given(numbers)
+def test_many_boxes_at_once_are_each_box_alone(case):
+    form = random_form(*case)
+    q = np.random.default_rng(case[0]).uniform(-4, 4, (2, 3, case[1]))
+    boxes = np.vectorize(arb, otypes=[object])(q)
+    found = form(boxes), form.gradient(boxes), form.along(0, boxes)
+    assert [x.shape for x in found] == [(2, 3, 2), (2, 3, 2, case[1]), (2, 3, 2, 3)]
+    alone = form(boxes[1, 2]), form.gradient(boxes[1, 2]), form.along(0, boxes[1, 2])
+    for many, one in zip(found, alone, strict=True):
+        assert all(x == y or x.overlaps(y) for x, y in zip(many[1, 2].flat, one.flat, strict=True))
+    assert np.allclose(found[0].astype(float), form(q))
+
+
+def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
+    table = np.zeros((3, 3), dtype=object)
+    table[0, 2], table[0, 1] = arb(0, 1e-9), arb(0)
+    assert HarmonicForm(table, ("revolute", "prismatic")).joints() == (1,)
+
+
+@pytest.mark.parametrize(
+    ("module", "command"),
+    [
+        ("flint", ["pave", "minervabot-v2"]),
+        ("scipy", ["connected", "minervabot-v2", "0", "0", "20", "30"]),
+        ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
+    ],
+)
+def test_a_missing_library_is_named_with_its_extra(module, command):
     code = (
-        "import sys; sys.modules['flint'] = None\n"
-        "from qbound.cli import main; sys.exit(main(['pave', 'minervabot-v2']))"
+        f"import sys; sys.modules[{module!r}] = None\n"
+        f"from qbound.cli import main; sys.exit(main({command}))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert run.returncode == 2

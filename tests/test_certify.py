@@ -215,6 +215,49 @@ def test_a_polygon_with_a_hole_is_cut_into_triangles_that_tile_it(seed):
     assert len(cells) == sum(map(len, loops)) + 2 * (len(loops) - 1) - 2
 
 
+AWKWARD = {
+    "corners in a row": ["0 0", "1 0", "3 0", "3 1", "3 4", "2 4", "0 4", "0 1"],
+    "a slanting row that no double holds": ["0 0", "1 0", "0.3 0.9", "0.2 0.6", "0.1 0.3"],
+    "twelve places": ["0 0", "0.000000000001 0", "359.999999999999 0.000000000001", "0 360"],
+    "a needle": ["-180 0", "180 0", "180 0.000000000001"],
+}
+
+
+@pytest.mark.parametrize("name", AWKWARD)
+def test_awkward_polygons_are_cut_exactly(name):
+    loop = [corner.split() for corner in AWKWARD[name]]
+    statement = statements.filled([loop])
+    cells = check.read_cells(statement)
+    doubled = sum(
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells
+    )
+    exact = [[Fraction(x) for x in corner] for corner in loop]
+    pairs = zip(exact, exact[1:] + exact[:1], strict=True)
+    assert doubled == sum(a[0] * b[1] - a[1] * b[0] for a, b in pairs)
+    assert len(cells) == len(loop) - 2
+
+
+def test_a_hole_may_touch_the_outline():
+    loops = [["0 0", "4 0", "4 4", "0 4"], ["0 0", "1 2", "2 1"]]
+    statement = statements.filled([[corner.split() for corner in loop] for loop in loops])
+    assert len(check.read_cells(statement)) == 5
+
+
+@pytest.mark.parametrize(
+    ("loops", "says"),
+    [
+        ([["0 0", "0 4", "4 4", "4 0"]], "inside is not on the left"),
+        ([["0 0", "4 0", "4 4"], ["1 0.5", "2 0.5", "2 1"]], "inside is not on the left"),
+        ([["0 0", "4 0", "4 4"], ["3 1", "9 9", "9 1"]], "crosses itself"),
+        ([["0 0", "1 1"]], "3 corners or more"),
+    ],
+    ids=["clockwise", "hole anticlockwise", "hole outside", "two corners"],
+)
+def test_loops_that_bound_no_polygon_are_refused(loops, says):
+    with pytest.raises(ValueError, match=says):
+        statements.filled([[corner.split() for corner in loop] for loop in loops])
+
+
 def test_a_polygon_that_crosses_itself_is_refused():
     bow = [(Fraction(x), Fraction(y)) for x, y in ((0, 0), (2, 2), (2, 0), (0, 2))]
     with pytest.raises(ValueError, match="crosses itself"):

@@ -10,6 +10,7 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
+from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import precision
 from qbound.proofs.dyadic import Cells, Room
 from support.forms import random_form
@@ -66,6 +67,15 @@ def test_halves_fill_the_cell_and_nothing_else():
     assert halves.bits.tolist() == [2, 2, 2]
     assert np.array_equal(halves.index[:2] // [1, 1, 2], cells.index)
     assert len(np.unique(halves.index, axis=0)) == 4
+
+
+def test_a_coefficient_that_is_a_wide_ball_counts_from_end_to_end():
+    """Its middle alone would prove a cell feasible on which the form may be negative."""
+    wide = HarmonicForm(np.array([[arb(0.05, 0.1), arb(0), arb(0.5, 0.25)]]), ("revolute",))
+    room = Room(wide, [(arb(1), arb(1.5))])
+    [[low]], [[high]] = room.bounds(room.whole())
+    assert low <= -0.05 + 0.25 * np.sin(1)
+    assert high >= 0.15 + 0.75 * np.sin(1.5)
 
 
 def test_a_room_without_forms_bounds_nothing():
