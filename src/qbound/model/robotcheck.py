@@ -77,6 +77,7 @@ def read_table(table: Table) -> RobotFile:
         _check_names,
         _check_chain,
         _check_references,
+        _check_pairs,
         _check_home,
         _check_directions,
         _check_limits,
@@ -155,20 +156,25 @@ def _check_chain(table: Table) -> None:
 
 
 def _check_references(table: Table) -> None:
-    """Refuse a name that nothing has."""
+    """Refuse a name that nothing has, under whatever key of a row names a frame or points."""
     points = [p["name"] for p in table["point"]]
     _check_known(table, ("tool",), "point", points)
-    for kind in ("point", "body"):
-        for i in range(len(_rows(table, kind))):
-            _check_known(table, (kind, i, "frame"), "frame", _frames(table))
+    for kind in ("point", "boundary", "body"):
+        for i, row in enumerate(_rows(table, kind)):
+            if "frame" in row:
+                _check_known(table, (kind, i, "frame"), "frame", _frames(table))
+            if "point" in row:
+                _check_known(table, (kind, i, "point"), "point", points)
+            for k in range(len(row.get("points", ()))):
+                _check_known(table, (kind, i, "points", k), "point", points)
+
+
+def _check_pairs(table: Table) -> None:
     for i, row in enumerate(_rows(table, "boundary")):
-        several: Sequence[str] = row.get("points", ())
-        if len(set(several)) < len(several):
-            text = f"{shown(several)} names one thing twice; wanted: {TWO_POINTS}"
+        names = row.get("points", ())
+        if len(set(names)) < len(names):
+            text = f"{shown(names)} names one thing twice; wanted: {TWO_POINTS}"
             raise _fault(table, ("boundary", i, "points"), text)
-        keys = [("points", k) for k in range(len(several))] + [("point",)] * ("point" in row)
-        for key in keys:
-            _check_known(table, ("boundary", i, *key), "point", points)
 
 
 def _check_known(table: Table, path: Place, what: str, names: Sequence[str]) -> None:

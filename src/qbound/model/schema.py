@@ -34,10 +34,11 @@ def explained(message: str, table: Any, schema: Node) -> tuple[Place, str]:
     """
     located = re.search(r" - at `\$([^`]*)`$", message)
     path, found, node = _follow(located[1] if located else "", table, schema)
-    for sort, sentence in SENTENCES.items():
-        if re.match(sort, message):
+    sort = message[: located.start()] if located else message
+    for start, sentence in SENTENCES.items():
+        if re.match(start, sort):
             return path, sentence(found, node)
-    return path, f"{shown(found)}: {one_line(message)}"
+    return path, f"{shown(found)}: {one_line(sort)}"
 
 
 def place(value: Any, path: Place) -> str:
