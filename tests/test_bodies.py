@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from qbound import clearance, load_robot
 from qbound.measures import bodies
 from qbound.model.robot import Body
-from qbound.region import paper_rule
-from qbound.region.region import solve, state
+from qbound.region import paper_rule, solve, state
 from support.oracles import PACKAGED, frame_matrix
 
 PRINTED, MENDED, SYMMETRIC = (

@@ -1,5 +1,6 @@
 """Boundary functions: eq. (29) derived, Theorem 1 for any chain, clearance, closest approach."""
 
+from dataclasses import replace
 from math import degrees, pi
 
 import numpy as np
@@ -15,11 +16,12 @@ from qbound import clearance, components, load_robot, pair_vector
 from qbound.boundary.functions import (
     closest_approach,
     geometric_vector,
+    moving_joints,
     observer,
     position,
     squared_distance,
 )
-from qbound.model.robot import joint_symbols, with_symbols
+from qbound.model.robot import HalfSpace, Pair, Point, joint_symbols, with_symbols
 from qbound.model.robotfile import parse_robot
 from support.oracles import (
     ANGLES,
@@ -329,6 +331,30 @@ def test_closest_approach_needs_one_turn(points, change, says) -> None:
     robot = parse_robot(table)
     with pytest.raises(ValueError, match=f"B1: .*{says}"):
         closest_approach(robot, robot.boundary("B1"))
+
+
+def test_a_boundary_names_the_joints_that_move_it() -> None:
+    expected = {"B1": (0,), "B2": (0,), "B3": (1,), "B4": (1,)} | dict.fromkeys(
+        ["B5", "B6", "B7"], (0, 1)
+    )
+    assert {b.name: moving_joints(MINERVA, b) for b in MINERVA.boundaries} == expected
+    slide = load_robot("pp-portal")
+    assert {moving_joints(slide, b) for b in slide.boundaries} <= {(0,), (1,), (0, 1)}
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_turns_about_its_own_axis_moves_no_boundary(seed) -> None:
+    """Rounding of an oblique axis is no motion: the numbers of the form are not exactly zero."""
+    rng = np.random.default_rng(seed)
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    joints = tuple(replace(joint, axis=axis) for joint in MINERVA.joints)
+    inner, outer = Point("i", "1", 1.7 * axis), Point("o", "2", 3.3 * axis)
+    robot = replace(MINERVA, joints=joints, points=(*MINERVA.points, inner, outer))
+    assert moving_joints(robot, HalfSpace("w", "o", axis, 1.0)) == ()
+    assert moving_joints(robot, Pair("p", ("6", "i"), 1.0)) == ()
+    assert moving_joints(robot, Pair("p", ("7", "o"), 1.0)) == ()
+    assert moving_joints(robot, Pair("p", ("6", "7"), 1.0)) == (0,)
 
 
 def test_contact_is_met_when_the_offsets_close() -> None:

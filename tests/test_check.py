@@ -19,7 +19,7 @@ import pytest
 from jsonschema import ValidationError, validate
 
 import qbound
-from qbound import check
+from qbound import check, cli
 from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb, statements
@@ -88,6 +88,26 @@ def test_the_checker_runs_alone_and_knows_the_robot(tmp_path):
     assert run("--sha256", digest).returncode == 0
     assert run("other.toml").returncode == 2
     assert run("--sha256", "0" * 64).returncode == 2
+
+
+NO_PIN = [["--sha256"], ["--sha256", ""], [""], ["minervabot-v2", "--sha256"], ["", "--sha256"]]
+
+
+@pytest.mark.parametrize("options", NO_PIN)
+def test_a_pin_without_a_value_is_an_error(tmp_path, capsys, options):
+    """A script whose variable is empty must not get the answer for any robot whatever."""
+    assert status(tmp_path, certificate(0.96).text, *options) == 2
+    assert "a pin without a value" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("options", [[""], ["--sha256", ""], ["--sha256="], ["", "--sha256", ""]])
+def test_the_command_too_takes_no_empty_pin(tmp_path, capsys, options):
+    file = tmp_path / "certificate.json"
+    file.write_text(certificate(0.96).text, encoding="utf-8")
+    assert cli.main(["check", str(file)]) == 0
+    capsys.readouterr()
+    assert cli.main(["check", str(file), *options]) == 2
+    assert capsys.readouterr().out == ""
 
 
 def test_both_checkers_accept_and_the_schema_knows_every_answer():
@@ -207,6 +227,8 @@ CORRUPTED = {
     "a corner of one value": put((*LOOP, 1), ["1"]),
     "a corner left out": drop(*LOOP, 2),
     "a loop walked backwards": put(LOOP, lambda loop: loop[::-1]),
+    "a loop with a spike": put(LOOP, lambda loop: [*loop, ["0", "-170"], loop[-1]]),
+    "a loop of two points": put(LOOP[:2], lambda loops: [*loops, [["0", "0"], ["0", "-170"]]]),
     "no corners": put(LOOP, []),
     "a triangle left out": drop("statement", "triangles", 0),
     "a triangle twice": put(("statement", "triangles"), lambda t: [*t, t[0]]),
@@ -262,6 +284,9 @@ REFUTED = {
     "another boundary": put(("boundary",), "B1"),
     "a boundary that is not used": put(("boundary",), "B5"),
     "a cell that is not there": put(("cell",), 9),
+    "a weight for no corner": put(("weights",), lambda w: [*w, "0"]),
+    "a corner without a weight": put(("weights",), lambda w: w[1:]),
+    "no weights": put(("weights",), []),
 }
 
 
@@ -274,11 +299,55 @@ def test_a_corrupted_witness_refutes_nothing(tmp_path, name):
         check_arb.verify(json.dumps(data))
 
 
-def test_a_lone_point_is_no_path(tmp_path):
-    text, _ = paper_robot()
-    data = json.loads(certify(text, statements.path([["0", "0"], ["1", "1"]])).text)
-    data["statement"]["points"].append([["0", "-170"]])
+def test_a_witness_stays_in_the_set_that_it_is_of(tmp_path):
+    """A weight for no corner draws the witness towards the origin, here beyond a limit."""
+    limited = paper_robot()[0].replace('name = "q1"', 'name = "q1"\nlimits = [10, 90]')
+    proved = json.loads(certify(limited, statements.path([["20", "0"], ["30", "0"]])).text)
+    assert status(tmp_path, proved) == 0
+    witness = {"verdict": "refuted", "cell": 0, "boundary": "q1.lower"}
+    false = proved | witness | {"weights": ["0", "0", "1"]}
+    assert status(tmp_path, false) == 2
+    with pytest.raises(ValueError, match="is longer than"):
+        check_arb.verify(json.dumps(false))
+
+
+SETS = {
+    "a lone point of a path": (
+        statements.path([["0", "0"], ["1", "1"]]),
+        lambda loops: [*loops, [["0", "-170"]]],
+    ),
+    "a box of two boxes": (
+        statements.box(["0", "0"], ["1", "1"]),
+        lambda loops: [*loops, [["0", "-170"], ["1", "-169"]]],
+    ),
+    "a box of three corners": (
+        statements.box(["0", "0"], ["1", "1"]),
+        lambda loops: [[*loops[0], ["0", "-170"]]],
+    ),
+    "a corner of a box with a value too many": (
+        statements.box(["0", "0"], ["1", "1"]),
+        lambda loops: [[loops[0][0], [*loops[0][1], "-170"]]],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_what_no_cell_covers_is_no_part_of_a_proved_set(tmp_path, name):
+    statement, change = SETS[name]
+    data = json.loads(certify(paper_robot()[0], statement).text)
+    assert status(tmp_path, data) == 0
+    data["statement"]["points"] = change(data["statement"]["points"])
     assert status(tmp_path, data) == 2
+    with pytest.raises(ValueError, match=r"point|unpack|zip|joint"):
+        check_arb.verify(json.dumps(data))
+
+
+@pytest.mark.parametrize("decimal", ["1.5 ", " 1.5", "1.5\n", "１", "", "nan", True, 1.5])
+def test_both_checkers_read_a_decimal_or_refuse_it(decimal):
+    """A blank after the digits once made 0.15 of 1.5 in Arb."""
+    for read in (check.number, check_arb._exact):
+        with pytest.raises(ValueError, match=r"decimal|invalid literal"):
+            read(decimal)
 
 
 # --- hostile files --------------------------------------------------------------------------------
@@ -314,7 +383,7 @@ HOSTILE = {
     "a long integer": lambda: (
         json.dumps(content())
         .replace('"cell"', "0")
-        .replace("[5, 0, 1]", "[" + "9" * 100_000 + ", 0, 1]")
+        .replace('"triangles": [[', '"triangles": [[' + "9" * 100_000)
     ),
     "a long decimal": lambda: json.dumps(content()).replace("-159.", "-159." + "1" * 100_000),
     "a huge exponent in the robot": lambda: json.dumps(

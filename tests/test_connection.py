@@ -14,7 +14,7 @@ from qbound.cli import main
 from qbound.proofs.connection import connection, outer_groups, separated, wall
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
-from qbound.region.region import solve
+from qbound.region import solve
 from support.exact import stated
 from support.forms import RR
 from support.robots import random_robot

@@ -10,7 +10,7 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
-from qbound.proofs.balls import precision, values
+from qbound.proofs.balls import precision
 from qbound.proofs.dyadic import Cells, Room
 from support.forms import random_form
 
@@ -42,9 +42,9 @@ def test_bounds_hold_at_corners_and_inside(seed, joints, level):
             weights = rng.uniform(0, 1, (10, joints))
             for weights in rng.uniform(0, 1, (10, joints)):
                 point = [a + (c - a) * w for (a, _, c), w in zip(ends, weights, strict=True)]
-                assert within(below[k], values(room.forms, point), above[k])
+                assert within(below[k], room.forms(point), above[k])
             for point in product(*ends):
-                assert within(below[k], values(room.forms, point), above[k])
+                assert within(below[k], room.forms(point), above[k])
 
 
 def within(low, balls, high) -> bool:

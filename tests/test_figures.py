@@ -1,25 +1,35 @@
 """Figures: the data of what is drawn, degrees, labels, and the same SVG on every run."""
 
+import html
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from io import BytesIO
+from xml.etree import ElementTree
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import figures, find_region, load_robot
+from qbound.figures.pictures import Chart, pose_picture, traversal_picture, workspace_picture
+from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
 from qbound.region.paper_rule import vertices
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
 from support.oracles import packaged_table, point_seen_from
 from support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
+KINDS = ("joint", "point", "boundary")
 SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
 
 
@@ -173,6 +183,62 @@ def luminance(colour: str) -> float:
 def test_colours_stand_out_on_white(colour) -> None:
     """Three to one, as for graphics in WCAG 2."""
     assert 1.05 / (luminance(colour) + 0.05) > 3
+
+
+NAMES = [
+    "joint_1", "a_1", "_rest", "x^2", "50%", "q#1", "a{b", "a}b", "back\\slash", "$", "$x$",
+    r"\$x\$", "upper arm", "theta1", "a&<b>", "~", "ends in \\", "Gelenk ä",
+]  # fmt: skip
+
+
+def texts_in(svg: bytes) -> set[str]:
+    """Each text of a picture, as matplotlib notes it above the outlines of its letters."""
+    ElementTree.fromstring(svg)
+    return {html.unescape(note) for note in re.findall(r"<!-- (.*?) -->", svg.decode(), re.DOTALL)}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_is_drawn_letter_by_letter(name) -> None:
+    figure = Figure()
+    figure.text(0, 0, figures.as_text(name))
+    picture = BytesIO()
+    figure.savefig(picture, format="svg")
+    assert name in texts_in(picture.getvalue())
+    beside_a_formula = MathTextParser("path").parse(f"$q_{{1}}$ {figures.as_text(name)}").glyphs
+    assert "".join(chr(glyph[2]) for glyph in beside_a_formula) == f"q1 {name}"
+
+
+@pytest.mark.parametrize("name", ["joint_1", "_a{b", r"$x^2$ 50% \$"])
+def test_every_picture_draws_the_names_of_the_file_as_they_are(name) -> None:
+    table = packaged_table()
+    old = {row["name"]: f"{name} {row['name']}" for kind in KINDS for row in table[kind]}
+    for row in (row for kind in KINDS for row in table[kind]):
+        row["name"] = old[row["name"]]
+        if "points" in row:
+            row["points"] = [old[point] for point in row["points"]]
+        if "point" in row:
+            row["point"] = old[row["point"]]
+    table |= {"home": {joint["name"]: 0.0 for joint in table["joint"]}, "tool": old[table["tool"]]}
+    robot = parse_robot(table)
+    region, (first, second) = find_region(robot), (joint.name for joint in robot.joints)
+    chart, walk = Chart(region, (0, 1)), traverse(robot, SIX[:2])
+    seen = {f"{first} / °", f"{second} / °", old["B7"]}
+    assert seen <= texts_in(traversal_picture(robot, chart, walk, ["1", "2"]))
+    seen |= {f"{first} = 0°, {second} = 0°"}
+    assert seen <= texts_in(pose_picture(robot, robot.home, chart))
+    workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
+    loops = (loop for aspect in workspace.aspects for loop in aspect.region.loops)
+    bounds = {arc.boundary for loop in loops for arc in loop}
+    assert {old["B7"], "det J"} <= bounds <= texts_in(workspace_picture(workspace, "cm"))
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [("q1", "$q_{1}$"), ("q12", "$q_{12}$"), ("d", "$d$"), ("θ2", "$θ_{2}$"), ("7", "7"),
+     ("lift", "lift"), ("joint1", "joint1"), ("q_1", "q_1"), ("$5", r"\$5"), ("a\nb", r"a\nb")],
+)  # fmt: skip
+def test_a_letter_with_a_number_is_a_symbol_and_all_else_is_text(name, label) -> None:
+    assert figures.symbol(name) == label
 
 
 DRAW = """

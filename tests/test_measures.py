@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.measures.nearest import along, moments, nearest_boundary, vertex_centroid
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, solve
+from qbound.region import Problem, Region, paper_rule, solve
 from support.forms import LIMITS
 from support.regions import inside_limits, plate
 from support.robots import random_robot
@@ -140,9 +139,9 @@ def test_fractions_of_random_configurations_are_the_areas(seed):
     counts = np.zeros(len(region.components))
     for q in rng.uniform(*ends.T, size=(n, 2)):
         free = bool((region.problem.forms(q) > 0).all())
-        where = region.holding(q)
+        where = region.component_of(q)
         assert (where is not None) == free
-        assert region.holding(copies(q, region.problem, rng)) == where
+        assert region.component_of(copies(q, region.problem, rng)) == where
         if where is not None:
             counts[where] += 1
     share = np.array([c.area for c in region.components]) / np.prod(ends[:, 1] - ends[:, 0])
@@ -160,20 +159,21 @@ def test_a_step_from_an_arc_into_the_region_is_in_its_component(seed):
             inside = q + 1e-4 * left
             nearest = nearest_boundary(region, inside)
             if nearest.distance > 0.9e-4:  # nothing else passes within the step
-                assert region.holding(inside) == i
+                assert region.component_of(inside) == i
 
 
-def test_a_configuration_on_the_boundary_is_in_no_component():
+def test_a_configuration_on_the_boundary_belongs_to_its_component():
     region = solve(plate(), [0, 0])
-    assert region.holding([0, 0]) == 0
-    assert region.holding([5.0, 0]) is None
-    assert region.holding([6.0, 0]) is None
+    assert region.component_of([0, 0]) == 0
+    assert region.component_of([5.0, 0]) == 0
+    assert region.component_of([5.0 + 1e-9, 0]) is None
+    assert region.component_of([6.0, 0]) is None
 
 
 def test_a_free_torus_is_one_component():
     forms = HarmonicForm(np.zeros((0, 3, 3)), ("revolute", "revolute"))
     region = solve(Problem(forms, (), (None, None), LIMITS), [0, 0])
-    assert region.holding([17.0, -40.0]) == 0
+    assert region.component_of([17.0, -40.0]) == 0
     with pytest.raises(ValueError, match="no boundary"):
         nearest_boundary(region, [0, 0])
 
@@ -211,7 +211,7 @@ def test_within_the_distance_all_is_free_and_at_it_is_the_boundary(seed):
     rim = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     for q in rng.uniform(*ends.T, size=(3, 2)):
         w = rng.uniform(0.3, 3, size=2)
-        where = region.holding(q)
+        where = region.component_of(q)
         if where is None or not any(c.loops for c in region.components):
             continue
         found = nearest_boundary(region, q, where, w)

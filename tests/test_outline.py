@@ -10,10 +10,9 @@ from numpy.testing import assert_allclose
 from shapely.geometry import Point, Polygon
 
 from qbound import find_region, load_robot
-from qbound.export.polygons import area, from_lowest, polygons
+from qbound.export.polygons import area, polygons
 from qbound.model.robotfile import parse_robot
-from qbound.region import paper_rule
-from qbound.region.region import solve
+from qbound.region import paper_rule, solve
 
 MINERVA = load_robot("minervabot-v2")
 PILLARS = [
@@ -117,17 +116,15 @@ def test_areas_of_cut_polygons_are_those_of_the_region(x, y, clearance) -> None:
 
 
 def test_vertices_of_the_papers_rule_bear_the_papers_numbers() -> None:
-    (component,) = solve(paper_rule.problem(MINERVA), MINERVA.home).components
-    numbered = from_lowest(component)
+    (numbered,) = solve(paper_rule.problem(MINERVA), MINERVA.home).components
     expected = [vertex.q for vertex in paper_rule.vertices(MINERVA)]
     assert_allclose([vertex.q for vertex in numbered.vertices], expected, atol=1e-12)
     starts = [arc.points[0] for arc in numbered.loops[0]]
     assert_allclose(starts, expected, atol=1e-9)
 
 
-def test_renumbering_keeps_every_walk_closed() -> None:
-    for component in find_region(MINERVA).components:
-        numbered = from_lowest(component)
+def test_a_loop_begins_at_its_lowest_vertex_and_closes() -> None:
+    for numbered in find_region(MINERVA).components:
         for loop in numbered.loops:
             for before, arc in zip([loop[-1], *loop[:-1]], loop, strict=True):
                 assert_allclose(before.points[-1], arc.points[0], atol=1e-6)

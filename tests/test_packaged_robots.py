@@ -13,7 +13,7 @@ from skimage.measure import label
 
 from qbound import find_region, load_robot, packaged_robots
 from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.region.region import margins, violated
+from qbound.region import margins, violated
 from support.oracles import frame_matrix, row_of
 from support.regions import check_arcs, check_grid, check_roles
 
@@ -80,7 +80,7 @@ def test_home_is_safe_and_in_the_first_component(name):
     region = find_region(robot)
     assert violated(robot, robot.home) == []
     assert region.components[0].contains_home
-    assert region.holding(robot.home) == 0
+    assert region.component_of(robot.home) == 0
 
 
 @robots
@@ -113,7 +113,7 @@ def test_components_are_the_flood_fill_of_scikit_image(name):
         pixels = q[free & (patches == patch)]
         if len(pixels) > 200:
             chosen = rng.choice(len(pixels), 8, replace=False)
-            components[int(patch)] = {region.holding(pixels[i]) for i in chosen}
+            components[int(patch)] = {region.component_of(pixels[i]) for i in chosen}
     large = [i for i, c in enumerate(region.components) if c.area > 300 * step.prod()]
     assert sorted(components.values(), key=str) == sorted(({i} for i in large), key=str)
 

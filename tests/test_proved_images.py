@@ -13,8 +13,7 @@ from qbound.model.robot import Joint, Point, Robot
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_images import jacobian_determinant, proved_images
-from qbound.region import paper_rule
-from qbound.region.region import clearance_problem
+from qbound.region import clearance_problem, paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
 

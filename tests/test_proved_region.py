@@ -13,8 +13,7 @@ from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import Unproved, prove_region
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, solve
+from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS
 from support.robots import random_robot

@@ -16,8 +16,7 @@ from qbound import load_robot
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
-from qbound.region import paper_rule
-from qbound.region.region import Problem, Region, find_region, solve, violated
+from qbound.region import Problem, Region, find_region, paper_rule, solve, violated
 from support.forms import LIMITS, PP, RR, TURN, forms
 from support.oracles import circle_zeros, equation_29
 from support.regions import (
@@ -253,11 +252,11 @@ def test_home_outside_belongs_to_no_component():
     assert len(region.components) == 1
 
 
-def test_home_at_a_touching_point_belongs_to_no_component():
+def test_home_at_a_touching_point_belongs_to_both_components():
     saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
     region = solve(saddle, (0, 0))
-    assert region.home is None
-    assert len(region.components) == 2
+    assert [component.contains_home for component in region.components] == [True, True]
+    assert region.home is region.components[0]
 
 
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])

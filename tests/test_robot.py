@@ -1,5 +1,10 @@
 """A robot as data: forward kinematics against 4 x 4 matrices, labels for the printed formulas."""
 
+import math
+import re
+import tomllib
+from dataclasses import replace
+from fractions import Fraction
 from math import radians
 
 import numpy as np
@@ -7,10 +12,10 @@ import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
-from qbound import load_robot
+from qbound import load_robot, packaged_robots
 from qbound.boundary.functions import position
 from qbound.model.robot import joint_symbols, with_symbols
 from qbound.model.robotfile import parse_robot
@@ -23,6 +28,7 @@ from support.oracles import (
     point_seen_from,
     robot_tables,
 )
+from support.robot_files import robot_file
 
 MINERVA = load_robot("minervabot-v2")
 
@@ -182,3 +188,84 @@ def test_degrees_of_a_file_are_radians_of_a_robot() -> None:
     table = packaged_table()
     table["home"] = {"q1": 90.0, "q2": -45.0}
     assert_allclose(parse_robot(table).home, [radians(90), radians(-45)])
+
+
+# --- public doors: values that no joint can have, joints by index or by name ---------------------
+
+
+@pytest.mark.parametrize(
+    ("q", "says"),
+    [
+        ([math.nan, 0.0], "joint 'q1' is nan, not a finite number"),
+        ([[0.0, 0.0], [0.0, -math.inf]], "joint 'q2' is -inf in configuration [1], not a finite"),
+        ([None, 0.0], "joint 'q1' is nan"),
+        (["0.3", "0"], "['0.3', '0'] is no array of numbers; wanted: values of q1, q2"),
+        ([True, False], "[True, False] is no array of numbers"),
+        ([10**400, 0], "is no array of numbers"),
+        ([[0.0, 0.0], [0.0]], "is no array of numbers"),
+        ([1j, 0], "is no array of numbers"),
+        (0.3, "expected 2 joint values on the last axis, found a bare number"),
+        ([[0.0], [0.0]], "expected 2 joint values on the last axis, found 1"),
+    ],
+)
+def test_what_is_no_configuration_is_refused_at_every_door(q, says) -> None:
+    for door in (MINERVA.configuration, MINERVA.frames, lambda q: MINERVA.with_held(q, {})):
+        with pytest.raises(ValueError, match=re.escape(says)) as error:
+            door(q)
+        assert str(error.value).isprintable()
+
+
+def test_symbols_are_joint_values_of_frames_alone() -> None:
+    q = joint_symbols(MINERVA)
+    assert MINERVA.frames(q).position("0", "2", "0")[0].has(q[0])
+    with pytest.raises(ValueError, match="is no array of numbers"):
+        MINERVA.configuration(q)
+
+
+def test_fractions_and_whole_numbers_are_joint_values() -> None:
+    assert_array_equal(MINERVA.configuration([Fraction(1, 2), 1]), [0.5, 1.0])
+    assert MINERVA.configuration(np.zeros((0, 2))).shape == (0, 2)
+
+
+def test_held_joints_are_given_by_index_or_by_name() -> None:
+    robot = parse_robot(tomllib.loads(robot_file(5, joints=3)))
+    names = [joint.name for joint in robot.joints]
+    by_name = robot.held_indices({names[2]: 1, names[0]: 0.5})
+    assert by_name == robot.held_indices({0: 0.5, 2: 1}) == {0: 0.5, 2: 1.0}
+    assert list(by_name) == [0, 2]
+    assert robot.held_indices({np.int64(2): np.float64(1), names[0]: 0.5}) == by_name
+    assert robot.free({names[1]: 0.0}) == robot.free([1]) == [0, 2]
+    assert_array_equal(robot.with_held([[0.1, 0.2]], {names[1]: 3}), [[0.1, 3, 0.2]])
+
+
+@pytest.mark.parametrize(
+    ("held", "says"),
+    [
+        ({2: 0.0}, "no joint 2; there are 0 (q1), 1 (q2)"),
+        ({-1: 0.0}, "no joint -1; there are 0 (q1), 1 (q2)"),
+        ({"wrist": 0.0}, "no joint 'wrist'; there are 0 (q1), 1 (q2)"),
+        ({True: 0.0}, "no joint True"),
+        ({1.0: 0.0}, "no joint 1.0"),
+        ({None: 0.0}, "no joint None"),
+        ({0: 0.0, "q1": 0.0}, "joint 'q1' is held twice, by its index and by its name"),
+        ({"q2": math.nan}, "joint 'q2' is nan, not a finite number"),
+        ({1: math.inf}, "joint 'q2' is inf, not a finite number"),
+        ({1: "0.3"}, "['0.3'] is no array of numbers; wanted: values of q2"),
+        ({1: None}, "joint 'q2' is nan"),
+        ({1: [0.1, 0.2]}, "expected 1 joint value on the last axis, found 2"),
+    ],
+)
+def test_a_joint_that_cannot_be_held_so_is_named(held, says) -> None:
+    for door in (MINERVA.held_indices, lambda held: MINERVA.with_held(np.zeros(1), held)):
+        with pytest.raises(ValueError, match=re.escape(says)):
+            door(held)
+
+
+def test_a_robot_shows_itself_on_one_line() -> None:
+    assert repr(MINERVA) == "<Robot MinervaBotV2: q1 (revolute), q2 (revolute); 7 boundaries>"
+    for name in packaged_robots():
+        assert len(repr(load_robot(name))) <= 140
+    odd = replace(MINERVA, name="two\nlines" * 99, boundaries=MINERVA.boundaries[:1])
+    assert repr(odd).isprintable()
+    assert len(repr(odd)) <= 140
+    assert repr(odd).endswith("; 1 boundary>")

@@ -10,8 +10,7 @@ from shapely import Polygon
 from qbound import find_region, load_robot
 from qbound.geometry import polygon
 from qbound.measures.star import exact_scale, inner_polygon
-from qbound.region import paper_rule
-from qbound.region.region import solve
+from qbound.region import paper_rule, solve
 from support.regions import plate
 
 MINERVA = load_robot("minervabot-v2")

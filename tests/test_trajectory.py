@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicHermiteSpline
 
 from qbound import find_region, load_robot
-from qbound.export.polygons import from_lowest
 from qbound.model.robotfile import parse_robot
 from qbound.paths.trajectory import (
     joint_speeds,
@@ -32,7 +31,7 @@ SPEEDS = st.tuples(st.floats(0.1, 10), st.floats(0.1, 10))
 
 
 def along_the_boundary():
-    component = from_lowest(find_region(MINERVA).components[0])
+    component = find_region(MINERVA).components[0]
     return follow(MINERVA, [Leg(a.at, parts=len(a.pieces.roots)) for a in component.loops[0]], 0.01)
 
 

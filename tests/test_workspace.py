@@ -16,8 +16,7 @@ from shapely import LineString, Polygon, unary_union
 
 from qbound import load_robot
 from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import paper_rule
-from qbound.region.region import Problem, clearance_problem
+from qbound.region import Problem, clearance_problem, paper_rule
 from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
 from qbound.workspace.passage import find_passage

@@ -4,19 +4,20 @@ A companion to J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383. A robot file b
 the robot gives boundary functions, and these are harmonic forms.
 """
 
-from importlib.metadata import version
-
 from qbound.boundary.functions import clearance, components, pair_vector
 from qbound.forms.circle import circle_arc, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-from qbound.region.region import find_region
+from qbound.region import Region, find_region
+from qbound.version import __version__
 
 __all__ = [
     "HarmonicForm",
+    "Region",
     "Robot",
     "RobotFileError",
+    "__version__",
     "circle_arc",
     "circle_roots",
     "clearance",
@@ -27,4 +28,3 @@ __all__ = [
     "pair_vector",
     "save_robot",
 ]
-__version__ = version("qbound")

@@ -16,10 +16,8 @@ from operator import add, mul, sub
 
 BITS, MAX_FILE, MAX_WORK, MAX_JOINTS, MAX_DEPTH = 128, 2_000_000, 1_000_000, 6, 120
 DECIMAL = r"[+-]?\d[\d_]{0,40}(\.\d[\d_]{0,40})?([eE][+-]?\d{1,2})?"
-
 def demand(condition, text):
     if not condition: raise ValueError(text)
-
 def number(value) -> Fraction:
     text = str(value) if type(value) is int and abs(value) < 10**30 else value
     demand(type(text) is str and re.fullmatch(DECIMAL, text, re.ASCII), "not a decimal number")
@@ -40,7 +38,6 @@ def ball(x):
     return Ball(m, 0, int(rest != 0))
 ZERO, ONE, HALF, I = Ball(0), Ball(1 << BITS), Ball(1 << BITS - 1), Ball(0, 1 << BITS)
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
-
 def exp_i(angle):
     """Taylor's series: fewer than 2^8 terms, each cut by a unit that later ones raise to < e^32."""
     demand(abs(angle).x < 32 << BITS, "an angle of more than five turns")
@@ -143,19 +140,19 @@ def read_cells(statement) -> list:  # of simplices, each a list of corners
     demand(kind in ("path", "box", "polygon") and min(map(len, loops)) > 1, "an unknown set")
     if kind == "path": return [list(ends) for loop in loops for ends in pairwise(loop)]
     if kind == "box":  # cut once for each order in which low ends may turn into high ones
-        orders = permutations(j for j, (x, y) in enumerate(zip(*points)) if x != y)
+        orders = permutations(j for j, (x, y) in enumerate(zip(*points, strict=True)) if x != y)
         ups = [[order[:k] for k in range(len(order) + 1)] for order in orders]
         return [[tuple(x[j in up] for j, x in enumerate(zip(*points))) for up in o] for o in ups]
     free = [j for j, values in enumerate(zip(*points)) if len({*values}) > 1]
     cells = [[points[i] for i in triangle] for triangle in statement["triangles"]]
     edges = collections.Counter(edge for loop in loops for edge in pairwise([*loop, loop[0]]))
+    demand(all((b, a) not in edges for a, b in edges), "a loop goes back along itself")
     for a, b, c in cells:  # anticlockwise, their edges adding up to the loops: they tile the inside
         (x, y), (u, v) = ([p[j] - a[j] for j in free] for p in (b, c))
         demand(x * v > y * u, "a triangle is not anticlockwise")
         edges.subtract([(a, b), (b, c), (c, a)])
     demand(all(n == edges[b, a] for (a, b), n in edges.items()), "the triangles miss the polygon")
     return cells
-
 def unique(pairs):
     demand(len(dict(pairs)) == len(pairs), "a key is there twice")
     return dict(pairs)
@@ -172,9 +169,11 @@ def check(text: str | bytes, pin: str | None = None) -> tuple[bool, str]:
     said = f"robot {robot.name!a}, sha256 {sha256}\n{verdict}: "
     walls = {name: robot.waves(wall, margin) for name, wall in robot.walls.items()}
     if ["proved", "refuted"].index(verdict):
-        name, weights = content["boundary"], [number(x) for x in content["weights"]]
+        name, cell = content["boundary"], cells[content["cell"]]
+        weights = [number(x) for x in content["weights"]]
+        demand(len(weights) == len(cell), "a witness has one weight for each corner of its cell")
         demand(min(weights) >= 0 and sum(weights) == 1, "the weights of no configuration")
-        q = [sum(map(mul, x, weights)) for x in zip(*cells[content["cell"]], strict=True)]
+        q = [sum(map(mul, x, weights)) for x in zip(*cell, strict=True)]
         [value] = robot.bounds(walls[name][1], [q]) if name in walls else [ZERO]
         demand(name in robot.beyond(q) or value.x + value.r < 0, "the witness violates nothing")
         return True, f"{said}{name!a} is violated at {[float(x) for x in q]}"
@@ -190,6 +189,7 @@ def main(arguments: list[str]) -> int:
     try:
         with pathlib.Path(arguments[0]).open("rb") as file: text = file.read(MAX_FILE + 1)
         demand(len(text) <= MAX_FILE, f"more than {MAX_FILE} bytes")
+        demand("" not in arguments[1:] and arguments[-1] != "--sha256", "a pin without a value")
         pin = arguments[2:] if "--sha256" in arguments else [
             digest(pathlib.Path(file).read_text("utf-8-sig")) for file in arguments[1:]]
         status, said = check(text, *pin)

@@ -9,9 +9,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
+from qbound.region import Problem, Region
 from qbound.region.cells import Complex
 from qbound.region.decomposition import Plane, decompose
-from qbound.region.region import Problem, Region
 from support.forms import Piece, Ranges
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))

@@ -7,6 +7,7 @@ symbols: the formulas of the paper are derived here, never typed.
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import HalfSpace, Joint, Pair, Point, Robot
+from qbound.tolerances import ZERO_AMPLITUDE
 
 Array = NDArray[Any]
 
@@ -94,6 +96,20 @@ def clearance(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
     return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
 
 
+def moving_joints(robot: Robot, boundary: Pair | HalfSpace) -> tuple[int, ...]:
+    """Return the joints that change a boundary's clearance; none: it holds everywhere or nowhere.
+
+    A coefficient that is rounding beside the robot's reach is no motion: a turn about an oblique
+    axis leaves 1e-16 where exact numbers leave nothing.
+    """
+    form, reach = clearance(robot, boundary), robot.reach
+    slide = np.array([1.0, reach, reach**2])
+    powers = [np.ones(3) if kind == "revolute" else slide for kind in robot.kinds]
+    sizes = np.abs(form.coefficients) * reduce(_outer, powers)
+    rounding = ZERO_AMPLITUDE * (reach**2 if isinstance(boundary, Pair) else reach)
+    return HarmonicForm(np.where(sizes > rounding, sizes, 0), robot.kinds).joints()
+
+
 def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
     """Return the joint value at which a pair's points come closest, and their distance there.
 
@@ -111,8 +127,7 @@ def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
     ValueError
         If the distance does not depend on exactly one joint, a revolute one.
     """
-    form = clearance(robot, pair)
-    joints = form.joints()
+    form, joints = clearance(robot, pair), moving_joints(robot, pair)
     if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
         raise ValueError(
             f"{pair.name}: its distance depends on {len(joints)} joints, not on one turn"
@@ -144,6 +159,10 @@ def components(robot: Robot, boundary: Pair | HalfSpace) -> HarmonicForm:
     if isinstance(boundary, Pair):
         return pair_vector(robot, boundary)
     return geometric_vector(robot, boundary)
+
+
+def _outer(left: Array, right: Array) -> Array:
+    return np.multiply.outer(left, right)
 
 
 def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:

@@ -24,6 +24,7 @@ from qbound.cli import (
     traverse,
     workspace,
 )
+from qbound.extras import explained
 
 COMMANDS = (
     region,
@@ -59,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NO_READER
     except (ValueError, OSError, ImportError) as error:
-        print(f"qbound: {error}", file=sys.stderr)
+        print(f"qbound: {explained(error)}", file=sys.stderr)
         return 2
     except MemoryError:
         print("qbound: this asks for more memory than there is", file=sys.stderr)

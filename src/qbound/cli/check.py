@@ -27,10 +27,12 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check; 0 proved, 1 refuted, 2 neither."""
-    if options.robot and options.sha256:
+    if options.robot is not None and options.sha256 is not None:
         raise ValueError("a robot and --sha256: give one of them")
-    pin = ["--sha256", options.sha256] if options.sha256 else []
-    if options.robot:
+    if "" in (options.robot, options.sha256):
+        raise ValueError("an empty robot or hash pins nothing: name the robot or leave it out")
+    pin = [] if options.sha256 is None else ["--sha256", options.sha256]
+    if options.robot is not None:
         pin = ["--sha256", check.digest(robot_text(options.robot)[0])]
     status = check.main([options.certificate, *pin])
     if options.arb and status < 2:

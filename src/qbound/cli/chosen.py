@@ -1,14 +1,11 @@
-"""What several commands choose alike: rule, slice, component; and the region that they mean."""
+"""What several commands choose alike: robot, rule, slice; and the region that they mean."""
 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 
-from qbound.export.polygons import from_lowest
 from qbound.model.robot import Robot
-from qbound.region import paper_rule
-from qbound.region.region import Component, Region, find_region, solve
+from qbound.region import Region, Rule, find_region
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -33,20 +30,8 @@ def add_slice(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def region_by_rule(robot: Robot, rule: str, values: dict[int, float]) -> Region:
-    """Find the region by a rule; loops and vertices begin at the lowest vertex."""
-    if rule == "clearance":
-        region = find_region(robot, values)
-    elif values:
+def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region:
+    """Find the region of the joints that `--slice` leaves, by `--rule`."""
+    if rule == "paper" and values:
         raise ValueError("--slice: the paper's rule knows two joints only")
-    else:
-        region = solve(paper_rule.problem(robot), robot.home)
-    return replace(region, components=tuple(map(from_lowest, region.components)))
-
-
-def component_of(region: Region, k: int) -> Component:
-    """Return a component by its number, from 0 as in the JSON."""
-    count = len(region.components)
-    if not 0 <= k < count:
-        raise ValueError(f"no component {k}; there are {count}, numbered from 0")
-    return region.components[k]
+    return find_region(robot, values, rule)

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from qbound import __version__
 from qbound.cli.chosen import add_robot
-from qbound.cli.values import configuration, json_text, write_text
-from qbound.measures.nearest import BoundaryPoint, nearest_boundary
+from qbound.cli.files import write_text
+from qbound.cli.values import configuration
+from qbound.export.document import configuration_document
+from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
-from qbound.region.region import Region, find_region, margins
 
 
 def add_to(commands: Any) -> None:
@@ -40,7 +40,7 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
-    content = contents(robot, configuration(robot, options.values), options.weights)
+    content = configuration_document(robot, configuration(robot, options.values), options.weights)
     if options.json:
         write_text(options.json, json_text(content))
     if options.json != "-":
@@ -48,58 +48,25 @@ def run(options: argparse.Namespace) -> int:
     return 0 if content["feasible"] else 1
 
 
-def contents(robot: Robot, q: list[float], weights: list[float]) -> dict[str, Any]:
-    """Return what is known of a configuration; with two joints its component and the boundary."""
-    found = sorted(margins(robot, q), key=lambda item: item[1])
-    region = find_region(robot) if len(robot.joints) == 2 else None
-    where = None if region is None else region.holding(q)
-    return {
-        "robot": robot.name,
-        "version": __version__,
-        "q": q,
-        "feasible": all(margin > 0 for _, margin in found)
-        and (region is None or where is not None),
-        "component": where,
-        "components": None if region is None else len(region.components),
-        "contains_home": None
-        if region is None or where is None
-        else region.components[where].contains_home,
-        "margins": [{"boundary": name, "margin": margin} for name, margin in found],
-        "nearest": None if region is None else _nearest(region, q, where, weights),
-    }
-
-
-def _nearest(
-    region: Region, q: list[float], where: int | None, weights: list[float]
-) -> dict[str, Any] | None:
-    if not any(component.loops for component in region.components):
-        return None
-    found: BoundaryPoint = nearest_boundary(region, q, where, weights)
-    return {
-        "q": found.q.tolist(),
-        "boundary": found.boundary,
-        "component": found.component,
-        "distance": found.distance,
-        "weights": weights,
-    }
-
-
 def _say(robot: Robot, content: dict[str, Any]) -> None:
-    violated = [item for item in content["margins"] if item["margin"] <= 0]
+    violated = [item for item in content["margins"] if item["margin"] < 0]
     for item in violated:
         print(f"violated: {item['boundary']}, margin {_amount(robot, item)}")
     if not violated:
         print("feasible" + _component(content))
     for item in content["margins"]:
-        if item["margin"] > 0:
+        if item["margin"] >= 0:
             print(f"  margin {_amount(robot, item)}: {item['boundary']}")
     if content["nearest"]:
         print(_nearest_line(robot, content["nearest"]))
 
 
 def _component(content: dict[str, Any]) -> str:
-    if content["component"] is None:
+    if content["components"] is None:
         return ""
+    if content["component"] is None:
+        touched = [item["boundary"] for item in content["margins"] if item["margin"] == 0]
+        return f", but in no component: it touches {', '.join(touched)}"
     home = "with the home pose" if content["contains_home"] else "without the home pose"
     return f", in component {content['component'] + 1} of {content['components']}, {home}"
 

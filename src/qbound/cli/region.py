@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator
+from functools import cache, partial
 from typing import Any
 
-from qbound import __version__
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.polygons import outlines, polygon_csv, polygon_json, polygon_npz
-from qbound.cli.values import Content, check_targets, held, joint_units, json_text, write_all
-from qbound.model.robot import Robot
+from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.values import held
+from qbound.export.formats import json_text
+from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robotfile import load_robot
-from qbound.region.arcs import Arc
-from qbound.region.region import Component, Region, violated
-from qbound.workspace.areas import NoHomeError, find_workspace
-from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
+from qbound.region import Region
 
 
 def add_to(commands: Any) -> None:
@@ -44,122 +42,46 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find the region; 1 if the home pose is not in it."""
+    """Find the region; 1 if the home pose is in none of its components."""
     robot = load_robot(options.robot)
-    files = [options.svg, options.csv, options.geojson, options.npz, options.json]
-    check_targets([file for file in files if file])
-    values = held(robot, options.slice)
-    region = region_by_rule(robot, options.rule, values)
-    content = region_content(robot, region, options.rule, values)
-    write_all(_outputs(options, robot, region, content, values))
-    if "-" not in files:
-        _say(region, content, joint_units(robot, robot.free(values)))
-    return 0 if content["home"]["feasible"] else 1
+    check_targets([options.svg, options.csv, options.geojson, options.npz, options.json])
+    region = region_by_rule(robot, options.rule, held(robot, options.slice))
+    deliver(_outputs(options, region), _lines(region))
+    return 0 if region.home is not None else 1
 
 
-def _outputs(
-    options: argparse.Namespace,
-    robot: Robot,
-    region: Region,
-    content: dict[str, Any],
-    values: dict[int, float],
-) -> list[tuple[str, Content]]:
-    """Make what was asked for; files in the order in which they are named here."""
-    joints, free = content["joints"], robot.free(values)
-    units, outputs = joint_units(robot, free), list[tuple[str, Content]]()
-    if options.svg:
-        outputs.append((options.svg, _draw(robot, content["home"]["q"], region, free)))
-    if options.csv or options.geojson or options.npz:
-        drawn = outlines(region, options.deviation)
-        if options.csv:
-            outputs.append((options.csv, polygon_csv(drawn, joints, units)))
-        if options.geojson:
-            outputs.append((options.geojson, polygon_json(region, drawn, joints, units)))
-        if options.npz:
-            outputs.append((options.npz, polygon_npz(region, drawn, joints, units)))
-    if options.json:
-        outputs.append((options.json, json_text(content)))
-    return outputs
+def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
+    """Say what makes each file; they are made in this order."""
+    drawn = cache(partial(find_outlines, region, options.deviation))
+    return [
+        (options.svg, lambda: _draw(region)),
+        (options.csv, lambda: outlines_csv(drawn())),
+        (options.geojson, lambda: json_text(outlines_geojson(drawn()), None)),
+        (options.npz, lambda: outlines_npz(drawn())),
+        (options.json, lambda: json_text(region.to_dict())),
+    ]
 
 
-def region_content(
-    robot: Robot, region: Region, rule: str, values: dict[int, float]
-) -> dict[str, Any]:
-    """Return the JSON form of a region, schema qbound/region/1."""
-    free = robot.free(values)
-    q = robot.with_held(robot.home[free], values)
-    found = violated(robot, q)
-    feasible = region.home is not None if rule == "paper" else not found
-    return {
-        "schema": "qbound/region/1",
-        "robot": robot.name,
-        "version": __version__,
-        "rule": rule,
-        "joints": [robot.joints[j].name for j in free],
-        "home_component": None if region.home is None else 0,
-        "feasible_area": region.area,
-        "home": {
-            "q": q.tolist(),
-            "feasible": feasible,
-            "violated": [{"boundary": name, "margin": margin} for name, margin in found],
-        },
-        "components": [_component_content(component) for component in region.components],
-        **_workspace_content(robot, region, values),
-    }
-
-
-def _workspace_content(robot: Robot, region: Region, values: dict[int, float]) -> dict[str, Any]:
-    """Return the workspace of the home component, or the reason why there is none."""
-    home = robot.home[robot.free(values)]
-    try:
-        found = find_workspace(planar_arm(robot, values), region.problem, home)
-    except (NoPlanarWorkspaceError, NoHomeError) as reason:
-        return {"workspace": None, "workspace_reason": str(reason)}
-    return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
-
-
-def _component_content(component: Component) -> dict[str, Any]:
-    return {
-        "contains_home": component.contains_home,
-        "area": component.area,
-        "centroid": None if component.centroid is None else component.centroid.tolist(),
-        "wraps": list(component.wraps),
-        "vertices": [
-            {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
-            for vertex in component.vertices
-        ],
-        "loops": [loop_content(loop) for loop in component.loops],
-    }
-
-
-def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
-    """Return the JSON form of a closed walk."""
-    return {
-        "arcs": [
-            {
-                "boundary": arc.boundary,
-                "branch": arc.branch,
-                "from": arc.points[0].tolist(),
-                "to": arc.points[-1].tolist(),
-            }
-            for arc in loop
-        ]
-    }
-
-
-def _say(region: Region, content: dict[str, Any], units: Sequence[str]) -> None:
-    unit = f"{units[0]}^2" if units[0] == units[1] else " ".join(units)
-    for violation in content["home"]["violated"]:
-        print(f"home violates {violation['boundary']}, margin {violation['margin']:.6g}")
-    print(f"{len(region.components)} components, area {region.area:.9g} {unit} in all")
+def _lines(region: Region) -> Iterator[str]:
+    unit = region.area_unit
+    home = region.robot.home[list(region.problem.joints)]
+    margins = region.margins(home).tolist()
+    for name, margin in zip(region.boundaries, margins, strict=True):
+        if margin < 0:
+            yield f"home violates {name}, margin {margin:.6g}"
+    if not region.components:
+        yield f"no component: no room is left by {', '.join(region.empty_because)}"
+    elif region.home is None and min(margins) >= 0:
+        touched = [n for n, m in zip(region.boundaries, margins, strict=True) if m == 0]
+        yield f"home is feasible, but in no component: it touches {', '.join(touched)}"
+    yield f"{len(region.components)} components, area {region.area:.9g} {unit} in all"
     for component in region.components:
-        home = ", with the home pose" if component.contains_home else ""
+        home_too = ", with the home pose" if component.contains_home else ""
         vertices = len(component.vertices)
-        print(f"  area {component.area:.9g} {unit}, {vertices} vertices{home}")
+        yield f"  area {component.area:.9g} {unit}, {vertices} vertices{home_too}"
 
 
-def _draw(robot: Robot, q: Sequence[float], region: Region, free: Sequence[int]) -> bytes:
-    from qbound.figures.pictures import Chart, pose_picture
+def _draw(region: Region) -> bytes:
+    from qbound.figures.pictures import region_picture
 
-    numbered = region.components[0] if region.components else None
-    return pose_picture(robot, q, Chart(region, (free[0], free[1]), numbered), None)
+    return region_picture(region)

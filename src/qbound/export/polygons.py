@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
-from qbound.region.arcs import Arc
-from qbound.region.region import Component, Vertex
+from qbound.region import Component
 
 Floats = NDArray[np.float64]
 TURN = 2 * math.pi
@@ -37,27 +36,6 @@ class Piece:
 
     outer: Floats
     holes: tuple[Floats, ...]
-
-
-def from_lowest(component: Component) -> Component:
-    """Let each loop, and the vertices, begin at the lowest vertex: the numbers of Figure 5.
-
-    Lowest is by the last joint, then by the first. A loop that goes round a joint is left alone.
-    """
-    loops: list[tuple[Arc, ...]] = []
-    vertices: list[Vertex] = []
-    first = 0
-    for loop in component.loops:
-        starts = [i for i, arc in enumerate(loop) if loop[i - 1].boundary != arc.boundary]
-        own = component.vertices[first : first + len(starts)]
-        first += len(starts)
-        if starts and not _net_turns(loop).any():
-            k = min(range(len(own)), key=lambda i: tuple(np.round(own[i].q[::-1], 9)))
-            loop = loop[starts[k] :] + loop[: starts[k]]  # noqa: PLW2901
-            own = own[k:] + own[:k]
-        loops.append(loop)
-        vertices += own
-    return replace(component, loops=tuple(loops), vertices=tuple(vertices))
 
 
 def polygons(
@@ -100,11 +78,6 @@ def area(pieces: Sequence[Piece]) -> float:
     """Return the area of polygons with holes; product of the joints' units."""
     rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
     return sum(polygon.area(ring) for ring in rings)
-
-
-def _net_turns(loop: Sequence[Arc]) -> Floats:
-    """Count the turns of each joint from the start of a loop to its end."""
-    return np.asarray(np.round((loop[-1].points[-1] - loop[0].points[0]) / TURN))
 
 
 def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) -> list[Piece]:

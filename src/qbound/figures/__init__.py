@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.export.polygons import polygons
+from qbound.extras import require
 from qbound.measures.bodies import outline
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Region
+from qbound.region import Region
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -58,12 +59,15 @@ STYLE: Final[dict[str, Any]] = {
     "lines.linewidth": 1.8,
     "svg.fonttype": "path",
     "svg.hashsalt": "qbound",
+    "text.usetex": False,
 }
 """The one style of the book; fixed salt and no date give the same SVG bytes on every run."""
 
 
 def use_style() -> None:
     """Set the book's style and, inside Jupyter, SVG figures with the same bytes on every run."""
+    require("matplotlib")
+    require("matplotlib_inline")
     import matplotlib as mpl
     from matplotlib_inline.backend_inline import set_matplotlib_formats
 
@@ -79,8 +83,8 @@ def joint_axes(
     """Label the plane of two joints, degrees, and give both axes one scale."""
     (x0, x1), (y0, y1) = np.degrees(np.asarray(ranges))
     ax.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
-    ax.set_xlabel(f"${tex(robot.joints[0].name)}$ / °")
-    ax.set_ylabel(f"${tex(robot.joints[1].name)}$ / °")
+    ax.set_xlabel(f"{symbol(robot.joints[0].name)} / °")
+    ax.set_ylabel(f"{symbol(robot.joints[1].name)} / °")
     ax.xaxis.set_major_locator(every(x1 - x0))
     ax.yaxis.set_major_locator(every(y1 - y0))
 
@@ -136,7 +140,7 @@ def draw_robot(
         artists += ax.plot(x, z, "o", color=COLLIDING, ms=5, zorder=5)
         left = i % 2 == 0 and len(points) > 1
         shift = (-6, -9) if left else (6, 4)
-        text = ax.annotate(name, (x, z), shift, textcoords="offset points", zorder=6)
+        text = ax.annotate(as_text(name), (x, z), shift, textcoords="offset points", zorder=6)
         text.set_horizontalalignment("right" if left else "left")
         artists.append(_halo(text))
     return artists
@@ -307,6 +311,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
 
     A hyphen before the digits of a plain number becomes a minus sign.
     """
+    require("IPython")
     from IPython.display import Markdown
 
     minus = re.compile(r"^-(?=[\d.]+\D{0,3}$)")
@@ -321,10 +326,17 @@ def bound_label(label: str) -> str:
     return f"$\\{label}$"
 
 
-def tex(name: str) -> str:
-    """Write a name such as ``q1`` as mathtext, its digits below the line."""
-    letters = name.rstrip("0123456789")
-    return f"{letters}_{{{name[len(letters) :]}}}" if letters and letters != name else name
+def symbol(name: str) -> str:
+    """Write a name of a letter and digits, such as ``q1``, as mathtext, all others as text."""
+    if not re.fullmatch("[A-Za-zΑ-Ωα-ω][0-9]*", name):
+        return as_text(name)
+    return f"${name[0]}_{{{name[1:]}}}$" if name[1:] else f"${name}$"
+
+
+def as_text(name: str) -> str:
+    """Write a name of a robot file so that matplotlib draws its letters and reads no formula."""
+    line = name if name.isprintable() else repr(name)[1:-1]
+    return line.replace("$", r"\$")
 
 
 def every(span: float) -> Any:

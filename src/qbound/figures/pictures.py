@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region.region import Component, Region
+from qbound.region import Component, Region
 from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:
@@ -123,13 +124,34 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
     return _picture(1, draw, kind, size=(7, 6))
 
 
+def plot_region(region: Region, ax: Axes | None = None) -> Axes:
+    """Draw a robot's region with home marked, on axes of one's own or those of the moment."""
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.gca()
+    robot, problem = region.robot, region.problem
+    home = robot.home[list(problem.joints)]
+    q = robot.with_held(home, problem.held)
+    numbered = region.components[0] if region.components else None
+    _joint_panel(ax, robot, Chart(region, problem.joints, numbered), q[None])
+    ax.plot(*(home * figures.joint_scales(region)), "P", color=INK, ms=9, mec="white", zorder=7)
+    return ax
+
+
+def region_picture(region: Region, kind: str = "svg") -> bytes:
+    """Return the picture of `plot_region`, the first component's vertices numbered."""
+    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
+
+
 def _picture(
     panels: int,
-    draw: Callable[[Sequence[Axes]], None],
+    draw: Callable[[Sequence[Axes]], object],
     kind: str,
     size: tuple[float, float] = PANEL,
 ) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
+    require("matplotlib")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -157,7 +179,7 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
-                f"{axis}label": f"${figures.tex(joint.name)}$ / {unit}",
+                f"{axis}label": f"{figures.symbol(joint.name)} / {unit}",
             }
         )
     if len({robot.joints[j].kind for j in chart.joints}) == 1:
@@ -191,7 +213,7 @@ def _written(robot: Robot, q: Floats) -> str:
         for joint, value in zip(robot.joints, q, strict=True)
     )
     return ", ".join(
-        f"${figures.tex(joint.name)}$ = {value:.4g}"
+        f"{figures.symbol(joint.name)} = {value:.4g}"
         + ("°" if joint.kind == "revolute" else f" {robot.length_unit}")
         for joint, value in values
     )
@@ -206,6 +228,6 @@ def _wall(ax: Axes, wall: HalfSpace, normal: Floats) -> None:
         if abs(along[0]) > 0.5:  # its name at the right edge
             height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
             ax.annotate(
-                wall.name, (ax.get_xlim()[1], height), (-3, 3), textcoords="offset points",
-                ha="right", color=figures.COLLIDING,
+                figures.as_text(wall.name), (ax.get_xlim()[1], height), (-3, 3),
+                textcoords="offset points", ha="right", color=figures.COLLIDING,
             )  # fmt: skip

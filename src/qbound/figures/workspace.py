@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED
+from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED, as_text
 from qbound.region.arcs import Arc
 from qbound.workspace.areas import SINGULAR, Aspect, Workspace
 
@@ -65,8 +65,10 @@ def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
 
 def legend(ax: Axes, columns: int = 4) -> None:
     """Put a legend with one entry a name under the figure."""
-    handles, labels = ax.get_legend_handles_labels()
-    named = dict(zip(labels, handles, strict=True))
+    # Not get_legend_handles_labels: it leaves out every name that begins with an underscore,
+    # and not only the names that matplotlib gives to what has none.
+    drawn = {str(artist.get_label()): artist for artist in (*ax.patches, *ax.lines)}
+    named = {name: artist for name, artist in drawn.items() if not name.startswith("_child")}
     ax.figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=columns)
 
 
@@ -80,7 +82,7 @@ def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
         colour, dash = looks[arc.boundary]
         path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces.roots)))).T
         width = 2.6 if arc.boundary == SINGULAR else 1.7
-        artists += ax.plot(*path, color=colour, ls=dash, lw=width, label=arc.boundary)
+        artists += ax.plot(*path, color=colour, ls=dash, lw=width, label=as_text(arc.boundary))
     return artists
 
 

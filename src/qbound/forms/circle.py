@@ -126,9 +126,3 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
     empty = (roots.count == 0) & above
     half_width = np.where(roots.count == ALL, np.pi, roots.alpha)
     return CircleArc(roots.theta, half_width, empty)
-
-
-def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
-    """Shift angles by full turns into (centre - pi, centre + pi]."""
-    q, centre = np.asarray(q, dtype=float), np.asarray(centre, dtype=float)
-    return np.asarray(q - 2 * np.pi * np.ceil((q - centre) / (2 * np.pi) - 0.5))

@@ -14,9 +14,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.angles import TURN, nearest_turn
+from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
-from qbound.region.decomposition import TURN
-from qbound.region.region import Component, Problem, Region
 
 Floats = NDArray[np.float64]
 
@@ -213,7 +213,7 @@ def _point_gap(problem: Problem, arc: Arc, q: Floats, w: Floats) -> float:
     """Distance from the nearest of the arc's points, on any turn."""
     rounds = [limits is None for limits in problem.ranges]
     gaps = arc.points - q
-    gaps = np.where(rounds, (gaps + math.pi) % TURN - math.pi, gaps)
+    gaps = np.where(rounds, nearest_turn(gaps, 0), gaps)
     return float(np.hypot(*(w * gaps).T).min())
 
 

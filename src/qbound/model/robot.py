@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.extras import require
 from qbound.model.frames import Frame, Frames, axis_rotation
+from qbound.model.schema import one_line
+from qbound.model.values import joint_values
 from qbound.tolerances import ZERO_AMPLITUDE
 
 if TYPE_CHECKING:
@@ -18,6 +21,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 Kind = Literal["revolute", "prismatic"]
+Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
+"""Values of joints that are held, rad or length, by index or by name."""
+
 Item = TypeVar("Item")
 
 
@@ -107,6 +113,13 @@ class Robot:
     angle_unit: str
     bodies: tuple[Body, ...] = field(default=())
 
+    def __repr__(self) -> str:
+        """Fit a line: name, joints with their kinds, number of boundaries."""
+        count = len(self.boundaries)
+        joints = one_line(", ".join(f"{joint.name} ({joint.kind})" for joint in self.joints))
+        bounds = f"{count} boundar{'y' if count == 1 else 'ies'}"
+        return f"<Robot {one_line(self.name)}: {joints}; {bounds}>"
+
     @property
     def base(self) -> str:
         """Label of the base frame."""
@@ -116,6 +129,16 @@ class Robot:
     def kinds(self) -> tuple[Kind, ...]:
         """Kind of each joint."""
         return tuple(joint.kind for joint in self.joints)
+
+    @property
+    def reach(self) -> float:
+        """Length that no place of the robot's points exceeds, seen from the base."""
+        slides = (
+            max(map(abs, j.limits)) for j in self.joints if j.kind == "prismatic" and j.limits
+        )
+        links = (float(np.linalg.norm(joint.origin)) for joint in self.joints)
+        tips = (float(np.linalg.norm(point.at)) for point in self.points)
+        return sum(links) + sum(slides) + max(tips, default=0.0)
 
     def point(self, name: str) -> Point:
         """Return the point of that name."""
@@ -136,16 +159,73 @@ class Robot:
             raise ValueError(f"no frame {frame!r}; there are {', '.join(frames)}")
         return frames.index(frame)
 
-    def free(self, held: Collection[int]) -> list[int]:
-        """Return the joints that are not held, by index."""
-        return [j for j in range(len(self.joints)) if j not in held]
+    def joint_index(self, joint: int | str) -> int:
+        """Return the index of a joint that is given by its index or its name."""
+        names = [each.name for each in self.joints]
+        places: dict[Any, int] = {name: j for j, name in enumerate(names)}
+        places |= {j: j for j in range(len(names))}
+        if type(joint) in (bool, float) or joint not in places:  # 1.0 == True == 1
+            known = ", ".join(f"{j} ({name})" for j, name in enumerate(names))
+            raise ValueError(f"no joint {joint!r}; there are {known}")
+        return places[joint]
 
-    def with_held(self, q: ArrayLike, held: Mapping[int, float]) -> NDArray[np.float64]:
-        """Put the held joints' values beside those of the free ones, (..., free) to (..., n)."""
-        values = np.asarray(q, dtype=float)
-        full = np.empty((*values.shape[:-1], len(self.joints)))
-        full[..., self.free(held)] = values
-        full[..., list(held)] = list(held.values())
+    def held_indices(self, held: Held) -> dict[int, float]:
+        """Return the values of held joints by the joints' indices, ascending.
+
+        Parameters
+        ----------
+        held : mapping of int or str to float
+            Values by index or by name, rad or length; both in one mapping are allowed.
+
+        Raises
+        ------
+        ValueError
+            If there is no such joint, one is held twice, or a value is no finite number.
+
+        Examples
+        --------
+        >>> from qbound import load_robot
+        >>> load_robot("minervabot-v2").held_indices({"q2": 0.5})
+        {1: 0.5}
+        """
+        found: dict[int, float] = {}
+        for joint, value in held.items():
+            index = self.joint_index(joint)
+            name = self.joints[index].name
+            if index in found:
+                raise ValueError(f"joint {name!r} is held twice, by its index and by its name")
+            found[index] = joint_values([value], [name]).item()
+        return dict(sorted(found.items()))
+
+    def free(self, held: Collection[int] | Collection[str]) -> list[int]:
+        """Return the joints that are not held, by index; `held` has indices or names."""
+        taken = {self.joint_index(joint) for joint in held}
+        return [j for j in range(len(self.joints)) if j not in taken]
+
+    def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Return joint values as floats, shape (..., n), if they are a configuration.
+
+        Raises
+        ------
+        ValueError
+            If the last axis has not one value a joint, or a value is no finite number.
+        """
+        return joint_values(q, [joint.name for joint in self.joints])
+
+    def with_held(self, q: ArrayLike, held: Held) -> NDArray[np.float64]:
+        """Put the held joints' values beside those of the free ones, (..., free) to (..., n).
+
+        Raises
+        ------
+        ValueError
+            As `held_indices` and `configuration` do.
+        """
+        values = self.held_indices(held)
+        free = self.free(values)
+        moving = joint_values(q, [self.joints[j].name for j in free])
+        full = np.empty((*moving.shape[:-1], len(self.joints)))
+        full[..., free] = moving
+        full[..., list(values)] = list(values.values())
         return full
 
     def frames(self, q: ArrayLike) -> Frames:
@@ -159,15 +239,10 @@ class Robot:
         Raises
         ------
         ValueError
-            If the last axis has not one value a joint.
+            If the last axis has not one value a joint, or a number is not finite.
         """
-        values, n = np.asarray(q), len(self.joints)
-        if values.shape[-1:] != (n,):
-            found = values.shape[-1] if values.ndim else "a bare number"
-            raise ValueError(
-                f"expected {n} joint value{'s' * (n != 1)} on the last axis, found {found}"
-            )
-        columns = np.moveaxis(values, -1, 0)
+        names = [joint.name for joint in self.joints]
+        columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
         moved = [_joint_frame(joint, x) for joint, x in zip(self.joints, columns, strict=True)]
         fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
         return Frames(self.base, [*moved, *fixed])
@@ -175,6 +250,7 @@ class Robot:
 
 def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:
     r"""Return a real SymPy symbol for each joint: :math:`q_1, q_2, \ldots`."""
+    require("sympy")
     import sympy
 
     return tuple(sympy.Symbol(_subscripted(joint.name), real=True) for joint in robot.joints)
@@ -193,6 +269,7 @@ def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
     dict
         The value of each symbol, in the robot's length unit.
     """
+    require("sympy")
     values: dict[sympy.Symbol, float] = {}
     joints = tuple(
         replace(j, origin=_labelled(j.parent, j.frame, j.origin, values)) for j in robot.joints

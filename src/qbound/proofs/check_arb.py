@@ -12,9 +12,11 @@ import itertools
 import json
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
+
+from qbound.extras import require
+from qbound.proofs.verdict import Verdict
 
 BITS = 160
 """Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
@@ -31,8 +33,8 @@ class Wave:
     powers: tuple[int, ...]
 
 
-def verify(text: str) -> str:
-    """Return "proved" or "refuted".
+def verify(text: str) -> Verdict:
+    """Return what a certificate proves: that its statement is true, or that it is not.
 
     Parameters
     ----------
@@ -43,16 +45,13 @@ def verify(text: str) -> str:
     ------
     ValueError
         If it does not prove what it says.
-    ImportError
+    ModuleNotFoundError
         Without python-flint (the extra `proofs`).
     """
-    try:
-        import flint
-    except ImportError as error:
-        raise ImportError(
-            "python-flint is missing: install qbound with the extra 'proofs'"
-        ) from error
-    with _precision(flint.ctx):
+    require("flint")
+    from flint import ctx
+
+    with ctx.workprec(BITS):
         content = json.loads(text)
         robot = tomllib.loads(content["robot"], parse_float=str)
         if hashlib.sha256(content["robot"].encode()).hexdigest() != content["sha256"]:
@@ -62,23 +61,14 @@ def verify(text: str) -> str:
         if _exact(content["statement"]["margin"]) < 0:
             raise ValueError("a negative margin")
         cells = _cells(content["statement"])
-        if content["verdict"] == "refuted":
+        verdict = Verdict(content["verdict"])
+        if verdict is Verdict.REFUTED:
             _refute(robot, content, cells)
-        elif content["verdict"] == "proved" and cells:
+        elif verdict is Verdict.PROVED and cells:
             _prove(robot, content, cells)
         else:
             raise ValueError("it says nothing")
-    return str(content["verdict"])
-
-
-@contextmanager
-def _precision(context: Any) -> Iterator[None]:
-    """Set the precision, which is the whole process's, and set it back."""
-    before, context.prec = context.prec, BITS
-    try:
-        yield
-    finally:
-        context.prec = before
+    return verdict
 
 
 def _prove(robot: Table, content: Table, cells: Sequence[Any]) -> None:
@@ -117,7 +107,7 @@ def _exact(decimal: Any) -> Any:
     """Read a decimal as a fraction."""
     from flint import fmpq
 
-    if not isinstance(decimal, str | int):
+    if not isinstance(decimal, str | int) or set(str(decimal)) - set("+-.0123456789_eE"):
         raise ValueError(f"{decimal}: wanted a decimal as text")
     digits, _, exponent = str(decimal).lower().replace("_", "").partition("e")
     whole, _, decimals = digits.partition(".")
@@ -251,10 +241,13 @@ def _waves(robot: Table, wall: Table, content: Table) -> list[Wave]:
 def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
     """Return the simplices of the set."""
     loops = [[tuple(_exact(x) for x in point) for point in loop] for loop in statement["points"]]
+    if min(map(len, loops)) < 2:
+        raise ValueError("a lone point")
     if statement["set"] == "path":
         return [[a, b] for loop in loops for a, b in itertools.pairwise(loop)]
     if statement["set"] == "box":
-        return _orders(*loops[0])
+        [[low, high]] = loops
+        return _orders(low, high)
     if statement["set"] != "polygon":
         raise ValueError("an unknown set")
     points = list(itertools.chain.from_iterable(loops))
@@ -263,6 +256,8 @@ def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
     for loop in loops:
         for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
             ring[a, b] = ring.get((a, b), 0) + 1
+    if any((b, a) in ring for a, b in ring):
+        raise ValueError("a loop goes back along itself")
     for triangle in statement["triangles"]:
         a, b, c = (points[i] for i in triangle)
         (x, y), (u, v) = ([p[j] - a[j] for j in flat] for p in (b, c))
@@ -277,7 +272,7 @@ def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
 
 def _orders(low: tuple[Any, ...], high: tuple[Any, ...]) -> list[list[tuple[Any, ...]]]:
     """Cut a box into the simplices along which its joints rise one after the other."""
-    wide = [j for j in range(len(low)) if low[j] != high[j]]
+    wide = [j for j, (a, b) in enumerate(zip(low, high, strict=True)) if a != b]
     cells = []
     for order in itertools.permutations(wide):
         corner, cell = list(low), [low]

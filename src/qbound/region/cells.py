@@ -9,7 +9,7 @@ upper root.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Final, Literal, NamedTuple
@@ -17,11 +17,12 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.region.decomposition import TURN, Cell, Decomposition, Plane, Root
+from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
+from qbound.region.decomposition import Cell, Decomposition, Plane, Root
 from qbound.tolerances import POSITIVE, SAME_POINT, TOUCH
 
 Floats = NDArray[np.float64]
-
+Ints = NDArray[np.int64]
 
 SIDES: Final = ("lower", "upper")
 
@@ -42,6 +43,23 @@ class Step(NamedTuple):
     cell: int
     line: int = -1
     element: int = -1
+
+
+class Placed(NamedTuple):
+    """A cell that holds a configuration, or nearly.
+
+    Attributes
+    ----------
+    cell : int
+    place : ndarray, shape (2,)
+        Base and lift value in the cell's own turns.
+    off : ndarray, shape (2,)
+        From there to the cell's closure; zero inside.
+    """
+
+    cell: int
+    place: Floats
+    off: Floats
 
 
 @dataclass(eq=False)
@@ -106,26 +124,46 @@ class Complex:
         slabs = np.array([self.cells[k].slab for k in chosen], dtype=np.int64)
         return np.stack([self.abscissae[slabs], self.abscissae[slabs + 1]], axis=-1)
 
-    def holding(self, place: Floats) -> tuple[int, Floats] | None:
-        """Return the cell that holds base and lift values, where every form must be positive.
+    def placed(self, place: Floats) -> list[Placed]:
+        """Return the cells within reach of base and lift values, those that hold them first.
 
-        Returns
-        -------
-        tuple of int and ndarray, shape (2,), or None
-            The cell, and the place in the cell's own turns; None beyond the ranges.
+        Reach is `TOUCH` in the units of base and lift.
         """
         t, v = place
-        if self.wrapped:
-            t = t - TURN * math.floor((t - self.plane.ends[0]) / TURN)
+        bases = [float(t)]
+        if self.wrapped:  # beyond the cut of the circle, too
+            t = float(first_from(self.plane.ends[0], t))
+            bases = [t, t - TURN, t + TURN]
+        found = [one for t in bases for one in self._placed(t, float(v))]
+        return sorted(found, key=lambda one: float(np.abs(one.off).max()))
+
+    def _placed(self, t: float, v: float) -> list[Placed]:
+        units = np.array([self.plane.base_unit, self.plane.lift_unit])
         start, end = self.spans(range(len(self.cells))).T
-        chosen = np.flatnonzero((start <= t) & (t <= end))
-        inset = SAME_POINT * (end - start)[chosen]  # on a line an angle may jump by a turn
-        inside = np.clip(t, start[chosen] + inset, end[chosen] - inset)
-        lower, upper = self.interval(chosen.tolist(), inside[:, None])[..., 0]
-        turns = TURN * np.ceil((lower - v) / TURN) * self.circle
-        for k in np.flatnonzero((lower <= v + turns) & (v + turns <= upper)):
-            return int(chosen[k]), np.array([t, v + turns[k]])
-        return None
+        near = TOUCH * self.plane.base_unit
+        chosen = np.flatnonzero((start - near <= t) & (t <= end + near))
+        if not len(chosen):
+            return []
+        low, high = self._interval_at(chosen, t)
+        turns = TURN * turns_up_to(low - self.touch, v) * self.circle
+        inside = np.clip(v + turns, low, high)
+        inside = np.where(np.array(self.whole)[chosen], v + turns, inside)
+        off = np.stack([np.clip(t, start[chosen], end[chosen]) - t, inside - v - turns], axis=-1)
+        reached = (np.abs(off) <= TOUCH * units).all(axis=-1)
+        return [
+            Placed(int(chosen[k]), np.array([t, v + turns[k]]), off[k])
+            for k in np.flatnonzero(reached)
+        ]
+
+    def _interval_at(self, chosen: Ints, t: float) -> Floats:
+        """Lower and upper root of cells at one base value; on a line what is meant is `ends`."""
+        start, end = self.spans(chosen.tolist()).T
+        inset = SAME_POINT * (end - start)
+        inside = np.clip(t, start + inset, end - inset)
+        found = self.interval(chosen.tolist(), inside[:, None])[..., 0]
+        ends = np.array([self.ends[k] for k in chosen]).reshape(-1, 2, 2)
+        found = np.where(t <= start + inset, ends[:, 0].T, found)
+        return np.where(t >= end - inset, ends[:, 1].T, found)
 
     def _ends(self) -> Floats:
         """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).
@@ -141,7 +179,7 @@ class Complex:
         values = self._roots(chosen, t).reshape(2, -1, 2, 4)
         at, near, far, farther = np.moveaxis(values, -1, 0)
         if self.plane.lift_kind == "revolute":
-            at = at + TURN * np.round((near - at) / TURN)
+            at = at + TURN * whole_turns(near - at)
         blank = self.plane.blank(self._bounding(chosen), np.tile(t[:, [0, 4]], (2, 1)))
         lower, upper = np.where(blank.reshape(at.shape), 3 * near - 3 * far + farther, at)
         return np.stack([lower, np.maximum(lower, upper)], axis=-1)
@@ -254,22 +292,58 @@ class Complex:
     def loops(self, cells: Collection[int]) -> list[list[Step]]:
         """Return the closed walks that bound a component, the component on the left.
 
-        A hole shorter round than TOUCH is a point at which a form touches zero: it bounds nothing.
+        The half-edges round each cell are a cycle. Where two cells are joined over an element of a
+        line, each other's half-edge is the way past it: what is left are the walks. A hole shorter
+        round than TOUCH is a point at which a form touches zero: it bounds nothing.
         """
-        steps = [Step(kind, k) for k in cells for kind in SIDES if not self.whole[k]]
-        for i, line in enumerate(self.lines):
-            for e, joined in enumerate(line.joined):
-                if not joined and line.left[e] in cells:
-                    steps.append(Step("up", line.left[e] or 0, i, e))
-                if not joined and line.right[e] in cells:
-                    steps.append(Step("down", line.right[e] or 0, i, e))
-        loops, left_over = [], set(steps)
-        for first in steps:
-            if first in left_over:
-                loops.append(self._walk(first))
-                left_over -= set(loops[-1])
+        after = {
+            one: other for k in cells for cycle in self._cycles(k) for one, other in _ring(cycle)
+        }
+        left_over = {step: None for step in after if not self._joined(step)}
+        loops = []
+        while left_over:
+            walk = [next(iter(left_over))]
+            while (step := self._past_joined(after, walk[-1])) != walk[0]:
+                walk.append(step)
+            loops.append(walk)
+            for step in walk:
+                del left_over[step]
         tiny = all(self._size(k) <= TOUCH for k in cells)
         return [walk for walk in loops if tiny or sum(map(self._length, walk)) > TOUCH]
+
+    def _cycles(self, k: int) -> list[list[Step]]:
+        """Return the half-edges round a cell, the cell on the left; a whole one has two cycles."""
+        i, j = self.left_line(k), self.right_line(k)
+        up = [Step("up", k, j, e) for e in self._elements(j, k, 1)]
+        down = [Step("down", k, i, e) for e in reversed(self._elements(i, k, 0))]
+        if self.whole[k]:
+            return [up, down]
+        return [[Step("lower", k), *up, Step("upper", k), *down]]
+
+    def _elements(self, i: int, k: int, side: int) -> list[int]:
+        """Return the elements of a line that are a cell's right (1) or left (0) side, upwards."""
+        line = self.lines[i]
+        owned = [e for e, cell in enumerate(line.left if side else line.right) if cell == k]
+        if self.whole[k] or not owned:
+            return owned
+        low = self.ends[k][side][0] - self.touch
+        return sorted(
+            owned, key=lambda e: (self._middle(line, e) - low) % TURN if self.circle else e
+        )
+
+    def _joined(self, step: Step) -> bool:
+        return step.line >= 0 and self.lines[step.line].joined[step.element]
+
+    def _past_joined(self, after: Mapping[Step, Step], step: Step) -> Step:
+        """Return what follows a half-edge on the boundary, past joined elements."""
+        step = after[step]
+        while self._joined(step):
+            line = self.lines[step.line]
+            up = step.kind == "up"
+            other = (line.right if up else line.left)[step.element]
+            twin = Step("down" if up else "up", other or 0, step.line, step.element)
+            step = after[twin]
+        return step
 
     def _size(self, k: int) -> float:
         """Width or height of a cell, whichever is more, in the units of base and lift."""
@@ -287,82 +361,10 @@ class Complex:
         along = (right - left) / self.plane.base_unit
         return float(along + abs(ends[1][k] - ends[0][k]) / self.plane.lift_unit)
 
-    def _walk(self, first: Step) -> list[Step]:
-        walk = [first]
-        while (step := self._next(walk[-1])) != first:
-            walk.append(step)
-            if len(walk) > 8 * len(self.cells) + 8 * len(self.lines) + 64:
-                raise ArithmeticError("the boundary of a component does not close")
-        return walk
 
-    def _next(self, step: Step) -> Step:
-        if step.kind == "lower":
-            return self._after_lower(step.cell)
-        if step.kind == "upper":
-            return self._after_upper(step.cell)
-        line = self.lines[step.line]
-        if not line.points:  # a full circle closes on itself
-            return step
-        n = len(line.points)
-        if step.kind == "up":
-            top = (step.element + 1) % n
-            if (
-                not self.whole[step.cell]
-                and self._point(step.line, self.ends[step.cell][1][1]) == top
-            ):
-                return Step("upper", step.cell)
-            return self._turn_right_side(step.line, top)
-        if (
-            not self.whole[step.cell]
-            and self._point(step.line, self.ends[step.cell][0][0]) == step.element
-        ):
-            return Step("lower", step.cell)
-        return self._turn_left_side(step.line, step.element)
-
-    def _after_lower(self, a: int) -> Step:
-        i = self.right_line(a)
-        low, high = (self._point(i, v) for v in self.ends[a][1])
-        if low == high and self.ends[a][1][1] - self.ends[a][1][0] < math.pi:
-            return Step("upper", a)
-        return self._turn_right_side(i, low)
-
-    def _after_upper(self, b: int) -> Step:
-        i = self.left_line(b)
-        low, high = (self._point(i, v) for v in self.ends[b][0])
-        if low == high and self.ends[b][0][1] - self.ends[b][0][0] < math.pi:
-            return Step("lower", b)
-        return self._turn_left_side(i, high)
-
-    def _turn_right_side(self, i: int, p: int) -> Step:
-        """Turn clockwise about point p from above on the left: over the line, down, and back."""
-        line, below = self.lines[i], (p - 1) % len(self.lines[i].points)
-        b = line.right[p]
-        if not line.joined[p] or b is None:
-            return Step("up", line.left[p] or 0, i, p)
-        if not self.whole[b] and self._point(i, self.ends[b][0][0]) == p:
-            return Step("lower", b)
-        if not line.joined[below]:
-            return Step("down", b, i, below)
-        return Step("upper", line.left[below] or 0)
-
-    def _turn_left_side(self, i: int, p: int) -> Step:
-        """Turn clockwise about point p from below on the right: over the line, up, and back."""
-        line, below = self.lines[i], (p - 1) % len(self.lines[i].points)
-        a = line.left[below]
-        if not line.joined[below] or a is None:
-            return Step("down", line.right[below] or 0, i, below)
-        if not self.whole[a] and self._point(i, self.ends[a][1][1]) == p:
-            return Step("upper", a)
-        if not line.joined[p]:
-            return Step("up", a, i, p)
-        return Step("lower", line.right[p] or 0)
-
-    def _point(self, i: int, v: float) -> int:
-        """Index of the point of a line nearest to v, on the circle where the lift is one."""
-        points = self.lines[i].points
-        if not self.circle:
-            return min(range(len(points)), key=lambda p: abs(points[p] - v))
-        return min(range(len(points)), key=lambda p: abs(math.remainder(points[p] - v, TURN)))
+def _ring(cycle: Sequence[Step]) -> Iterator[tuple[Step, Step]]:
+    """Yield each half-edge of a cycle with the one after it."""
+    return zip(cycle, [*cycle[1:], *cycle[:1]], strict=True)
 
 
 def _clustered(values: Iterable[float], circle: bool, touch: float) -> list[float]:

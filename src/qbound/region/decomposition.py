@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN, turns_up_to, turns_within
 from qbound.forms.circle import polar
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import (
@@ -36,7 +37,6 @@ Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 Range = tuple[float, float] | None
 
-TURN = math.tau
 PROBES = np.array([0.29, 0.5, 0.77])
 
 
@@ -324,7 +324,7 @@ def _base_values(stack: Complexes, plane: Plane) -> Floats:
     z = _polynomial_roots(stack)
     t = np.angle(z[np.abs(np.abs(z) - 1) <= NEAR_CIRCLE])
     low, high = plane.ends
-    turns = np.arange(math.floor((low - math.pi) / TURN), math.ceil((high + math.pi) / TURN) + 1)
+    turns = np.array(turns_within(low, high, [-math.pi, math.pi]))
     return np.asarray((t[:, None] + TURN * turns).ravel())
 
 
@@ -411,7 +411,7 @@ def _walls(plane: Plane, t: Floats) -> tuple[Ints, Floats, Ints]:
     values, (low, high) = found[branch, slab, form], plane.lift_ends
     turns = np.zeros(len(values), dtype=np.int64)
     if plane.lift_kind == "revolute":
-        first, end = (np.ceil((x - values) / TURN).astype(np.int64) for x in (low, high))
+        first, end = (turns_up_to(x, values).astype(np.int64) for x in (low, high))
         end = first + 1 if plane.lift_range is None else end  # by rounding a root could have none
         pick, turns = _ranges(first, end)
         values, slab, form, branch = (

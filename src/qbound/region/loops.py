@@ -14,10 +14,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis, basis_slope
 from qbound.region.arcs import Arc, Pieces
 from qbound.region.cells import Complex, Step
-from qbound.region.decomposition import TURN, Plane, Root
+from qbound.region.decomposition import Plane, Root
 from qbound.tolerances import TRANSVERSAL
 
 Floats = NDArray[np.float64]
@@ -141,7 +142,7 @@ class Layout:
         starts, ends, offsets = np.moveaxis(np.array(rows), 1, 0)
         # At a fold both sides stop a rounding's square root short of each other.
         gaps = np.roll(ends, 1, axis=0) - starts
-        gaps -= TURN * np.round(gaps / TURN) * circles
+        gaps -= TURN * whole_turns(gaps) * circles
         ends = ends - np.roll(gaps, -1, axis=0) / 2
         return Pieces(self.plane, self.base, roots, starts + gaps / 2, ends, offsets)
 

@@ -8,20 +8,20 @@ the clearance rule's question, and the two rules are kept apart.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance, pair_vector
+from qbound.forms.angles import TURN, first_from, turns_within
 from qbound.forms.circle import CircleRoots, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.polylines import tangent_corners
 from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.region.region import Problem, state
+from qbound.region.problem import Problem, state
 from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
@@ -131,7 +131,8 @@ def problem(robot: Robot) -> Problem:
     region, cuts = box(robot), [wall for wall, _ in _cuts(robot)]
     ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
     sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
-    return state(robot, cuts, ranges, [(low.boundary, high.boundary) for low, high in sides])
+    names = [(low.boundary, high.boundary) for low, high in sides]
+    return state(robot, cuts, ranges, names, rule="paper")
 
 
 def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
@@ -148,7 +149,7 @@ def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
 
 
 def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bound, Floats]]:
-    """Return every bound of Table 6 as a curve of two joints, for drawing (Figure 4).
+    """Return every bound of Table 6 as a curve of two joints, for drawing.
 
     Windows are straight lines; a half-space is its two roots along the second joint, turned
     into the range, with NaN where it has none or leaves the range.
@@ -176,7 +177,7 @@ def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bo
 
 
 def vertices(robot: Robot) -> list[Vertex]:
-    """Return the corners of the region of two joints in closed form, anticlockwise (Figure 5).
+    """Return the corners of the region of two joints in closed form, anticlockwise.
 
     They are the corners of the box that no half-space removes, and the points where a half-space
     crosses an edge of the box: Theorem 2 along that edge.
@@ -248,13 +249,8 @@ def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
             continue
         roots = circle_roots(a, b, -c0)
         if roots.count > 0:
-            upper = float(_turn_after(roots.q[1], robot.home[joint]))
-            yield Window(pair.name, component + 1, joint, upper - 2 * math.pi, upper)
-
-
-def _turn_after(q: Any, home: Any) -> Any:
-    """Return the first value of q, modulo full turns, that is not below home."""
-    return q + 2 * math.pi * np.ceil((home - q) / (2 * math.pi))
+            upper = float(first_from(robot.home[joint], roots.q[1]))
+            yield Window(pair.name, component + 1, joint, upper - TURN, upper)
 
 
 def _sides(robot: Robot, joint: int) -> tuple[Window, Window]:
@@ -308,7 +304,7 @@ def _crossings(form: HarmonicForm, start: Floats, end: Floats) -> list[float]:
     if roots.count <= 0:
         return []
     low, high = sorted((start[joint], end[joint]))
-    turned = _turn_after(np.unique(roots.q), low)
+    turned = first_from(low, np.unique(roots.q))
     return [float((q - start[joint]) / (end - start)[joint]) for q in turned if low < q < high]
 
 
@@ -332,18 +328,14 @@ def _wall_curves(
     alpha = np.where(roots.count > 0, roots.alpha, np.nan)
     centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn
     for k, sign in ((LOWER, -1), (UPPER, +1)):
-        for q2 in _turns_within(centre + sign * alpha, *ranges[1]):
+        for q2 in _copies_within(centre + sign * alpha, *ranges[1]):
             yield Bound(wall.name, component, k), np.stack([q1, q2], -1)
 
 
-def _turns_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
+def _copies_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
     """Yield a curve of angles once per full turn that brings it into a range, NaN outside."""
-    if np.isnan(q).all():
-        return
-    first = math.ceil((low - np.nanmax(q)) / math.tau)
-    last = math.floor((high - np.nanmin(q)) / math.tau)
-    for turn in range(first, last + 1):
-        shifted = q + turn * math.tau
+    for turn in turns_within(low, high, q) if not np.isnan(q).all() else ():
+        shifted = q + turn * TURN
         yield np.where((shifted >= low) & (shifted <= high), shifted, np.nan)
 
 

@@ -1,61 +1,34 @@
-"""The feasible region of two joints, complete: components, labelled arcs, vertices, measures.
-
-By the clearance rule every boundary in use keeps its distance. By the paper's rule the windows of
-Table 6 are limits and the half-spaces cut; the same decomposition serves both.
-"""
+"""The feasible region of two joints, complete: components, labelled arcs, vertices, measures."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
 from itertools import chain, islice
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.functions import clearance, pair_vector
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.boundary.evaluator import evaluator
+from qbound.forms.angles import TURN, nearest_turn
+from qbound.model.robot import Held, Robot
+from qbound.region import paper_rule
 from qbound.region.arcs import NODES, Arc, legendre, ordered
-from qbound.region.cells import Complex
-from qbound.region.decomposition import TURN, Plane, Range, decompose
+from qbound.region.cells import Complex, Placed
+from qbound.region.decomposition import Decomposition, Plane, decompose
 from qbound.region.loops import Layout, Sheets, Walk, behind
+from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import QUADRATURE
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from shapely import MultiPolygon
+
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """Forms of two joints with names, and the ranges within which they count.
-
-    Attributes
-    ----------
-    forms : HarmonicForm, shape (m,)
-    names : tuple of str
-        One a form.
-    ranges : tuple of two (low, high) or None
-        None for a joint that turns all the way round.
-    limits : tuple of two (str, str)
-        Names of the lower and the upper end of each range.
-    """
-
-    forms: HarmonicForm
-    names: tuple[str, ...]
-    ranges: tuple[Range, Range]
-    limits: tuple[tuple[str, str], tuple[str, str]]
-
-    def safe(self, q: Floats) -> bool:
-        """Tell whether a configuration lies strictly within the ranges and keeps every form."""
-        inside = all(r is None or r[0] < x < r[1] for x, r in zip(q, self.ranges, strict=True))
-        return inside and bool((self.forms(q) > 0).all())
-
-    def with_form(self, name: str, coefficients: Floats) -> Problem:
-        """Return the problem with one more form, of coefficients (3, 3), as its last."""
-        table = np.concatenate([self.forms.coefficients, coefficients[None]])
-        forms = HarmonicForm(table, self.forms.kinds)
-        return replace(self, forms=forms, names=(*self.names, name))
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +37,10 @@ class Vertex:
 
     q: Floats
     boundaries: tuple[str, str]
+
+    def __repr__(self) -> str:
+        """Say in a line where it is and what meets there."""
+        return f"<Vertex {' / '.join(self.boundaries)} at {self.q.tolist()}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,21 +69,33 @@ class Component:
     vertices: tuple[Vertex, ...]
     contains_home: bool
 
+    def __repr__(self) -> str:
+        """Say in a line how large it is and what bounds it."""
+        home = ", with home" if self.contains_home else ""
+        sizes = f"{len(self.vertices)} vertices, {len(self.loops)} loops"
+        return f"<Component: area {self.area:.6g}, {sizes}{home}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Region:
     """All components, the one with the home pose first, the others by falling area.
 
+    A configuration is feasible where no margin is negative, up to rounding; it belongs to the
+    components in whose closure it lies. One that touches without room is feasible and in none.
+
     Attributes
     ----------
     components : tuple of Component
     problem : Problem
+        What was asked: robot, joints, held values, rule, forms.
     cells : Complex
         The cells that make them up.
     base : int
         Which joint is the base of the cells.
     owner : dict of int to int
         Component of each cell.
+    empty_because : tuple of str
+        Where there is no component: boundaries that leave no room together, each of them needed.
     """
 
     components: tuple[Component, ...]
@@ -114,10 +103,19 @@ class Region:
     cells: Complex
     base: int
     owner: dict[int, int]
+    empty_because: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Say in a line what was found."""
+        robot = self.problem.robot
+        of = f" of {robot.name}" if robot is not None else ""
+        count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
+        home = "with home" if self.home is not None else "home in none"
+        return f"<Region{of}: {count}, {home}, area {self.area:.6g} {self.area_unit}>"
 
     @property
     def home(self) -> Component | None:
-        """The component with the home pose."""
+        """The first component with the home pose."""
         return next((c for c in self.components if c.contains_home), None)
 
     @property
@@ -125,73 +123,163 @@ class Region:
         """Sum of all components' areas."""
         return sum(component.area for component in self.components)
 
-    def holding(self, q: ArrayLike) -> int | None:
-        """Return the index of the component that holds a configuration, modulo full turns (eq. 9).
+    @property
+    def area_unit(self) -> str:
+        """Unit of areas: the product of both joints' units."""
+        one, other = self.problem.units
+        return f"{one}^2" if one == other else f"{one} {other}"
 
-        None on a boundary and beyond it: components are open.
+    @property
+    def robot(self) -> Robot:
+        """The robot; ValueError where the region is of forms that stand for themselves."""
+        if self.problem.robot is None:
+            raise ValueError("this region is of forms, not of a robot")
+        return self.problem.robot
+
+    @property
+    def boundaries(self) -> tuple[str, ...]:
+        """Names of the columns of `margins`: boundaries, then limits."""
+        return self.problem.evaluator.names
+
+    def margins(self, q: ArrayLike) -> Floats:
+        """Return margins, shape (..., 2) to (..., m): lengths, of limits joint units (eqs. 9-12).
+
+        Negative where violated; what is negative by rounding alone is 0.
+
+        Raises
+        ------
+        ValueError
+            If a joint value is NaN or infinite.
         """
-        place = np.asarray(q, dtype=float)
-        found = self.cells.holding(ordered(place, self.base)) if self.problem.safe(place) else None
-        return None if found is None else self.owner[found[0]]
+        return self.problem.evaluator.margins(q)
+
+    def contains(self, q: ArrayLike) -> Bools:
+        """Tell where configurations, shape (..., 2), are feasible: every margin is >= 0."""
+        return self.problem.evaluator.feasible(q)
+
+    def components_of(self, q: ArrayLike) -> tuple[int, ...]:
+        """Return every component, by index, whose closure holds a configuration, shape (2,).
+
+        Modulo full turns of a joint without limits; errors as in `margins`.
+        """
+        placed = _closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
+        return tuple(sorted({self.owner[one.cell] for one in placed}))
+
+    def component_of(self, q: ArrayLike) -> int | None:
+        """Return the first of `components_of`, None where there is none."""
+        return next(iter(self.components_of(q)), None)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the components with matplotlib and return the axes."""
+        from qbound.figures.pictures import plot_region
+
+        return plot_region(self, ax)
+
+    def explore(self) -> Any:
+        """Return the page in which one moves the arm; Jupyter shows it inline."""
+        from qbound.explorer import explore
+
+        return explore(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the region as plain data, schema qbound/region/2: what `--json` writes."""
+        from qbound.export.document import region_document
+
+        return region_document(self)
+
+    def to_geojson(self, deviation: float = 1e-3) -> dict[str, Any]:
+        """Return polygons of a stated deviation as GeoJSON has them."""
+        from qbound.export.outlines import find_outlines, outlines_geojson
+
+        return outlines_geojson(find_outlines(self, deviation))
+
+    def to_shapely(self, deviation: float = 1e-3) -> MultiPolygon:
+        """Return polygons of a stated deviation as one shapely geometry."""
+        from qbound.export.outlines import find_outlines, outlines_shapely
+
+        return outlines_shapely(find_outlines(self, deviation))
+
+    def _repr_svg_(self) -> str | None:
+        """Return the picture that Jupyter shows, where matplotlib is installed."""
+        if self.problem.robot is None or find_spec("matplotlib") is None:
+            return None
+        from qbound.figures.pictures import region_picture
+
+        return region_picture(self).decode()
 
 
-def clearance_problem(robot: Robot, held: Mapping[int, float] | None = None) -> Problem:
-    """State the clearance rule: every boundary in use, and the joints' limits (eqs. 10-12).
+def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance") -> Region:
+    """Find every component of the feasible region of two joints (eqs. 9-12).
 
     Parameters
     ----------
-    held : mapping of int to float, optional
-        Values of the joints that are held, all but two; rad or length.
+    robot : Robot
+    held : mapping of int or str to float, optional
+        Values of all joints but two, by index or name; rad or length.
+    rule : {"clearance", "paper"}
+        Every boundary keeps its clearance, or the windows of Table 6 (two joints only).
 
     Raises
     ------
     ValueError
-        If not exactly two joints are left free.
+        If not exactly two joints are left free, or `held` names no joint or no finite number.
+
+    Examples
+    --------
+    >>> from qbound import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> region
+    <Region of MinervaBotV2: 5 components, with home, area 23.0965 rad^2>
+    >>> region.component_of([0.2, -0.5]), region.component_of([0.2, 2.5])
+    (0, None)
+
+    A region may be empty; then it says why:
+
+    >>> find_region(load_robot("minervabot-v2"), rule="paper").empty_because
+    ()
     """
-    held = held or {}
-    free = [joint for j, joint in enumerate(robot.joints) if j not in held]
-    if len(free) != 2:
-        raise ValueError(f"a region has two joints; {robot.name} has {len(free)} that are not held")
-    used = [boundary for boundary in robot.boundaries if boundary.used]
-    limits = [(f"{joint.name}.lower", f"{joint.name}.upper") for joint in free]
-    return state(robot, used, [joint.limits for joint in free], limits, held)
+    if rule == "clearance":
+        return solve(clearance_problem(robot, held))
+    if rule != "paper":
+        raise ValueError(f"no rule {rule!r}; there are clearance and paper")
+    if held:
+        raise ValueError("the paper's rule knows two joints only: nothing can be held")
+    return solve(paper_rule.problem(robot))
 
 
-def state(
-    robot: Robot,
-    used: Sequence[Pair | HalfSpace],
-    ranges: Sequence[Range],
-    limits: Sequence[tuple[str, str]],
-    held: Mapping[int, float] | None = None,
-) -> Problem:
-    """Gather the clearance forms of some boundaries within given ranges of two joints."""
-    forms = np.array([clearance(robot, boundary).coefficients for boundary in used])
-    stacked = HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
-    names = tuple(boundary.name for boundary in used)
-    stacked = stacked.restrict(held) if held else stacked
-    return Problem(stacked, names, (ranges[0], ranges[1]), (limits[0], limits[1]))
-
-
-def solve(problem: Problem, home: ArrayLike, base: int | None = None) -> Region:
-    """Find every component of { all forms > 0, within the ranges }.
+def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = None) -> Region:
+    """Find every component of { all forms > 0, strictly within the ranges }.
 
     Parameters
     ----------
-    home : array_like, shape (2,)
-        Configuration that names the first component and around which it is unrolled.
+    home : array_like, shape (2,), optional
+        Configuration that names the first component and around which it is unrolled; default: the
+        problem's own.
     base : int, optional
         Which joint is the base of the cells; the components do not depend on it.
 
     Notes
     -----
-    A component is open; touching in points or curves neither joins components nor makes one.
+    A component is open, and what people see is its closure; touching in points or curves neither
+    joins components nor makes one. A form that depends on no joint is decided beforehand.
     """
+    home = problem.home if home is None else home
+    home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    cells = Complex(decompose(Plane(problem.forms, problem.ranges, base)))
-    found = _measured(cells, problem, np.asarray(home, dtype=float), base)
+    constants = problem.constants()
+    inner = problem.without(list(constants))
+    blocked = tuple(problem.names[k] for k, value in constants.items() if value <= 0)
+    plane = Plane(inner.forms, inner.ranges, base)
+    if blocked:
+        nothing = Complex(Decomposition(plane, np.array(plane.ends), []))
+        return Region((), problem, nothing, base, {}, blocked)
+    cells = Complex(decompose(plane))
+    if not cells.cells:
+        return Region((), problem, cells, base, {}, _irreducible(inner, base))
+    found = _measured(cells, problem, home, base)
     walks = [[Walk(w, f.sheets, f.shift) for w in cells.loops(f.sheets)] for f in found]
-    loops = iter(Layout(cells, base, problem.names, problem.limits).arcs(list(chain(*walks))))
+    loops = iter(Layout(cells, base, inner.names, inner.limits).arcs(list(chain(*walks))))
     components = [
         (_component(f, base, list(islice(loops, len(own)))), f.sheets)
         for f, own in zip(found, walks, strict=True)
@@ -201,26 +289,29 @@ def solve(problem: Problem, home: ArrayLike, base: int | None = None) -> Region:
     return Region(tuple(component for component, _ in components), problem, cells, base, owner)
 
 
-def find_region(robot: Robot, held: Mapping[int, float] | None = None) -> Region:
-    """Return the region of two joints by the clearance rule; arguments as `clearance_problem`."""
-    held = held or {}
-    home = [value for j, value in enumerate(robot.home) if j not in held]
-    return solve(clearance_problem(robot, held), home)
+def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
+    """Return forms that leave no room together, but would if any one of them were dropped."""
+    dropped: list[int] = []
+    for k in range(len(problem.names)):
+        left = problem.without([*dropped, k])
+        if not decompose(Plane(left.forms, left.ranges, base)).cells:
+            dropped.append(k)
+    return problem.without(dropped).names
 
 
 def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     """Return the margin of a configuration to every boundary in use and to every joint limit.
 
-    Margins are lengths for boundaries (``|B| - d_min``, or the depth inside a wall), joint units
-    for limits; negative where violated (eqs. 9-12).
+    Margins are lengths for boundaries (``|B| - d_min``, or the depth inside a half-space), joint
+    units for limits; negative where violated (eqs. 9-12), 0 where rounding alone makes it so.
+
+    Raises
+    ------
+    ValueError
+        If a joint value is NaN or infinite.
     """
-    q = np.asarray(q, dtype=float)
-    found = [(b.name, _margin(robot, b, q)) for b in robot.boundaries if b.used]
-    for joint, value in zip(robot.joints, q, strict=True):
-        if joint.limits is not None:
-            found.append((f"{joint.name}.lower", float(value - joint.limits[0])))
-            found.append((f"{joint.name}.upper", float(joint.limits[1] - value)))
-    return found
+    compiled = evaluator(robot)
+    return list(zip(compiled.names, compiled.margins(q).tolist(), strict=True))
 
 
 def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
@@ -228,11 +319,19 @@ def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     return [(name, margin) for name, margin in margins(robot, q) if margin < 0]
 
 
-def _margin(robot: Robot, boundary: Pair | HalfSpace, q: Floats) -> float:
-    if isinstance(boundary, HalfSpace):
-        return float(clearance(robot, boundary)(q))
-    distance = np.linalg.norm(pair_vector(robot, boundary)(q))
-    return float(distance) - robot.required_distance(boundary)
+def _closures(problem: Problem, cells: Complex, base: int, q: Floats) -> list[Placed]:
+    """Return the cells in whose closure a configuration lies.
+
+    One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
+    violated half-way.
+    """
+    if not problem.evaluator.feasible(q):
+        return []
+    return [
+        one
+        for one in cells.placed(ordered(q, base))
+        if problem.evaluator.feasible(q + ordered(one.off, base) / 2)
+    ]
 
 
 # --- from cells to components ---------------------------------------------------------------------
@@ -253,29 +352,43 @@ class _Found:
 def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list[_Found]:
     """Measure every component, and choose the turns at which it is shown."""
     moments = _cell_moments(cells)
-    inside = (problem.forms(home) > 0).all()  # else on a boundary or beyond: in no component
+    at_home = {one.cell: one for one in _closures(problem, cells, base, home)}
     home = ordered(home, base)
-    at_home = cells.holding(home) if inside else None
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
     found = []
     for sheets, wraps in cells.components():
         turns = TURN * np.array(list(sheets.values()), dtype=float)
         areas, firsts = moments[list(sheets), 0], moments[list(sheets), 1:]
         middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
-        shift, contains_home = np.zeros(2), at_home is not None and at_home[0] in sheets
-        if at_home is not None and contains_home:
-            shift = home - at_home[1] - TURN * np.array(sheets[at_home[0]])
+        own = next((one for cell, one in at_home.items() if cell in sheets), None)
+        shift = np.zeros(2)
+        if own is not None:
+            shift = home - own.place - TURN * np.array(sheets[own.cell])
         elif not any(wraps):
-            shift = -TURN * np.ceil((middle - math.pi) / TURN) * circles
-        found.append(_Found(sheets, wraps, areas.sum(), middle, shift, contains_home))
+            shift = (nearest_turn(middle, 0) - middle) * circles
+        found.append(_Found(sheets, wraps, areas.sum(), middle, shift, own is not None))
     return found
 
 
 def _component(found: _Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
     centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
     wraps = found.wraps[base], found.wraps[1 - base]
+    loops = [_from_lowest(loop) for loop in loops]
     corners = tuple(_vertices(loops))
     return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
+
+
+def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
+    """Let a loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
+
+    One that goes round a joint is left alone.
+    """
+    starts = [i for i, arc in enumerate(loop) if loop[i - 1].boundary != arc.boundary]
+    closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
+    if not starts or not closes:
+        return loop
+    k = min(starts, key=lambda i: tuple(np.round(loop[i].start[::-1], 9)))
+    return loop[k:] + loop[:k]
 
 
 def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:

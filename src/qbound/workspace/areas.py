@@ -5,7 +5,7 @@ along its slide), one for each distance u of the second joint from the fold. On 
 places that the arm reaches are intervals: the fibres of the region moved along by a known angle
 (or length), one set a posture. The lengths of their union and intersection, times abs(det J),
 integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
-samples (Figure 11).
+samples.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.region import Component, Problem
 from qbound.region.arcs import Arc, integrate
-from qbound.region.region import Component, Problem
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
 from qbound.workspace.layers import Layers, Ranges
@@ -107,7 +107,7 @@ class Workspace:
         inside = postures(self.arm, place, self.region.problem.ranges)
         sides = {posture.side for posture in inside}
         outside = [p for p in postures(self.arm, place) if p.side not in sides]
-        return [(p, self.region.holding(p.q)) for p in [*inside, *outside]]
+        return [(p, self.region.component_of(p.q)) for p in [*inside, *outside]]
 
     def safe_postures(self, place: ArrayLike) -> int:
         """Count the safe postures of a place, 0, 1 or 2, full turns of a joint counted once."""
@@ -174,7 +174,7 @@ def find_workspace(
 
 def _owned(region: Fibres, part: Fibres, chosen: frozenset[int]) -> dict[int, int]:
     """Return the aspects inside chosen components, each with its component."""
-    holders = {i: region.holding(part.inside(i)) for i in range(len(part.components))}
+    holders = {i: region.component_of(part.inside(i)) for i in range(len(part.components))}
     return {i: k for i, k in holders.items() if k is not None and k in chosen}
 
 
@@ -199,12 +199,12 @@ def _mixed(laid: Cover) -> Floats:
 
 
 def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
-    """Return the area of the places reached both safely and unsafely (Figure 11).
+    """Return the area of the places reached both safely and unsafely.
 
     Parameters
     ----------
     square : pair of (low, high) or None
-        The joint values that are looked at, such as those that Figure 11 draws from; None for one
+        The joint values that are looked at, such as those that a sample draws from; None for one
         full turn. A configuration is safe if it is in any component, unsafe if it is in none.
     """
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}

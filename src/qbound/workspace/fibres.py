@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.region.decomposition import TURN
-from qbound.region.region import Problem, Region, solve
+from qbound.forms.angles import TURN
+from qbound.region import Problem, Region, solve
 
 Floats = NDArray[np.float64]
 

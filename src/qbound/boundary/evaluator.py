@@ -1,0 +1,273 @@
+"""Boundary functions compiled once: the margins of one configuration, or of millions.
+
+All forms, and the joint limits as two more rows a joint, are one table over the monomials that
+occur in any of them. A configuration costs a sine and a cosine a joint, a product a monomial, and
+its share of one matrix product.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.boundary.functions import clearance
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.tolerances import ROUNDING
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Range = tuple[float, float] | None
+Array = NDArray[Any]
+Index = tuple[int, ...]
+
+BLOCK = 8192
+"""Configurations a block: their monomials stay in the cache between the two passes."""
+
+NO_DISTANCE = 2.0**-1000
+"""Stands for the distance 0 in a denominator: 0 / 0 would be NaN where two points meet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluator:
+    r"""Margins of named boundaries: lengths, then those of the joint limits in joint units.
+
+    A margin is :math:`|B| - d_{\min}` of a pair (eq. 11), found as :math:`\beta / (|B| + d_{\min})`
+    from its form, the value of the form where that is a length already (eq. 12), and the distance
+    to a limit (eq. 10). What rounding alone makes negative is zero, so that ``margin >= 0`` says
+    feasible.
+
+    Attributes
+    ----------
+    names : tuple of str
+        One a column.
+    table : ndarray, shape (columns, monomials)
+    products : tuple of (int, int)
+        The two earlier monomials, by index, that each one after the factors is the product of.
+    factors : tuple of (joint, str)
+        The first monomials after the constant: ``cos``, ``sin``, ``q`` or ``q^2`` of a joint.
+    joints : int
+    distance : ndarray, shape (columns,)
+        :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
+    rounding : ndarray, shape (columns,)
+        A value this little below zero is rounding.
+    """
+
+    names: tuple[str, ...]
+    table: Floats
+    factors: tuple[tuple[int, str], ...]
+    products: tuple[tuple[int, int], ...]
+    joints: int
+    distance: Floats
+    rounding: Floats
+
+    def margins(self, q: ArrayLike) -> Floats:
+        """Return the margin of every boundary, shape (..., joints) to (..., columns).
+
+        Raises
+        ------
+        ValueError
+            If the last axis has not one value a joint, or one is NaN or infinite.
+        """
+        q = self._checked(q)
+        if q.ndim == 1:
+            return self._lengths(self.table.dot(self._one(q.tolist())))
+        flat = q.reshape(-1, self.joints)
+        result = np.empty((len(flat), len(self.names)))
+        for start in range(0, len(flat), BLOCK):
+            values = self.table @ self._monomials(flat[start : start + BLOCK])
+            result[start : start + BLOCK] = self._lengths(values.T)
+        return result.reshape(*q.shape[:-1], len(self.names))
+
+    def feasible(self, q: ArrayLike) -> Bools:
+        """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
+        q = self._checked(q)
+        flat = q.reshape(-1, self.joints)
+        result = np.empty(len(flat), dtype=np.bool_)
+        for start in range(0, len(flat), BLOCK):
+            values = self._lifted @ self._monomials(flat[start : start + BLOCK])
+            result[start : start + BLOCK] = (values >= 0).all(axis=0)
+        return result.reshape(q.shape[:-1])
+
+    def _checked(self, q: ArrayLike) -> Floats:
+        q = np.asarray(q, dtype=float)
+        if q.shape[-1:] != (self.joints,):
+            found = q.shape[-1] if q.ndim else "a bare number"
+            raise ValueError(f"expected {self.joints} joint values on the last axis, found {found}")
+        finite = all(map(math.isfinite, q.tolist())) if q.ndim == 1 else np.isfinite(q).all()
+        if not finite:
+            raise ValueError("a joint value is NaN or infinite")
+        return q
+
+    @cached_property
+    def _lifted(self) -> Floats:
+        """The table with the rounding added to each constant: feasible is >= 0."""
+        table = self.table.copy()
+        table[:, 0] += self.rounding
+        return table
+
+    @cached_property
+    def _denominator(self) -> tuple[Floats, Floats, Floats]:
+        """(a, b, d) of ``sqrt(a value + b) + d``: |B| + d_min of a pair, 1 elsewhere."""
+        pair = ~np.isnan(self.distance)
+        d = np.where(pair, np.maximum(self.distance, NO_DISTANCE), 0.0)
+        return pair.astype(float), np.where(pair, d * d, 1.0), d
+
+    def _lengths(self, values: Floats) -> Floats:
+        if values.size and values.min() < 0:
+            values[(values < 0) & (values >= -self.rounding)] = 0
+        a, b, d = self._denominator
+        return np.asarray(values / (np.sqrt(np.maximum(a * values + b, 0)) + d))
+
+    def _one(self, q: Sequence[float]) -> list[float]:
+        row = [1.0]
+        row += [SCALAR[name](q[joint]) for joint, name in self.factors]
+        for i, j in self.products:
+            row.append(row[i] * row[j])
+        return row
+
+    def _monomials(self, q: Floats) -> Floats:
+        rows = np.empty((self.table.shape[1], len(q)))
+        rows[0] = 1
+        columns = np.ascontiguousarray(q.T)
+        for row, (joint, name) in enumerate(self.factors, 1):
+            rows[row] = ARRAY[name](columns[joint])
+        for row, (i, j) in enumerate(self.products, 1 + len(self.factors)):
+            np.multiply(rows[i], rows[j], out=rows[row])
+        return rows
+
+
+FACTORS = {"revolute": ("cos", "sin"), "prismatic": ("q", "q^2")}
+SCALAR: dict[str, Callable[[float], float]] = {
+    "cos": math.cos,
+    "sin": math.sin,
+    "q": float,
+    "q^2": lambda x: x * x,
+}
+ARRAY: dict[str, Callable[[Floats], Floats]] = {
+    "cos": np.cos,
+    "sin": np.sin,
+    "q": np.asarray,
+    "q^2": np.square,
+}
+SIZES = SCALAR | dict.fromkeys(("cos", "sin"), lambda _: 1.0)
+"""Largest absolute values, over a range within this distance of 0."""
+
+
+def compiled(
+    forms: HarmonicForm,
+    names: Sequence[str],
+    distances: Sequence[float | None],
+    ranges: Sequence[Range],
+    limits: Sequence[tuple[str, str]],
+) -> Evaluator:
+    r"""Compile forms and the limits of their joints.
+
+    Parameters
+    ----------
+    forms : HarmonicForm, shape (m,)
+    names : sequence of str
+        One a form.
+    distances : sequence of (float or None)
+        :math:`d_{\min}` of each pair; None for a form that is a length.
+    ranges : sequence of (low, high) or None
+        One a joint.
+    limits : sequence of (str, str)
+        Names of both ends of each range.
+    """
+    n = len(forms.kinds)
+    bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
+    singles, products = _monomials(forms.coefficients)
+    factors = [(j, FACTORS[forms.kinds[j]][i - 1]) for j, i in map(_last, singles)]
+    factors += [(j, "q") for j, *_ in bounded if (j, "q") not in factors]
+    place = {(0,) * n: 0} | {index: row for row, index in enumerate(singles, 1)}
+    place |= {index: row for row, index in enumerate(products, 1 + len(factors))}
+    coefficients = forms.coefficients.reshape(len(names), 3**n)
+    table = np.zeros((len(names) + 2 * len(bounded), 1 + len(factors) + len(products)))
+    for index, row in place.items():
+        table[: len(names), row] = coefficients[:, np.ravel_multi_index(index, (3,) * n)]
+    for k, (j, low, high) in enumerate(bounded):
+        q, at = 1 + factors.index((j, "q")), len(names) + 2 * k
+        table[at : at + 2, [0, q]] = [[-low, 1], [high, -1]]
+    pairs = tuple((place[_head(index)], place[_tail(index)]) for index in products)
+    reach = [1.0 if ends is None else max(map(abs, ends)) for ends in ranges]
+    sizes = [1.0] + [SIZES[name](reach[j]) for j, name in factors]
+    for one, other in pairs:
+        sizes.append(sizes[one] * sizes[other])
+    return Evaluator(
+        names=(*names, *(name for j, *_ in bounded for name in limits[j])),
+        table=table,
+        factors=tuple(factors),
+        products=pairs,
+        joints=n,
+        distance=np.array([*distances, *[None] * 2 * len(bounded)], dtype=float),
+        rounding=ROUNDING * np.abs(table) @ sizes,
+    )
+
+
+@lru_cache(maxsize=64)
+def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
+    """Return the evaluator of a robot: every boundary in use, and the limits of all joints."""
+    used = [boundary for boundary in robot.boundaries if boundary.used]
+    return compiled(
+        stacked(robot, used),
+        [boundary.name for boundary in used],
+        [least_distance(robot, boundary) for boundary in used],
+        [joint.limits if limits else None for joint in robot.joints],
+        [limit_names(joint.name) for joint in robot.joints],
+    )
+
+
+def stacked(robot: Robot, boundaries: Sequence[Pair | HalfSpace]) -> HarmonicForm:
+    """Return the clearance forms of boundaries as one stack, shape (m,)."""
+    forms = np.array([clearance(robot, boundary).coefficients for boundary in boundaries])
+    return HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
+
+
+def least_distance(robot: Robot, boundary: Pair | HalfSpace) -> float | None:
+    r"""Return :math:`d_{\min}` of a pair, None of a half-space, whose form is a length already."""
+    return robot.required_distance(boundary) if isinstance(boundary, Pair) else None
+
+
+def limit_names(joint: str) -> tuple[str, str]:
+    """Return the names of a joint's lower and upper limit, as boundaries."""
+    return f"{joint}.lower", f"{joint}.upper"
+
+
+def _monomials(coefficients: Array) -> tuple[list[Index], list[Index]]:
+    """Return the monomials that occur, and those they are made from: of one joint, of several.
+
+    A monomial is the index of its coefficient; the zeroth of a joint's factors is 1.
+    """
+    found = set[Index]()
+    for occurring in np.argwhere((coefficients != 0).any(axis=0)).tolist():
+        index = tuple(occurring)
+        while any(index):
+            found |= {index, _tail(index)}
+            index = _head(index)
+    one, several = ([i for i in found if (np.count_nonzero(i) > 1) == many] for many in (0, 1))
+    return sorted(one), sorted(several, key=lambda i: (np.count_nonzero(i), i))
+
+
+def _last(index: Index) -> tuple[int, int]:
+    """Return the last joint on which a monomial depends, and which of its factors it has."""
+    joint = max(j for j, i in enumerate(index) if i)
+    return joint, index[joint]
+
+
+def _head(index: Index) -> Index:
+    """Return a monomial without the factor of its last joint."""
+    joint, _ = _last(index)
+    return (*index[:joint], 0, *index[joint + 1 :])
+
+
+def _tail(index: Index) -> Index:
+    """Return the factor of the last joint alone."""
+    joint, factor = _last(index)
+    return (*[0] * joint, factor, *[0] * (len(index) - joint - 1))

@@ -1,0 +1,138 @@
+"""Regions and configurations as plain data, for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from qbound.measures.nearest import nearest_boundary
+from qbound.model.robot import Robot
+from qbound.region import Component, Region, find_region, margins
+from qbound.region.arcs import Arc
+from qbound.version import __version__
+from qbound.workspace.areas import NoHomeError, find_workspace
+from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
+
+
+def region_document(region: Region) -> dict[str, Any]:
+    """Return a region as JSON holds it, schema qbound/region/2: rad, lengths, the robot's unit."""
+    problem = region.problem
+    content = {
+        "schema": "qbound/region/2",
+        "robot": region.robot.name,
+        "version": __version__,
+        "rule": problem.rule,
+        "joints": list(problem.joint_names),
+        "home_component": None if region.home is None else 0,
+        "feasible_area": region.area,
+        "home": _home_content(region),
+        "components": [_component_content(component) for component in region.components],
+    }
+    if region.empty_because:
+        content["empty_because"] = list(region.empty_because)
+    return content | _workspace_content(region)
+
+
+def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
+    """Return a boundary loop as JSON holds it."""
+    return {
+        "arcs": [
+            {
+                "boundary": arc.boundary,
+                "branch": arc.branch,
+                "from": arc.start.tolist(),
+                "to": arc.end.tolist(),
+            }
+            for arc in loop
+        ]
+    }
+
+
+def configuration_document(
+    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
+) -> dict[str, Any]:
+    """Return what is known of a configuration; with two joints its component and the boundary.
+
+    Parameters
+    ----------
+    q : sequence of float
+        One value a joint, rad or length.
+    weights : sequence of two float
+        Of the two joints, in the distance to the boundary.
+    """
+    found = sorted(margins(robot, q), key=lambda item: item[1])
+    content: dict[str, Any] = {
+        "robot": robot.name,
+        "version": __version__,
+        "q": list(q),
+        "feasible": all(margin >= 0 for _, margin in found),
+        "component": None,
+        "components": None,
+        "contains_home": None,
+        "margins": [{"boundary": name, "margin": margin} for name, margin in found],
+        "nearest": None,
+    }
+    if len(robot.joints) == 2:
+        content |= _place_content(find_region(robot), q, weights)
+    return content
+
+
+def _home_content(region: Region) -> dict[str, Any]:
+    problem, robot = region.problem, region.robot
+    home = robot.home[list(problem.joints)]
+    found = list(zip(region.boundaries, region.margins(home).tolist(), strict=True))
+    content = {
+        "q": robot.with_held(home, problem.held).tolist(),
+        "feasible": all(margin >= 0 for _, margin in found),
+        "violated": [{"boundary": name, "margin": m} for name, m in found if m < 0],
+    }
+    if content["feasible"] and region.home is None:  # no room, and this is why
+        content["touches"] = [name for name, margin in found if margin == 0]
+    return content
+
+
+def _component_content(component: Component) -> dict[str, Any]:
+    return {
+        "contains_home": component.contains_home,
+        "area": component.area,
+        "centroid": None if component.centroid is None else component.centroid.tolist(),
+        "wraps": list(component.wraps),
+        "vertices": [
+            {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
+            for vertex in component.vertices
+        ],
+        "loops": [loop_content(loop) for loop in component.loops],
+    }
+
+
+def _workspace_content(region: Region) -> dict[str, Any]:
+    """Return the workspace of the home component, or the reason why there is none."""
+    robot, problem = region.robot, region.problem
+    try:
+        arm = planar_arm(robot, problem.held)
+        found = find_workspace(arm, problem, robot.home[list(problem.joints)])
+    except (NoPlanarWorkspaceError, NoHomeError) as reason:
+        return {"workspace": None, "workspace_reason": str(reason)}
+    return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
+
+
+def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> dict[str, Any]:
+    where = region.component_of(q)
+    nearest = None
+    if any(component.loops for component in region.components):
+        found = nearest_boundary(region, q, where, weights)
+        nearest = {
+            "q": found.q.tolist(),
+            "boundary": found.boundary,
+            "component": found.component,
+            "distance": found.distance,
+            "weights": list(weights),
+        }
+    return {
+        "component": where,
+        "components": len(region.components),
+        "contains_home": None if where is None else region.components[where].contains_home,
+        "nearest": nearest,
+    }

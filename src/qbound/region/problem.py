@@ -1,0 +1,190 @@
+"""What a region is asked of: named forms of two joints, their ranges, and whose they are.
+
+By the clearance rule every boundary in use keeps its distance. By the paper's rule the windows of
+Table 6 are limits and the half-spaces cut (`paper_rule`); one engine serves both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.boundary.evaluator import (
+    Evaluator,
+    Range,
+    compiled,
+    least_distance,
+    limit_names,
+    stacked,
+)
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import HalfSpace, Held, Pair, Robot
+from qbound.tolerances import ROUNDING
+
+Floats = NDArray[np.float64]
+Rule = Literal["clearance", "paper"]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Forms of two joints with names, and the ranges within which they count.
+
+    Attributes
+    ----------
+    forms : HarmonicForm, shape (m,)
+    names : tuple of str
+        One a form.
+    ranges : tuple of two (low, high) or None
+        None for a joint that turns all the way round.
+    limits : tuple of two (str, str)
+        Names of the lower and the upper end of each range.
+    distances : tuple of (float or None)
+        What a pair keeps (eq. 11), one a form; None where the form's value is the margin.
+    robot : Robot, optional
+        Whose boundaries these are; None for forms that stand for themselves.
+    joints : tuple of two int
+        Which joints of the robot, by index.
+    held : dict of int to float
+        Values of the other joints, rad or length.
+    rule : {"clearance", "paper"}
+    """
+
+    forms: HarmonicForm
+    names: tuple[str, ...]
+    ranges: tuple[Range, Range]
+    limits: tuple[tuple[str, str], tuple[str, str]]
+    distances: tuple[float | None, ...] = ()
+    robot: Robot | None = None
+    joints: tuple[int, int] = (0, 1)
+    held: Mapping[int, float] = field(default_factory=dict)
+    rule: Rule = "clearance"
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
+        distances = self.distances or (None,) * len(self.names)
+        return compiled(self.forms, self.names, distances, self.ranges, self.limits)
+
+    @property
+    def home(self) -> Floats | None:
+        """Home values of the two joints; None without a robot."""
+        return None if self.robot is None else self.robot.home[list(self.joints)]
+
+    @property
+    def joint_names(self) -> tuple[str, str]:
+        """Names of the two joints; q1 and q2 without a robot."""
+        if self.robot is None:
+            return "q1", "q2"
+        one, other = (self.robot.joints[j].name for j in self.joints)
+        return one, other
+
+    @property
+    def units(self) -> tuple[str, str]:
+        """Unit of each joint's values: rad, or the robot's length unit."""
+        length = "length" if self.robot is None else self.robot.length_unit
+        one, other = ("rad" if kind == "revolute" else length for kind in self.forms.kinds)
+        return one, other
+
+    def with_form(self, name: str, coefficients: Floats) -> Problem:
+        """Return the problem with one more form, of coefficients (3, 3), as its last."""
+        table = np.concatenate([self.forms.coefficients, coefficients[None]])
+        forms = HarmonicForm(table, self.forms.kinds)
+        distances = (*self.distances, None) if self.distances else ()
+        return replace(self, forms=forms, names=(*self.names, name), distances=distances)
+
+    def without(self, dropped: Sequence[int]) -> Problem:
+        """Return the problem without some of its forms, by index."""
+        kept = [k for k in range(len(self.names)) if k not in dropped]
+        return replace(
+            self,
+            forms=self.forms[kept],
+            names=tuple(self.names[k] for k in kept),
+            distances=tuple(self.distances[k] for k in kept) if self.distances else (),
+        )
+
+    def constants(self) -> dict[int, float]:
+        """Return the forms that depend on neither joint, by index, and their values.
+
+        A value that rounding alone parts from zero is zero: such a boundary touches everywhere.
+        """
+        table = np.abs(self.forms.coefficients).reshape(len(self.names), 9)
+        rounding = self.evaluator.rounding[: len(self.names)]
+        fixed = np.flatnonzero(table[:, 1:].sum(axis=1) <= rounding)
+        values = self.forms.coefficients[fixed, 0, 0]
+        values = np.where(np.abs(values) <= rounding[fixed], 0.0, values)
+        return dict(zip(fixed.tolist(), values.tolist(), strict=True))
+
+
+def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
+    """State the clearance rule: every boundary in use, and the joints' limits (eqs. 10-12).
+
+    Parameters
+    ----------
+    held : mapping of int or str to float, optional
+        Values of the joints that are held, all but two, by index or name; rad or length.
+
+    Raises
+    ------
+    ValueError
+        If not exactly two joints are left free, or `held` names no joint or no finite number.
+    """
+    values = robot.held_indices(held or {})
+    one, other = free_pair(robot, values)
+    used = [boundary for boundary in robot.boundaries if boundary.used]
+    joints = [robot.joints[j] for j in (one, other)]
+    ranges = [joint.limits for joint in joints]
+    return state(robot, used, ranges, [limit_names(joint.name) for joint in joints], values)
+
+
+def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
+    """Return the two joints that are not held, by index; ValueError if they are not two."""
+    free = robot.free(held)
+    if len(free) != 2:
+        raise ValueError(f"a region has two joints; {robot.name} has {len(free)} that are not held")
+    return free[0], free[1]
+
+
+def state(
+    robot: Robot,
+    used: Sequence[Pair | HalfSpace],
+    ranges: Sequence[Range],
+    limits: Sequence[tuple[str, str]],
+    held: Mapping[int, float] | None = None,
+    rule: Rule = "clearance",
+) -> Problem:
+    """Gather the clearance forms of some boundaries within given ranges of two joints.
+
+    A limit that a held joint violates (eq. 10) comes last, as a form that depends on no joint.
+    """
+    held = held or {}
+    one, other = free_pair(robot, held)
+    forms = stacked(robot, used).restrict(held)
+    beyond = list(_beyond_limits(robot, held))
+    constants = np.zeros((len(beyond), 3, 3))
+    constants[:, 0, 0] = [margin for _, margin in beyond]
+    return Problem(
+        forms=HarmonicForm(np.concatenate([forms.coefficients, constants]), forms.kinds),
+        names=(*(boundary.name for boundary in used), *(name for name, _ in beyond)),
+        ranges=(ranges[0], ranges[1]),
+        limits=(limits[0], limits[1]),
+        distances=(*(least_distance(robot, b) for b in used), *[None] * len(beyond)),
+        robot=robot,
+        joints=(one, other),
+        held=dict(held),
+        rule=rule,
+    )
+
+
+def _beyond_limits(robot: Robot, held: Mapping[int, float]) -> Iterator[tuple[str, float]]:
+    """Yield the limits that held joints violate by more than rounding, and by how much."""
+    for j, value in held.items():
+        joint = robot.joints[j]
+        low, high = joint.limits or (value, value)
+        for name, margin in zip(limit_names(joint.name), (value - low, high - value), strict=True):
+            if margin < -ROUNDING * abs(value):
+                yield name, margin

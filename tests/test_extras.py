@@ -1,0 +1,239 @@
+"""What each install brings: README's commands in environments that hold only what it says."""
+
+import ast
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+import venv
+from importlib.metadata import distribution, packages_distributions
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from qbound import extras
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+BLOCKS = re.findall(r"(?s)```(\w+)\n(.*?)```", README)
+LINES = [line for kind, text in BLOCKS if kind == "shell" for line in text.splitlines()]
+COMMANDS = [shlex.split(line, comments=True)[1:] for line in LINES if line.startswith("qbound ")]
+[PYTHON] = [text for kind, text in BLOCKS if kind == "python"]
+[INSTALL] = [shlex.split(line)[2:] for line in LINES if line.startswith("pip install ")]
+
+
+# --- environments ---------------------------------------------------------------------------------
+
+
+def required(names: list[str]) -> list[Requirement]:
+    """What pip installs for `.[names]`, by pyproject.toml."""
+    wanted = [*PROJECT["dependencies"]]
+    for name in names:
+        wanted += PROJECT["optional-dependencies"][name]
+    return [Requirement(text) for text in wanted]
+
+
+def closure(wanted: list[Requirement]) -> set[str]:
+    """These distributions and all that they require here, by the metadata of what is installed."""
+    found: set[tuple[str, frozenset[str]]] = set()
+    todo = [(one.name, frozenset(one.extras)) for one in wanted]
+    while todo:
+        name, chosen = one = todo.pop()
+        if one in found:
+            continue
+        found.add(one)
+        for text in distribution(name).requires or ():
+            needed = Requirement(text)
+            cases = [{"extra": extra} for extra in ("", *chosen)]
+            if needed.marker is None or any(needed.marker.evaluate(case) for case in cases):
+                todo.append((needed.name, frozenset(needed.extras)))
+    return {canonicalize_name(name) for name, _ in found}
+
+
+class Environment:
+    """A venv with qbound from its wheel, and links to the distributions of the chosen extras."""
+
+    def __init__(self, place: Path, wheel: Path, chosen: list[str]) -> None:
+        venv.create(place, symlinks=os.name != "nt", with_pip=False)
+        self.bin = place / ("Scripts" if os.name == "nt" else "bin")
+        self.work = place / "work"
+        self.work.mkdir()
+        options = ["install", "--quiet", "--no-index", "--no-deps", wheel]
+        pip = [sys.executable, "-m", "pip", "--python", place, *options]
+        subprocess.run(pip, check=True, capture_output=True)
+        where = "import sysconfig; print(sysconfig.get_path('purelib'))"
+        site = Path(self.run("python", "-c", where).stdout.strip())
+        for name in closure(required(chosen)):
+            link(name, site)
+
+    def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Run a program of the environment, as in a shell in which it is active."""
+        kept = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "MPL"))}
+        path = os.pathsep.join([str(self.bin), kept.get("PATH", "")])
+        command = [shutil.which(program, path=str(self.bin)) or program, *arguments]
+        return subprocess.run(
+            command,
+            cwd=self.work,
+            env=kept | {"PATH": path, "PYTHONNOUSERSITE": "1", "PYTHONUTF8": "1"},
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            check=False,
+        )
+
+
+def link(name: str, site: Path) -> None:
+    """Put an installed distribution into another environment, by its own list of files."""
+    files = distribution(name).files or []
+    tops = {file.parts[0] for file in files} - {"..", "__pycache__", "bin", "share"}
+    for top in tops:
+        source, target = Path(str(distribution(name).locate_file(top))), site / top
+        if not target.exists():
+            target.symlink_to(source, target_is_directory=source.is_dir())
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build the wheel from a copy: building leaves files behind."""
+    copy, made = tmp_path_factory.mktemp("copy"), tmp_path_factory.mktemp("wheel")
+    for folder in ("src", "results"):
+        shutil.copytree(ROOT / folder, copy / folder, ignore=shutil.ignore_patterns("*.egg-info"))
+    for file in (path for path in ROOT.iterdir() if path.is_file()):
+        shutil.copy(file, copy)
+    build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
+    command = [sys.executable, "-c", build, made]
+    subprocess.run(command, cwd=copy, check=True, capture_output=True)
+    [wheel] = made.glob("*.whl")
+    return wheel
+
+
+@pytest.fixture(scope="module")
+def plain(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    """What `pip install .` brings."""
+    return Environment(tmp_path_factory.mktemp("plain"), wheel, [])
+
+
+@pytest.fixture(scope="module")
+def as_readme_says(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    """What README's own install brings."""
+    [target] = INSTALL
+    chosen = sorted(Requirement(f"qbound{target.removeprefix('.')}").extras)
+    return Environment(tmp_path_factory.mktemp("readme"), wheel, chosen)
+
+
+# --- README ---------------------------------------------------------------------------------------
+
+
+def test_readme_shows_commands() -> None:
+    assert len(COMMANDS) >= 4
+    assert any("--svg" in command for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_a_command_of_readme_runs_after_the_install_of_readme(
+    as_readme_says: Environment, command: list[str]
+) -> None:
+    done = as_readme_says.run("qbound", *command)
+    assert (done.returncode, done.stderr) == (0, "")
+    files = [word for word in command if word.endswith((".svg", ".html"))]
+    for file in files:
+        assert (as_readme_says.work / file).stat().st_size > 1000
+
+
+def test_the_python_of_readme_needs_no_extra(plain: Environment) -> None:
+    done = plain.run("python", "-W", "error", "-c", PYTHON)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_readme_knows_the_extras_and_what_they_bring() -> None:
+    rows = dict(re.findall(r"(?m)^\| `(\w+)` \| ([^|]*) \|", README))
+    assert {extra.name for extra in extras.EXTRAS.values()} == rows.keys()
+    for extra in extras.EXTRAS.values():
+        if extra.name != "notebooks":
+            assert extra.library in rows[extra.name]
+
+
+# --- what is missing ------------------------------------------------------------------------------
+
+
+def test_the_plain_install_lacks_every_extra(plain: Environment) -> None:
+    look = "import sys, importlib.util as u; print([m for m in sys.argv[1:] if u.find_spec(m)])"
+    assert plain.run("python", "-c", look, "numpy", *extras.EXTRAS).stdout == "['numpy']\n"
+
+
+MISSING = [
+    (["region", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
+    (["draw", "minervabot-v2", "-o", "x.svg"], "matplotlib"),
+    (["workspace", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
+    (["traverse", "minervabot-v2", "1", "2", "--svg", "x.svg", "--csv", "x.csv"], "matplotlib"),
+    (["pave", "minervabot-v2"], "flint"),
+]
+
+
+@pytest.mark.parametrize(("command", "module"), MISSING, ids=lambda value: value[0])
+def test_a_command_says_how_to_install_what_it_misses(
+    plain: Environment, command: list[str], module: str
+) -> None:
+    done = plain.run("qbound", *command)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"qbound: {extras.how_to_install(module)}\n"
+    assert list(plain.work.iterdir()) == []
+
+
+CALLS = {
+    "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
+    "sympy": "qbound.model.robot.with_symbols(robot)",
+    "flint": "qbound.proofs.exact.exact_robot(robot)",
+    "IPython": "qbound.figures.table(['a'], [[1]])",
+}
+
+
+@pytest.mark.parametrize("module", CALLS)
+def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
+    code = (
+        "import qbound.figures.pictures, qbound.model.robot, qbound.proofs.exact\n"
+        f"robot = qbound.load_robot('minervabot-v2')\n{CALLS[module]}"
+    )
+    done = plain.run("python", "-c", code)
+    last = done.stderr.splitlines()[-1]
+    assert last == f"ModuleNotFoundError: {extras.how_to_install(module)}"
+
+
+def test_the_sentence_names_the_extra() -> None:
+    wanted = "drawing takes matplotlib: pip install 'qbound[figures]'"
+    assert extras.how_to_install("matplotlib") == wanted
+    assert extras.explained(ModuleNotFoundError(name="matplotlib.axes")) == wanted
+    assert extras.explained(ImportError("other", name="matplotlib")) == "other"
+    assert extras.explained(ModuleNotFoundError("none", name="attic")) == "none"
+    extras.require("matplotlib")
+
+
+def imported() -> set[str]:
+    """Modules of others that the packages import anywhere, also within functions."""
+    found: set[str] = set()
+    for file in (ROOT / "src").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                found.add(node.module or "")
+    ours = {"qbound", "lizarraga2025"} | set(sys.stdlib_module_names)
+    return {name.partition(".")[0] for name in found} - ours
+
+
+def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_said_to() -> None:
+    homes = {
+        module: {canonicalize_name(name) for name in names}
+        for module, names in packages_distributions().items()
+    }
+    plain = closure(required([]))
+    optional = {module for module in imported() if not homes[module] & plain}
+    assert optional == extras.EXTRAS.keys()
+    for module, extra in extras.EXTRAS.items():
+        assert homes[module] & closure(required([extra.name]))
