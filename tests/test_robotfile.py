@@ -91,7 +91,7 @@ def test_points_6_to_13_are_corners_of_the_bodies() -> None:
 def test_siblings_of_the_packaged_robot_differ_where_they_say() -> None:
     """One digit mended; exact lengths that round to the printed ones, but for that digit."""
     offsets = {}
-    for name in ("minervabot-v2", "minervabot-v2-mended", "minervabot-v2-symmetric"):
+    for name in ("minervabot-v2", "minervabot-v2-corrected", "minervabot-v2-symmetric"):
         _, labelled = with_symbols(load_robot(name))
         offsets[name] = {symbol.name: value for symbol, value in labelled.items()}
     printed, mended, symmetric = offsets.values()

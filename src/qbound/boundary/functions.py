@@ -1,7 +1,7 @@
 """Boundary functions: robot + points -> harmonic forms (Theorem 1, eqs. 9-29, Tables 3-5).
 
-A chain is walked from a point towards an observer; each joint multiplies what is carried so far by
-(1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
+A point is propagated along the chain towards an observer; each joint multiplies what is carried so
+far by (1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
 symbols: the formulas of the paper are derived here, never typed.
 """
 
@@ -39,7 +39,7 @@ def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicF
     ValueError
         If the observer is no frame between the base and the point.
     """
-    return _walk(robot, point, observer)[0]
+    return _propagate(robot, point, observer)[0]
 
 
 def squared_distance(
@@ -50,7 +50,7 @@ def squared_distance(
     It has no products such as :math:`\cos^2 q`: a rotation keeps lengths, so a joint only adds
     twice a dot product. Arguments and errors as in `position`.
     """
-    coordinates, squared = _walk(robot, point, observer)
+    coordinates, squared = _propagate(robot, point, observer)
     centre = np.asarray(centre)
     cross = coordinates.dot(-2 * centre).coefficients
     return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.asarray(centre @ centre)
@@ -228,7 +228,7 @@ def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     return -1, second, first
 
 
-def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
+def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
     """Carry the position u of a point, and |u|^2, from its frame to the observer's."""
     point = robot.point(name)
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)

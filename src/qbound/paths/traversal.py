@@ -63,7 +63,7 @@ class Traversal:
     reach : ndarray, shape (m,)
         Distance of the tool from the origin of the first joint's frame; length.
     s : ndarray, shape (m,)
-        Place of each row on the path: legs behind it, plus the parameter on its own.
+        ParameterPoint of each row on the path: legs behind it, plus the parameter on its own.
     legs : tuple of Leg
     deviation : float
         The tool's path is nowhere farther than this from the polyline through `tool`; length.

@@ -1,6 +1,6 @@
 """Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
 
-The search here is floating point and is trusted by nobody: what it finds is written down, and the
+The search here is floating point and untrusted: what it finds is written down, and the
 checkers (`check`, `check_arb`) decide. See `minorant` for the bound, `statements` for the sets.
 """
 
@@ -27,11 +27,11 @@ from qbound.model.robotfile import parse_robot
 from qbound.proofs.minorant import Bound
 from qbound.proofs.statements import (
     Statement,
-    asked_for_more,
     decimal,
     home_vertices,
     scaled_polygon,
     units,
+    with_extra_clearance,
 )
 from qbound.proofs.verdict import Verdict
 from qbound.tolerances import NEGLIGIBLE
@@ -261,11 +261,11 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 
 def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     """Forms of the boundaries in use, by name; without those that nothing can violate."""
-    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
+    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
     return {
-        wall.name: clearance(wider, wall)
-        for wall in wider.boundaries
-        if wall.used and wider.least_distance(wall) != 0
+        boundary.name: clearance(wider, boundary)
+        for boundary in wider.boundaries
+        if boundary.used and wider.least_distance(boundary) != 0
     }
 
 
@@ -305,7 +305,7 @@ def _deepest(
 ) -> dict[str, Any]:
     """Follow each violated boundary to where it is violated most: the deepest is the witness."""
     corners = np.array(cells, dtype=float) * units(robot)
-    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
+    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
     found = []
     for name, result in searches.items():
         if result.cell is not None and result.q is not None:
@@ -323,8 +323,9 @@ def _witness(
     """Read the configuration and its depth out of what the file says."""
     corners = np.array(cells[evidence["cell"]], dtype=float)
     q = np.array(evidence["weights"], dtype=float) @ corners
-    name, wider = evidence["boundary"], asked_for_more(robot, float(Fraction(statement["margin"])))
-    if any(wall.name == name for wall in wider.boundaries):
+    name, margin = evidence["boundary"], float(Fraction(statement["margin"]))
+    wider = with_extra_clearance(robot, margin)
+    if any(boundary.name == name for boundary in wider.boundaries):
         form = clearance(wider, wider.boundary(name))
         return Witness(name, tuple(q), _depth(wider, name, float(form(q * units(robot)))))
     joint, _, side = name.rpartition(".")

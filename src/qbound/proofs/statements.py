@@ -180,7 +180,7 @@ def inner_polygon(
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
-    component = _home(asked_for_more(robot, inset), held)
+    component = _home(with_extra_clearance(robot, inset), held)
     loops = [_thinned(loop, per_arc) for loop in component.loops]
     return filled(
         [_distinct(_within_limits(robot, robot.with_held(loop, held or {}))) for loop in loops],
@@ -188,10 +188,10 @@ def inner_polygon(
     )
 
 
-def asked_for_more(robot: Robot, length: float) -> Robot:
+def with_extra_clearance(robot: Robot, length: float) -> Robot:
     """Return a robot whose every boundary asks for some more distance."""
-    walls = tuple(wall.with_extra_clearance(length) for wall in robot.boundaries)
-    return replace(robot, boundaries=walls)
+    boundaries = tuple(boundary.with_extra_clearance(length) for boundary in robot.boundaries)
+    return replace(robot, boundaries=boundaries)
 
 
 def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
