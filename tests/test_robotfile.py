@@ -374,6 +374,13 @@ BAD: dict[str, tuple[Change, str, str]] = {
     "NaN as a limit": (
         put("joint[0].limits", [math.nan, 1]), "joint[0].limits[0] (q1)", "nan is not a finite num",
     ),
+    "NaN in an axis": (
+        put("joint[1].axis", [0, math.nan, 1]), "joint[1].axis[1] (q2)", "nan is not a finite num",
+    ),
+    "infinite normal": (
+        put("boundary[6].normal", [0, 0, math.inf]), "boundary[6].normal[2] (B7)",
+        "inf is not a finite number",
+    ),
     "too large an offset": (
         put("boundary[6].offset", 1e200), "boundary[6].offset (B7)",
         "1e+200 is too large; wanted: at most 1e+100",
