@@ -5,7 +5,7 @@
     python3 run.py test     run the tests (further arguments go to pytest)
     python3 run.py serve    show the book in a browser and follow what an author changes
     python3 run.py pdf      print the book to one PDF (needs Chromium)
-    python3 run.py lint     check style, types and the direction of imports
+    python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
     python3 run.py clean    remove what the other commands made
 
@@ -36,12 +36,19 @@ BUILD = ROOT / "book" / "_build"
 GENERATED = ROOT / "book" / "generated"
 FRONT_PAGE = BUILD / "html" / "index.html"
 BOOK_STAMP = BUILD / "made-from"
+CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
+NODE_MODULES = VENV / "javascript" / "node_modules"
 
 # What the book is made from (a change of any of it makes the book stale), and what is no source.
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
 BUILT = ["build", "dist", "src/qbound.egg-info"]
+
+SCRIPTS = ["src/qbound/explorer/web", "book/_static", "tests/test_book_browser.js"]
+PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
+
+NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 
 PORT = 8000  # of the author's local page
 
@@ -139,6 +146,8 @@ def wanted(name: str) -> str:
     """Return what the stamp says when .venv is up to date (a moved one would call the old path)."""
     if name == "lock":
         return digest(LOCK.read_text(encoding="utf-8"), sys.version_info[:2], VENV)
+    if name == "javascript":
+        return digest((CHECKERS / "package-lock.json").read_text(encoding="utf-8"))
     return digest((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
@@ -166,6 +175,26 @@ def in_venv(program: str, place: Path | None = None) -> Path:
     """Return the path of a program of the environment, on Windows too."""
     venv = place or VENV
     return venv / "Scripts" / f"{program}.exe" if os.name == "nt" else venv / "bin" / program
+
+
+def find_node(program: str) -> str | Path | None:
+    """Return `node` or `npm`: the environment's, from a wheel, or else the machine's."""
+    own = in_venv(program)
+    return own if own.exists() else shutil.which(program)
+
+
+def install_checkers(npm: str | Path) -> None:
+    """Install what checks JavaScript, as its own lock says, beside the environment's packages."""
+    if is_stamped("javascript"):
+        return
+    remove(NODE_MODULES.parent)
+    NODE_MODULES.parent.mkdir()
+    for name in ["package.json", "package-lock.json"]:
+        shutil.copy(CHECKERS / name, NODE_MODULES.parent)
+    quietly = ["--ignore-scripts", "--no-audit", "--no-fund", "--loglevel", "error"]
+    command = [npm, "ci", "--prefix", NODE_MODULES.parent, *quietly]
+    must("Installing the checkers of JavaScript (once)", command, quiet=True)
+    stamp("javascript").write_text(wanted("javascript"))
 
 
 def pip(venv: Path) -> Command:
@@ -351,18 +380,39 @@ def pdf() -> int:
 
 
 def lint() -> int:
-    """Check style, types and the direction of imports."""
+    """Check style, types and the direction of imports, of JavaScript too where there is Node."""
     prepare()
     checks: dict[str, Command] = {
         "Style (ruff check)": [in_venv("ruff"), "check", "--quiet"],
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
+        **javascript_checks(),
     }
     failed = [title for title, command in checks.items() if call(title, command) != 0]
     if failed:
         raise Failed("Lint failed: " + ", ".join(failed))
     return 0
+
+
+def javascript_checks() -> dict[str, Command]:
+    """Return the checks of JavaScript; none where there is no Node, unless it is required."""
+    node, npm = find_node("node"), find_node("npm")
+    if node is None or npm is None:
+        if os.environ.get("CI") == "true" or os.environ.get("QBOUND_REQUIRE_NODE") == "1":
+            raise Failed(NO_NODE)
+        say(f"-- {NO_NODE}")
+        return {}
+    install_checkers(npm)
+    biome = [node, NODE_MODULES / "@biomejs/biome/bin/biome", "check", "--error-on-warnings"]
+    tsc = [node, NODE_MODULES / "typescript/bin/tsc", "--project"]
+    return {
+        "Style of JavaScript (Biome)": [*biome, f"--config-path={CHECKERS}", *SCRIPTS],
+        **{
+            f"Types of JavaScript (tsc, {name})": [*tsc, CHECKERS / f"{name}.json"]
+            for name in PROGRAMS
+        },
+    }
 
 
 def lock() -> int:

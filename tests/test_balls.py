@@ -10,7 +10,9 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from qbound.proofs.balls import above, along, below, derivative, magnitude, precision, values
+from qbound.forms.harmonic import HarmonicForm
+from qbound.proofs.balls import above, below, precision
+from qbound.proofs.dyadic import magnitude
 from support.forms import random_form
 
 
@@ -38,7 +40,7 @@ def test_values_hold_what_mpmath_finds_at_50_digits(case):
     form = random_form(*case)
     q = np.random.default_rng(case[0]).uniform(-4, 4, case[1])
     with precision(250), mpmath.workdps(60):
-        there = values(form, [arb(x) for x in q])
+        there = form([arb(x) for x in q])
         exact = [by_hand(c, form.kinds, list(map(mpmath.mpf, q))) for c in form.coefficients]
         assert all(holds(ball, value) for ball, value in zip(there, exact, strict=True))
         assert all(ball.rel_accuracy_bits() > 200 for ball in there)
@@ -50,9 +52,9 @@ def test_a_box_holds_the_values_of_its_points(case):
     rng = np.random.default_rng(case[0])
     middle, radius = rng.uniform(-4, 4, case[1]), rng.uniform(0, 1, case[1])
     box = [arb(m, r) for m, r in zip(middle, radius, strict=True)]
-    enclosures = values(form, box)
+    enclosures = form(box)
     for point in rng.uniform(middle - radius, middle + radius, (20, case[1])):
-        inside = values(form, [arb(x) for x in point])
+        inside = form([arb(x) for x in point])
         assert all(box.contains(x) for box, x in zip(enclosures, inside, strict=True))
 
 
@@ -62,7 +64,7 @@ def test_derivatives_are_those_of_mpmath(case):
     q = [mpmath.mpf(x) for x in np.random.default_rng(case[0]).uniform(-4, 4, case[1])]
     with precision(250), mpmath.workdps(60):
         for j in range(case[1]):
-            slopes = values(derivative(form, j), [arb(mpmath.nstr(x, 55)) for x in q])
+            slopes = form.derivative(j)([arb(mpmath.nstr(x, 55)) for x in q])
             for slope, c in zip(slopes, form.coefficients, strict=True):
 
                 def line(x, c=c, j=j):
@@ -78,7 +80,7 @@ def test_coefficients_along_a_joint_give_the_value_back(case):
     q = [arb(x) for x in np.random.default_rng(case[0]).uniform(-4, 4, case[1])]
     for j, kind in enumerate(form.kinds):
         one, two = (q[j].cos(), q[j].sin()) if kind == "revolute" else (q[j], q[j] ** 2)
-        for c, whole in zip(along(form, j, q), values(form, q), strict=True):
+        for c, whole in zip(form.along(j, q), form(q), strict=True):
             assert (c[0] + c[1] * one + c[2] * two).overlaps(whole)
 
 
@@ -114,10 +116,38 @@ def test_outward_doubles_lie_outside(middle, radius):
     assert below(ball) <= middle <= above(ball)
 
 
-def test_a_missing_library_is_named_with_its_extra():
+@settings(max_examples=20)
+@given(numbers)
+def test_many_boxes_at_once_are_each_box_alone(case):
+    form = random_form(*case)
+    q = np.random.default_rng(case[0]).uniform(-4, 4, (2, 3, case[1]))
+    boxes = np.vectorize(arb, otypes=[object])(q)
+    found = form(boxes), form.gradient(boxes), form.along(0, boxes)
+    assert [x.shape for x in found] == [(2, 3, 2), (2, 3, 2, case[1]), (2, 3, 2, 3)]
+    alone = form(boxes[1, 2]), form.gradient(boxes[1, 2]), form.along(0, boxes[1, 2])
+    for many, one in zip(found, alone, strict=True):
+        assert all(x == y or x.overlaps(y) for x, y in zip(many[1, 2].flat, one.flat, strict=True))
+    assert np.allclose(found[0].astype(float), form(q))
+
+
+def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
+    table = np.zeros((3, 3), dtype=object)
+    table[0, 2], table[0, 1] = arb(0, 1e-9), arb(0)
+    assert HarmonicForm(table, ("revolute", "prismatic")).joints() == (1,)
+
+
+@pytest.mark.parametrize(
+    ("module", "command"),
+    [
+        ("flint", ["pave", "minervabot-v2"]),
+        ("scipy", ["connected", "minervabot-v2", "0", "0", "20", "30"]),
+        ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
+    ],
+)
+def test_a_missing_library_is_named_with_its_extra(module, command):
     code = (
-        "import sys; sys.modules['flint'] = None\n"
-        "from qbound.cli import main; sys.exit(main(['pave', 'minervabot-v2']))"
+        f"import sys; sys.modules[{module!r}] = None\n"
+        f"from qbound.cli import main; sys.exit(main({command}))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert run.returncode == 2

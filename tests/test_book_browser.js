@@ -7,14 +7,18 @@ function openEverything() {
   for (const part of document.querySelectorAll("details")) part.open = true;
 }
 
+/** @type {(element: Element) => string} */
 function beginning(element) {
   return (element.closest(".math") ?? element).textContent.trim().slice(0, 60);
 }
 
+// Texts with the elements that hold them.
+/** @type {(root: Node) => Generator<{ text: Text, element: Element }>} */
 function* textsOf(root) {
   const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
   for (let text = walker.nextNode(); text; text = walker.nextNode())
-    if (text.data.trim()) yield text;
+    if (text instanceof Text && text.parentElement && text.data.trim())
+      yield { text, element: text.parentElement };
 }
 
 function unshownFormulas() {
@@ -22,12 +26,12 @@ function unshownFormulas() {
   const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
   const wrong = [...document.querySelectorAll(FORMULA_ERROR)];
   const raw = [...textsOf(document.querySelector(".bd-article") ?? document.body)]
-    .filter((text) => !text.parentElement.closest("pre, code, script, style, mjx-container"))
-    .filter((text) => TEX.test(text.data));
+    .filter(({ element }) => !element.closest("pre, code, script, style, mjx-container"))
+    .filter(({ text }) => TEX.test(text.data));
   return [
     ...bare.map((formula) => `not typeset: ${beginning(formula)}`),
     ...wrong.map((part) => `an error in: ${beginning(part)}`),
-    ...raw.map((text) => `TeX in the text: ${text.data.trim().slice(0, 60)}`),
+    ...raw.map(({ text }) => `TeX in the text: ${text.data.trim().slice(0, 60)}`),
   ];
 }
 
@@ -45,8 +49,11 @@ function lostToTheRight() {
   return [...page, ...lost.map((element) => `${element.tagName}: ${beginning(element)}`)];
 }
 
+/** @type {(element: Element, pageWidth: number) => boolean} */
 function isLost(element, pageWidth) {
+  /** @type {(box: Element) => string} */
   const overflow = (box) => getComputedStyle(box).overflowX;
+  /** @type {(box: Element) => number} */
   const right = (box) => box.getBoundingClientRect().right;
   let box = element.parentElement;
   while (box && overflow(box) === "visible") box = box.parentElement;
@@ -61,28 +68,32 @@ const THAT_SCROLLS =
 function wideBoxesWithoutHint() {
   return [...document.querySelectorAll(THAT_SCROLLS)]
     .filter((box) => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1)
-    .filter((box) => !box.matches(".wide.more-right") || box.tabIndex !== 0)
+    .filter((box) => !box.matches(".wide.more-right") || box.getAttribute("tabindex") !== "0")
     .map(beginning);
 }
 
 // A stop that begins a line, or a bracket that ends one, beside a formula or a badge.
 function tornPunctuation() {
   const held = [...document.querySelectorAll(".bd-article :is(span.math, .verdict)")];
-  return held.filter((e) => e.checkVisibility()).flatMap((element) => {
-    const boxes = [...element.getClientRects()];
-    const before = besides(element.previousSibling, /[([]$/);
-    const after = besides(element.nextSibling, /^[,.;:!?)\]°]/);
-    const torn = [];
-    if (before && before.bottom <= boxes.at(0).top + 2) torn.push(`before ${beginning(element)}`);
-    if (after && after.top >= boxes.at(-1).bottom - 2) torn.push(`after ${beginning(element)}`);
-    return torn;
-  });
+  return held
+    .filter((e) => e.checkVisibility())
+    .flatMap((element) => {
+      const boxes = [...element.getClientRects()];
+      const [first, last] = [boxes[0], boxes[boxes.length - 1]];
+      const before = besides(element.previousSibling, /[([]$/);
+      const after = besides(element.nextSibling, /^[,.;:!?)\]°]/);
+      const torn = [];
+      if (before && before.bottom <= first.top + 2) torn.push(`before ${beginning(element)}`);
+      if (after && after.top >= last.bottom - 2) torn.push(`after ${beginning(element)}`);
+      return torn;
+    });
 }
 
 // Where the mark stands with which a text ends, or begins, beside an element.
+/** @type {(text: Node | null, pattern: RegExp) => DOMRect | null} */
 function besides(text, pattern) {
-  const mark = text?.nodeType === Node.TEXT_NODE ? text.data.match(pattern) : null;
-  if (!mark) return null;
+  const mark = text instanceof Text ? text.data.match(pattern) : null;
+  if (!text || mark?.index === undefined) return null;
   const range = document.createRange();
   range.setStart(text, mark.index);
   range.setEnd(text, mark.index + 1);
@@ -95,18 +106,23 @@ function cutFormulas() {
 }
 
 function brokenWords() {
-  return [...document.querySelectorAll(".prev-next-title")].flatMap((title) => {
-    return [...textsOf(title)].flatMap((text) => [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
-      const range = document.createRange();
-      range.setStart(text, word.index);
-      range.setEnd(text, word.index + word[0].length);
-      return range.getClientRects().length > 1 ? word[0] : "";
-    }));
-  }).filter(Boolean);
+  return [...document.querySelectorAll(".prev-next-title")]
+    .flatMap((title) => {
+      return [...textsOf(title)].flatMap(({ text }) =>
+        [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
+          const range = document.createRange();
+          range.setStart(text, word.index);
+          range.setEnd(text, word.index + word[0].length);
+          return range.getClientRects().length > 1 ? word[0] : "";
+        }),
+      );
+    })
+    .filter(Boolean);
 }
 
 function smallPanels() {
-  return [...document.querySelectorAll(".wide-figure > img")]
+  return [...document.images]
+    .filter((image) => image.matches(".wide-figure > img"))
     .filter((image) => image.getBoundingClientRect().width < 36 * 16)
     .map((image) => image.alt.slice(0, 60));
 }
@@ -118,25 +134,30 @@ function badImages() {
 }
 
 // Contrast as WCAG 2 counts it: 4.5 to 1, for large text 3 to 1.
+/** @type {(theme: string) => string[]} */
 function faintText(theme) {
   document.documentElement.dataset.theme = theme;
+  /** @type {Set<string>} */
   const faint = new Set();
-  for (const text of textsOf(document.body)) {
-    const element = text.parentElement;
+  for (const { text, element } of textsOf(document.body)) {
     if (element.closest("script, style, mjx-assistive-mml, .headerlink, kbd")) continue;
     if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue;
     const ratio = contrast(element);
     if (ratio < (isLarge(element) ? 3 : 4.5))
-      faint.add(`${ratio.toFixed(1)} to 1: ${element.className} "${text.data.trim().slice(0, 40)}"`);
+      faint.add(
+        `${ratio.toFixed(1)} to 1: ${element.className} "${text.data.trim().slice(0, 40)}"`,
+      );
   }
   return [...faint];
 }
 
+/** @type {(element: Element) => boolean} */
 function isLarge(element) {
   const { fontSize, fontWeight } = getComputedStyle(element);
-  return parseFloat(fontSize) >= (fontWeight >= 700 ? 18.66 : 24);
+  return parseFloat(fontSize) >= (Number(fontWeight) >= 700 ? 18.66 : 24);
 }
 
+/** @type {(element: Element) => number} */
 function contrast(element) {
   const ground = groundOf(element);
   const ink = over(rgba(getComputedStyle(element).color), ground);
@@ -144,6 +165,7 @@ function contrast(element) {
   return (light + 0.05) / (dark + 0.05);
 }
 
+/** @type {(element: Element | null) => number[]} */
 function groundOf(element) {
   if (!element) return [255, 255, 255];
   const own = rgba(getComputedStyle(element).backgroundColor);
@@ -151,20 +173,26 @@ function groundOf(element) {
 }
 
 // A canvas reads every notation of a colour.
+const pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+
+/** @type {(colour: string) => number[]} */
 function rgba(colour) {
-  rgba.pen ??= document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-  rgba.pen.clearRect(0, 0, 1, 1);
-  rgba.pen.fillStyle = colour;
-  rgba.pen.fillRect(0, 0, 1, 1);
-  const [red, green, blue, alpha] = rgba.pen.getImageData(0, 0, 1, 1).data;
+  if (!pen) throw new Error("This browser has no canvas.");
+  pen.clearRect(0, 0, 1, 1);
+  pen.fillStyle = colour;
+  pen.fillRect(0, 0, 1, 1);
+  const [red, green, blue, alpha] = pen.getImageData(0, 0, 1, 1).data;
   return [red, green, blue, alpha / 255];
 }
 
+/** @type {(top: number[], ground: number[]) => number[]} */
 function over(top, ground) {
   return [0, 1, 2].map((i) => top[i] * top[3] + ground[i] * (1 - top[3]));
 }
 
+/** @type {(rgb: number[]) => number} */
 function luminance(rgb) {
+  /** @type {(v: number) => number} */
   const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
   const [red, green, blue] = rgb.map((v) => linear(v / 255));
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;

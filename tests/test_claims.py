@@ -19,21 +19,12 @@ from jsonschema import Draft202012Validator, ValidationError, validate
 
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
-from lizarraga2025.ledger import (
-    Claim,
-    bounds,
-    cite,
-    facts,
-    judge,
-    proofs,
-    require,
-    rounding,
-    tables,
-    theorem_1,
-    theorem_2,
-    undetermined,
-)
-from lizarraga2025.ledger.entries import KINDS, VERDICTS, claim, from_content, identifiers, save
+from lizarraga2025.computations import bounds, registry, tables, theorem_1, theorem_2
+from lizarraga2025.evidence import arms, proofs, rounding
+from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.claims import Claim, claim, from_content, identifiers, join, save
+from lizarraga2025.ledger.entries import KINDS, entries, read
+from lizarraga2025.verdicts import VERDICTS, Finding, judge, require, undetermined
 from qbound.cli import main
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -67,7 +58,7 @@ def test_entry_says_what_was_found_and_where(name: str) -> None:
         assert text.strip() == text
         assert not re.search(r"\\|\$|\bnan\b|\binf\b", text), "plain text, finite numbers"
         assert text.endswith(".")
-    assert bool(found.mended) or found.verdict not in ("misprint", "refuted")
+    assert bool(found.corrected) or found.verdict not in ("misprint", "refuted")
 
 
 @every_id
@@ -91,6 +82,107 @@ def test_every_expected_entry_is_on_the_list_and_no_other() -> None:
     assert set(VERDICT.values()) <= set(VERDICTS)
 
 
+# --- entries are data, functions compute ----------------------------------------------------------
+
+ENTRY = """
+[[entry]]
+id = "E-1"
+kind = "equation"
+where = "eq. (1)"
+says = "Something."
+evidence.test = "test_it.py::test_it"
+evidence.chapter = "01_it#it"
+"""
+
+
+def read_text(folder: Path, *texts: str):
+    files = [folder / f"{number}.toml" for number, _ in enumerate(texts)]
+    for file, text in zip(files, texts, strict=True):
+        file.write_text(text, encoding="utf-8")
+    return read(files)
+
+
+def test_an_entry_is_what_its_file_says(tmp_path: Path) -> None:
+    more = ENTRY.replace("E-1", "E-2") + 'corrected = "Else."\n'
+    assert list(read_text(tmp_path, ENTRY, more)) == ["E-1", "E-2"]
+    one, other = read_text(tmp_path, ENTRY + more).values()
+    assert (one.says, one.corrected, other.corrected) == ("Something.", "", "Else.")
+    assert (one.evidence.test, one.evidence.chapter) == ("test_it.py::test_it", "01_it#it")
+
+
+@pytest.mark.parametrize(
+    ("texts", "sentence"),
+    [
+        ([ENTRY + 'mended = ""'], r"0\.toml, entry E-1: the key 'mended' is none of id, kind, "),
+        ([ENTRY + 'evidence.page = ""'], r"E-1, evidence: the key 'page' is none of test, chapter"),
+        ([ENTRY.replace("says", "# says")], r"0\.toml, entry E-1: the key 'says' is missing"),
+        ([ENTRY.replace("id =", "# id")], r"0\.toml, entry number 1: the key 'id' is missing"),
+        ([ENTRY.replace("evidence.test", "# ")], "E-1, evidence: the key 'test' is missing"),
+        ([ENTRY.replace('"Something."', "3")], "E-1: says is 3, not a text"),
+        ([ENTRY.replace('"test_it.py::test_it"', "[]")], r"E-1: test is \[\], not a text"),
+        ([ENTRY.replace('"equation"', '"idea"')], "E-1: the kind 'idea' is none of equation, "),
+        (
+            [ENTRY[: ENTRY.index("evidence")] + 'evidence = "x"'],
+            "E-1: evidence is 'x', not a table",
+        ),
+        ([ENTRY + ENTRY], r"0\.toml: the id E-1 stands twice"),
+        ([ENTRY, ENTRY], r"1\.toml: the id E-1 stands twice"),
+        (['page = "x"' + ENTRY], r"0\.toml: wanted a list of tables \[\[entry\]\]"),
+        (["entry = 3"], r"0\.toml: wanted a list of tables \[\[entry\]\]"),
+        (["entry = [3]"], r"0\.toml: wanted a list of tables \[\[entry\]\]"),
+        ([ENTRY + "no TOML"], r"0\.toml: .*line 9"),
+    ],
+)
+def test_a_file_of_entries_with_a_fault_is_refused_in_a_sentence(
+    tmp_path: Path, texts, sentence
+) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        read_text(tmp_path, *texts)
+
+
+def test_an_entry_without_a_function_is_refused() -> None:
+    functions = {name: f for name, f in registry.by_id().items() if name != "E-34"}
+    with pytest.raises(ValueError, match="no function computes the entry E-34"):
+        join(entries(), functions)
+
+
+def test_a_function_without_an_entry_is_refused() -> None:
+    statements = {name: entry for name, entry in entries().items() if name != "S-12"}
+    with pytest.raises(ValueError, match="a function computes S-12, which is no entry"):
+        join(statements, registry.by_id())
+
+
+def test_two_functions_for_one_entry_are_refused() -> None:
+    known = dict(registry.by_id())
+    with pytest.raises(ValueError, match="two functions compute the entry E-34"):
+        registry.computes("E-34")(known["E-35"])
+    assert registry.by_id() == known
+
+
+def test_a_function_for_several_entries_is_called_with_the_case_of_each(monkeypatch) -> None:
+    monkeypatch.setattr(registry, "_BY_ID", dict(registry.by_id()))
+    registry.computes_each({"X-1": 1, "X-2": 2})(lambda case: Finding("confirmed", f"{case}."))
+    assert [registry.by_id()[name]().found for name in ("X-1", "X-2")] == ["1.", "2."]
+
+
+def test_no_string_of_the_code_names_a_test_or_a_chapter() -> None:
+    """They stand in the files of entries, where a referee edits them."""
+    chapters = "|".join(path.stem for path in (ROOT / "notebooks").glob("*.md"))
+    named = re.compile(rf"\btest_\w+|\b({chapters})\b")
+    assert named.search("test_frames.py::test_x")
+    assert named.search("02_vector_labelling#equation-eq-1")
+    sources = {file: file.read_text(encoding="utf-8") for file in (ROOT / "src").rglob("*.py")}
+    assert len(sources) > 50
+    found = [
+        f"{file.name}:{node.lineno}: {node.value}"
+        for file, source in sources.items()
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        if named.search(node.value)
+    ]
+    assert found == []
+
+
 # --- a verdict follows its computation ------------------------------------------------------------
 
 
@@ -102,7 +194,7 @@ def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
     bounds.pair_bound.cache_clear()
 
 
-def test_a_bound_with_its_sign_mended_is_confirmed(fresh) -> None:
+def test_a_bound_with_its_sign_corrected_is_confirmed(fresh) -> None:
     plus = {k: t.replace("- acos", "+ acos") for k, t in paper.TABLE_6.items()}
     fresh.setattr(paper, "TABLE_6", plus)
     assert [claim(f"B-2.3.{k}").verdict for k in (1, 2)] == ["confirmed"] * 2
@@ -116,11 +208,11 @@ def test_a_component_with_another_sign_is_refuted(fresh) -> None:
     assert claim("E-29.1.3").verdict == "confirmed"
 
 
-def test_the_mended_digit_has_its_points_meet(fresh) -> None:
+def test_the_corrected_digit_has_its_points_meet(fresh) -> None:
     for module in (theorem_1, tables, rounding):
-        fresh.setattr(module, "robot", facts.mended)
+        fresh.setattr(module, "robot", arms.corrected)
         if hasattr(module, "pairs"):
-            fresh.setattr(module, "pairs", lambda of=None: facts.pairs(of or facts.mended()))
+            fresh.setattr(module, "pairs", lambda of=None: arms.pairs(of or arms.corrected()))
     assert claim("E-17.4").verdict == "confirmed with a condition"
     assert claim("T-4.2").verdict == "confirmed"
 
@@ -202,9 +294,9 @@ def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:
     ("outcome", "verdict"),
     [
         ({"holds": True}, "confirmed"),
-        ({"holds": True, "under": True, "mended": True}, "confirmed"),
+        ({"holds": True, "under": True, "corrected": True}, "confirmed"),
         ({"holds": False, "under": True}, "confirmed with a condition"),
-        ({"holds": False, "mended": True}, "misprint"),
+        ({"holds": False, "corrected": True}, "misprint"),
         ({"holds": False}, "refuted"),
     ],
 )
@@ -239,7 +331,7 @@ def test_the_decision_about_general_rotations_can_say_no() -> None:
 
 def test_the_mirrored_pose_is_a_point_reflection_of_joint_space() -> None:
     """By frames of the packaged robot, which the symbolic proof does not use."""
-    arm = facts.robot()
+    arm = arms.robot()
     x, _, z = arm.joints[1].origin
     lean = np.arctan2(x, z)
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (200, 2))
@@ -248,7 +340,7 @@ def test_the_mirrored_pose_is_a_point_reflection_of_joint_space() -> None:
     assert np.allclose(image, tool * [-1, 1, 1])
 
 
-def test_a_mended_statement_that_is_not_proved_stops_the_entry() -> None:
+def test_a_corrected_statement_that_is_not_proved_stops_the_entry() -> None:
     require(True, "1 = 1")
     with pytest.raises(ArithmeticError, match="not proved: 1 = 2"):
         require(False, "1 = 2")

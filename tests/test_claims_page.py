@@ -12,7 +12,9 @@ from bs4 import BeautifulSoup
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.entries import KINDS, VERDICTS, from_content
+from lizarraga2025.ledger.claims import from_content
+from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.verdicts import VERDICTS
 from support.browser import HTML, open_page, refuse_remote
 
 LEDGER = [from_content(content) for content in recorded.claims()]
@@ -49,7 +51,9 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     assert (row["data-kind"], row["data-verdict"]) == (one.kind, one.verdict)
     assert not row.has_attr("hidden")
     text = row.get_text()
-    assert all(flat(part) in text for part in (one.id, one.where, one.says, one.found, one.mended))
+    assert all(
+        flat(part) in text for part in (one.id, one.where, one.says, one.found, one.corrected)
+    )
     assert row.select_one(".verdict").get_text() == one.verdict
     assert row.select_one("details pre").get_text() == cite.entry(one)
 
@@ -102,7 +106,7 @@ def test_the_errata_are_what_the_ledger_finds_wrong() -> None:
     for row in rows:
         one = wrong[row.a.get_text()]
         assert row.a["href"] == f"15_what_holds.html#{one.anchor}"
-        assert all(flat(part) in row.get_text() for part in (one.says, one.mended, one.found))
+        assert all(flat(part) in row.get_text() for part in (one.says, one.corrected, one.found))
         assert f"qbound claims {one.id} --recompute" in row.get_text()
 
 

@@ -22,7 +22,7 @@ from shapely.geometry import Polygon, shape
 
 from qbound import find_region, load_robot
 from qbound.cli import command_parsers, main
-from qbound.cli.values import write_all
+from qbound.cli.files import write_all
 from support.oracles import packaged_table, point_seen_from
 
 MINERVA = load_robot("minervabot-v2")
@@ -369,12 +369,17 @@ def test_a_second_run_writes_the_same_bytes(capsys, line) -> None:
 
 def test_several_files_appear_together_or_not_at_all(monkeypatch) -> None:
     Path("first").write_text("old")
+    write = Path.write_bytes
 
-    def fails(_: Path) -> None:
-        raise OSError(28, "No space left on device")
+    def fails(path: Path, data: bytes) -> int:
+        written = write(path, data)
+        if "second" in path.name:
+            raise OSError(28, "No space left on device")
+        return written
 
+    monkeypatch.setattr(Path, "write_bytes", fails)
     with pytest.raises(ValueError, match="second: not written: No space left"):
-        write_all([("first", "new"), ("second", fails)])
+        write_all([("first", "new"), ("second", "newer")])
     assert files() == {"first"}
     assert Path("first").read_text() == "old"
 

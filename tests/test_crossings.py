@@ -147,7 +147,7 @@ def test_limits_cross_forms_and_one_another():
     sides = [c for c in found.found if min(c.curves) == 0]
     assert_allclose(np.sort(np.abs(places(sides)), axis=1), [[0.5, 1]] * 8, atol=1e-15)
     corners = [c for c in found.found if min(c.curves) > 0]
-    assert [c.others for c in corners] == ["negative"] * 4
+    assert [c.others for c in corners] == ["refuted"] * 4
 
 
 def test_a_curve_that_touches_a_limit_is_undecided():

@@ -10,7 +10,8 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
-from qbound.proofs.balls import precision, values
+from qbound.forms.harmonic import HarmonicForm
+from qbound.proofs.balls import precision
 from qbound.proofs.dyadic import Cells, Room
 from support.forms import random_form
 
@@ -42,9 +43,9 @@ def test_bounds_hold_at_corners_and_inside(seed, joints, level):
             weights = rng.uniform(0, 1, (10, joints))
             for weights in rng.uniform(0, 1, (10, joints)):
                 point = [a + (c - a) * w for (a, _, c), w in zip(ends, weights, strict=True)]
-                assert within(below[k], values(room.forms, point), above[k])
+                assert within(below[k], room.forms(point), above[k])
             for point in product(*ends):
-                assert within(below[k], values(room.forms, point), above[k])
+                assert within(below[k], room.forms(point), above[k])
 
 
 def within(low, balls, high) -> bool:
@@ -66,6 +67,15 @@ def test_halves_fill_the_cell_and_nothing_else():
     assert halves.bits.tolist() == [2, 2, 2]
     assert np.array_equal(halves.index[:2] // [1, 1, 2], cells.index)
     assert len(np.unique(halves.index, axis=0)) == 4
+
+
+def test_a_coefficient_that_is_a_wide_ball_counts_from_end_to_end():
+    """Its middle alone would prove a cell feasible on which the form may be negative."""
+    wide = HarmonicForm(np.array([[arb(0.05, 0.1), arb(0), arb(0.5, 0.25)]]), ("revolute",))
+    room = Room(wide, [(arb(1), arb(1.5))])
+    [[low]], [[high]] = room.bounds(room.whole())
+    assert low <= -0.05 + 0.25 * np.sin(1)
+    assert high >= 0.15 + 0.75 * np.sin(1.5)
 
 
 def test_a_room_without_forms_bounds_nothing():

@@ -14,7 +14,6 @@ from qbound.paths.encounters import (
     least_margin,
     plane_of_motion,
     singular_crossings,
-    stated_boundaries,
     tool_crossings,
 )
 from qbound.paths.traversal import Leg, follow, traverse
@@ -22,6 +21,7 @@ from qbound.region import paper_rule
 from support.oracles import crossing_points, packaged_table, point_seen_from, row_of
 
 MINERVA = load_robot("minervabot-v2")
+REGION = find_region(MINERVA)
 TABLE = packaged_table()
 SIX = np.array([vertex.q for vertex in paper_rule.vertices(MINERVA)])
 SMALL = scaled(SIX, 0.9, centroid(SIX))
@@ -91,7 +91,7 @@ def test_smallest_margins_are_brute_forces(order) -> None:
     """Pairs by 4 x 4 matrices at many places of the path, the stops among them: none is smaller."""
     walk = traverse(MINERVA, SMALL[order], deviation=0.1)
     dense = walk.at(np.arange(60 * len(walk.legs) + 1) / 60)
-    for boundary in boundaries(MINERVA):
+    for boundary in boundaries(REGION):
         margin = least_margin(walk, boundary)
         row = row_of(TABLE, "boundary", boundary.name)
         if row["type"] == "pair":
@@ -109,7 +109,7 @@ def test_smallest_margins_are_brute_forces(order) -> None:
 def test_an_edge_of_the_six_points_leaves_the_region_at_the_floor() -> None:
     """The paper's own finding: the straight edge from point 3 to point 4 goes below the floor."""
     walk = traverse(MINERVA, SIX[[2, 3]], deviation=0.01)
-    floor = next(b for b in boundaries(MINERVA) if b.name == "B7")
+    floor = next(b for b in boundaries(REGION) if b.name == "B7")
     margin = least_margin(walk, floor)
     heights = (tool_by_hand(q)[2] for q in walk.at(np.linspace(0, 1, 500)))
     assert margin.value == pytest.approx(min(heights) - 11.32, abs=1e-4)
@@ -118,10 +118,10 @@ def test_an_edge_of_the_six_points_leaves_the_region_at_the_floor() -> None:
 
 
 def test_a_path_along_the_boundary_is_not_outside() -> None:
-    component = find_region(MINERVA).components[0]
+    component = REGION.components[0]
     legs = [Leg(arc.at, parts=len(arc.pieces.roots)) for arc in component.loops[0]]
     walk = follow(MINERVA, legs, 0.01)
-    found = [least_margin(walk, boundary) for boundary in boundaries(MINERVA)]
+    found = [least_margin(walk, boundary) for boundary in boundaries(REGION)]
     assert all(margin.leaves is None for margin in found)
     assert all(abs(margin.value) < 1e-9 for margin in found)
     (crossing,) = tool_crossings(MINERVA, walk, (0, 2))  # the stops themselves are none
@@ -130,7 +130,7 @@ def test_a_path_along_the_boundary_is_not_outside() -> None:
 
 
 def test_windows_of_the_papers_rule_are_limits_in_radians() -> None:
-    found = stated_boundaries(MINERVA, paper_rule.problem(MINERVA))
+    found = boundaries(find_region(MINERVA, rule="paper"))
     units = {b.name: b.unit for b in found}
     assert units == {"B1": "rad", "B2": "rad", "B3": "rad", "B4": "rad", "B7": "cm"}
     walk = traverse(MINERVA, SIX, deviation=0.1)
@@ -145,7 +145,7 @@ def test_windows_of_the_papers_rule_are_limits_in_radians() -> None:
 def test_limits_of_a_joint_are_margins() -> None:
     table = packaged_table()
     table["joint"][0]["limits"] = [-90, 30]
-    found = {b.name: b for b in boundaries(parse_robot(table))}
+    found = {b.name: b for b in boundaries(find_region(parse_robot(table)))}
     q = np.array([[0.0, 0.0], [np.pi / 3, 0.0]])
     assert_allclose(found["q1.lower"].margin(q), [np.pi / 2, np.pi * 5 / 6])
     assert_allclose(found["q1.upper"].margin(q), [np.pi / 6, -np.pi / 6])

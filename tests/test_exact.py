@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from qbound import load_robot, save_robot
 from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.balls import precision, values
+from qbound.proofs.balls import precision
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.region import clearance_problem, paper_rule
@@ -96,7 +96,7 @@ def test_exact_forms_are_the_float_forms_but_for_rounding(table):
     q = np.linspace(-1.3, 2.1, len(robot.joints))
     for boundary, form in zip([b for b in robot.boundaries if b.used], exact.forms, strict=True):
         float_form = clearance(robot, boundary)
-        there = values(form, [arb(x) for x in q])
+        there = form([arb(x) for x in q])
         size = np.abs(float_form.coefficients).sum() * 10
         assert abs(float(there[()]) - float_form(q)) <= 1e-13 * size
 
@@ -132,7 +132,7 @@ def test_held_joints_leave_the_others():
     held = exact_problem(robot, {0: 0.25})
     whole = clearance_problem(load_robot("minervabot-v2")).forms
     assert held.kinds == ("revolute",)
-    assert_allclose(values(held.forms, [arb(0.5)]).astype(float), whole([0.25, 0.5]), rtol=1e-13)
+    assert_allclose(held.forms([arb(0.5)]).astype(float), whole([0.25, 0.5]), rtol=1e-13)
 
 
 def test_packaged_tables_and_exact_ones_name_the_same_boundaries():

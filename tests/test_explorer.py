@@ -18,11 +18,12 @@ from numpy.testing import assert_allclose
 from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
-from qbound.explorer.page import explorer_data, explorer_page
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import ARITHMETIC, SCRIPTS, explore, explorer_page
 from qbound.measures.scaling import least_along_edges
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region import paper_rule, solve, violated
+from qbound.region import paper_rule, violated
 from qbound.workspace.planar import planar_arm, postures
 from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
 
@@ -36,7 +37,7 @@ class Script:
     def __init__(self, data):
         self.data = data
         self.context = quickjs.Context()
-        self.context.eval((TEMPLATES / "explorer_math.js").read_text(encoding="utf-8"))
+        self.context.eval("".join((TEMPLATES / name).read_text("utf-8") for name in ARITHMETIC))
         self.context.eval(f"const robot = {json.dumps(data)};")
         self.context.eval("const map = toolMap(robot, robot.q); const arm = armOf(map);")
 
@@ -52,7 +53,7 @@ class Script:
 def case(name):
     robot, held = (ROBOTS | SPATIAL)[name]()
     region = find_region(robot, held)
-    return robot, held, region, Script(explorer_data(robot, region, held=held))
+    return robot, held, region, Script(explorer_data(region))
 
 
 def poses(data, n=POSES, seed=5):
@@ -294,7 +295,7 @@ def test_the_smallest_clearance_of_a_scaled_polygon_is_that_of_its_edges(factor)
 
 def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
-    data = explorer_data(robot, solve(paper_rule.problem(robot), robot.home), rule="paper")
+    data = explorer_data(find_region(robot, rule="paper"))
     corners = [vertex.q for vertex in paper_rule.vertices(robot)]
     assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
@@ -361,8 +362,8 @@ def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_page_is_one_small_file_that_loads_nothing(name):
-    robot, held, region, _ = case(name)
-    page = explorer_page(robot, region, held=held)
+    _, _, region, _ = case(name)
+    page = explorer_page(region)
     found = parts(page)
     assert len(page.encode()) < 300_000
     assert [a for a in found.addresses if not a.startswith(("#", "data:"))] == []
@@ -377,7 +378,7 @@ def test_a_robots_names_cannot_become_markup():
     table = robot_table(rows, {"q1": 0.3, "q2": 0.4}, "2", name=nasty)
     table["boundary"][0]["name"] = nasty
     robot = parse_robot(table)
-    found = parts(explorer_page(robot, find_region(robot)))
+    found = parts(explorer_page(find_region(robot)))
     assert set(found.scripts) == {"robot-data", "code"}
     assert json.loads(found.scripts["robot-data"])["name"] == nasty
     assert "alert(1)" not in found.scripts["code"]
@@ -385,9 +386,82 @@ def test_a_robots_names_cannot_become_markup():
 
 
 def test_the_script_writes_names_as_text_only():
-    code = "".join((TEMPLATES / name).read_text() for name in ("explorer.js", "explorer_math.js"))
+    code = "".join((TEMPLATES / name).read_text("utf-8") for name in SCRIPTS)
     assert re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
     assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
+
+
+def code_of(name):
+    text = (TEMPLATES / name).read_text(encoding="utf-8")
+    return re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+
+
+def test_every_name_of_a_script_is_used():
+    code = "".join(map(code_of, SCRIPTS))
+    names = re.findall(r"^(?:function|const|let) (\w+)", code, re.MULTILINE)
+    assert len(names) > 100
+    assert [name for name in names if len(re.findall(rf"\b{name}\b", code)) < 2] == []
+
+
+def test_every_script_stands_in_the_page():
+    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize(
+    ("interface", "pick"),
+    [
+        ("Robot", lambda data: data),
+        ("Joint", lambda data: data["joints"][0]),
+        ("RobotPoint", lambda data: data["points"][0]),
+        ("View", lambda data: data["views"][0]),
+        ("Limit", lambda data: data["limits"][0]),
+        ("Component", lambda data: data["components"][0]),
+        ("VertexPolygon", lambda data: data["polygon"]),
+    ],
+)
+def test_what_the_scripts_are_told_has_the_declared_fields(interface, pick):
+    robot = load_robot("minervabot-v2")
+    data = explorer_data(find_region(robot, rule="paper"))
+    declared = (TEMPLATES / "explorer.d.ts").read_text(encoding="utf-8")
+    [fields] = re.findall(rf"interface {interface} {{\n(.*?)\n}}", declared, re.DOTALL)
+    assert re.findall(r"^  (\w+):", fields, re.MULTILINE) == list(pick(data))
+
+
+# --- in a notebook -------------------------------------------------------------------------------
+
+
+class Frame(HTMLParser):
+    """The one frame of a notebook's output, with its attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.attributes = [], {}
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes |= dict(attributes)
+
+
+def test_a_notebook_shows_the_page_in_a_frame_of_its_own():
+    _, _, region, _ = case("RR")
+    shown = explore(region)
+    frame = Frame()
+    frame.feed(shown._repr_html_())
+    assert frame.tags == ["iframe"]
+    assert frame.attributes["srcdoc"] == shown.html == explorer_page(region)
+    assert frame.attributes["sandbox"] == "allow-scripts"
+
+
+def test_an_explorer_is_named_in_one_short_line():
+    _, _, region, _ = case("RR")
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(region)))
+
+
+def test_an_explorer_is_saved_as_the_page(tmp_path):
+    _, _, region, _ = case("RR")
+    shown = explore(region)
+    shown.save(tmp_path / "arm.html")
+    assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
 
 
 # --- the command ---------------------------------------------------------------------------------

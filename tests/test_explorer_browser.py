@@ -11,7 +11,7 @@ from axe_playwright_python.sync_playwright import Axe
 from numpy.testing import assert_allclose
 
 from qbound import find_region, load_robot
-from qbound.explorer.page import explorer_page
+from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
 from support.browser import refuse_remote, settle
@@ -40,7 +40,7 @@ def files(tmp_path_factory):
     for i, (name, make) in enumerate((ROBOTS | SPATIAL | WALLS).items()):
         robot, held = make()
         written[name] = folder / f"{i}.html"
-        page = explorer_page(robot, find_region(robot, held), held=held)
+        page = explorer_page(find_region(robot, held))
         written[name].write_text(page, encoding="utf-8")
     return written
 
@@ -438,8 +438,22 @@ def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):
     robot = load_robot("minervabot-v2")
     object.__setattr__(robot, "name", "<img src=x onerror='window.hit=1'></script><b>bold</b>")
     file = Path(tmp_path, "nasty.html")
-    file.write_text(explorer_page(robot, find_region(robot)), encoding="utf-8")
+    file.write_text(explorer_page(find_region(robot)), encoding="utf-8")
     files["nasty"] = file
     page = open_explorer("nasty")
     assert page.inner_text("h1").startswith("<img src=x")
     assert page.evaluate("window.hit") is None
+
+
+def test_in_a_notebook_all_controls_work_and_no_link_is_offered(open_explorer, files, tmp_path):
+    robot = load_robot("minervabot-v2")
+    files["notebook"] = tmp_path / "notebook.html"
+    output = explore(find_region(robot))._repr_html_()
+    files["notebook"].write_text(f"<!doctype html><p>{output}</p>", encoding="utf-8")
+    page = open_explorer("notebook").frame_locator("iframe")
+    page.locator("#value-0").fill("80")
+    assert "Not safe" in page.locator("#status").inner_text()
+    page.locator("#play").click()
+    assert page.locator("#play").inner_text() == "Pause"
+    assert not page.locator("#share").is_visible()
+    assert not page.locator("#full-page").is_visible()

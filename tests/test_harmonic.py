@@ -103,6 +103,37 @@ def test_symbols_and_numbers_agree(form, data) -> None:
     assert_allclose(value, form(q), **tolerance(form))
 
 
+@given(forms(stack=(2,)), st.data())
+def test_a_form_takes_symbols_as_it_takes_numbers(form, data) -> None:
+    """Value, gradient and restriction of symbols are SymPy's own, with numbers put in."""
+    q = configuration(data, form)
+    symbols = sympy.symbols(f"q1:{len(q) + 1}", real=True)
+    numbers = dict(zip(symbols, q, strict=True))
+    value = [e.subs(numbers) for e in map(sympy.sympify, form(symbols))]
+    assert_allclose(np.array(value, dtype=float), form(q), **tolerance(form))
+    expected = [[sympy.diff(f, s).subs(numbers) for s in symbols] for f in form.symbolic(symbols)]
+    assert_allclose(np.array(expected, dtype=float), form.gradient(q), **tolerance(form))
+    held = form.restrict(dict(enumerate(symbols))).coefficients
+    assert [sympy.expand(x - y) for x, y in zip(held, form(symbols), strict=True)] == [0, 0]
+
+
+@given(forms(), st.data())
+def test_waves_add_up_to_the_form(form, data) -> None:
+    q, waves = configuration(data, form), form.waves
+    terms = waves.amplitudes * np.exp(1j * waves.turns @ q) * np.prod(q**waves.powers, axis=1)
+    assert_allclose(terms.real.sum(), form(q), **tolerance(form))
+
+
+@given(forms(stack=(2,)), st.data())
+def test_size_is_above_the_sum_of_all_terms(form, data) -> None:
+    q = configuration(data, form)
+    size = form.size(np.abs(q))
+    terms = HarmonicForm(np.abs(form.coefficients), form.kinds)
+    absolute = terms.combined([np.abs(basis(k, x)) for k, x in zip(form.kinds, q, strict=True)])
+    assert (size >= absolute * (1 - 1e-12)).all()
+    assert (np.abs(form(q)) <= size * (1 + 1e-12)).all()
+
+
 def test_symbolic_stack_is_nested_and_exact() -> None:
     """Symbols as coefficients stay symbols: no float enters."""
     a, b, q1, q2 = sympy.symbols("a b q1 q2", real=True)

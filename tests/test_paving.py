@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from qbound import find_region
 from qbound.cli import main
-from qbound.proofs.balls import precision, values
+from qbound.proofs.balls import precision
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave, start
 from support.exact import stated
@@ -52,7 +52,7 @@ def test_cells_are_what_they_are_called_at_their_corners_in_balls(seed):
         for cells in (*paving.feasible, *paving.infeasible):
             for k in rng.integers(0, len(cells), 3):
                 for place in corners(paving, cells, k):
-                    there = values(paving.problem.forms, place)
+                    there = paving.problem.forms(place)
                     if cells in paving.feasible:
                         assert all(arb(x) > 0 for x in there)
                     else:

@@ -7,6 +7,11 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import quad
 
+from lizarraga2025.collisions import (
+    keeps_components_positive,
+    keeps_geometric,
+    misses_points,
+)
 from qbound import load_robot
 from qbound.model.robotfile import parse_robot
 from qbound.region import paper_rule
@@ -14,9 +19,6 @@ from qbound.sampling import (
     Sample,
     joint_ranges,
     keeps_clear,
-    keeps_components_positive,
-    keeps_geometric,
-    misses_points,
     sample,
 )
 from support.oracles import equation_29, packaged_table, point_seen_from, row_of, table_6

@@ -150,6 +150,22 @@ def test_numbers_that_are_not_finite_are_refused(bad, place) -> None:
         largest_safe_scale(p, g, [DISC])
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
+def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
+    """Not even what is too large on the way: the least of NaN was infinite, and so safe."""
+    p, wide = SQUARE.copy(), slides(one=1, x=bad, yy=bad)
+    p[0, 0] = bad
+    for form, corners in ((DISC, p), (wide, 3 * SQUARE)):
+        with np.errstate(all="ignore"):
+            for asks in (
+                lambda f=form, v=corners: least(f, v, [0, 0]),
+                lambda f=form, v=corners: least_along_edges(f, v),
+                lambda f=form, v=corners: first_exit([f], [0, 0], v),
+            ):
+                with pytest.raises(ValueError, match="finite numbers"):
+                    asks()
+
+
 def test_a_dip_that_no_sample_sees_is_found() -> None:
     """A hole of radius 1e-4 beside the middle of an edge, between any points that one would try."""
     hole = outside(0.4321, 0.7 + 1e-4, 1e-4)

@@ -13,9 +13,9 @@ import pytest
 import shapely
 from skimage.measure import marching_cubes
 
-from lizarraga2025.ledger import effort, walks
-from lizarraga2025.ledger.sentences_outlook import sliding
-from lizarraga2025.ledger.sentences_workspace import CAPTIONS, NAMED
+from lizarraga2025 import printed as paper
+from lizarraga2025.evidence import effort, joint_region, tool_paths
+from lizarraga2025.evidence.arms import sliding
 from qbound import clearance, find_region, load_robot
 from qbound.geometry import polygon
 from qbound.measures import bodies
@@ -80,7 +80,7 @@ def test_every_walk_of_five_points_is_stretched_on_the_way() -> None:
 
 def test_the_mirrored_pose_is_reached_through_the_stretched_one() -> None:
     """The mirrored arm has both links on the other side of the z axis."""
-    p = walks.scaled(0.95, SYMMETRIC)
+    p = joint_region.scaled(0.95, SYMMETRIC)
     straight = p[0] + np.linspace(0, 1, 3001)[:, None] * (p[3] - p[0])
     elbow, end = (SYMMETRIC.frames(p[[0, 3]]).position("0", name, "0") for name in "23")
     for places in (elbow, end):
@@ -102,7 +102,7 @@ def test_the_final_place_depends_on_the_order_under_a_linear_map_too() -> None:
 
 def test_right_and_left_reach_equally_far_on_the_symmetric_arm() -> None:
     for scale in (1.0, 0.95, 0.8):
-        p = walks.scaled(scale, SYMMETRIC)
+        p = joint_region.scaled(scale, SYMMETRIC)
         places = SYMMETRIC.frames(p[[3, 0]]).position("0", "3", "0") - [0, 0, 22.5]
         reach = np.linalg.norm(places, axis=-1)
         assert reach[0] == pytest.approx(reach[1], abs=1e-9)
@@ -143,7 +143,7 @@ def test_the_overlap_is_where_one_posture_alone_is_safe() -> None:
     safe = np.zeros(len(places))
     for q in both:
         safe[reachable] += paper_rule.feasible(ROBOT, q[reachable])
-    areas, cell = walks.workspace(), 120 * 80 / len(places)
+    areas, cell = tool_paths.workspace(), 120 * 80 / len(places)
     assert cell * (safe > 0).sum() == pytest.approx(areas["union"], rel=0.02)
     assert cell * (safe == 2).sum() == pytest.approx(areas["twice"], rel=0.02)
     assert cell * (safe == 1).sum() == pytest.approx(areas["union"] - areas["twice"], rel=0.04)
@@ -152,15 +152,15 @@ def test_the_overlap_is_where_one_posture_alone_is_safe() -> None:
 def test_the_image_of_the_boundary_encloses_a_part_of_the_workspace() -> None:
     """The tool at home is reached in the region and lies outside all that the path encloses."""
     steps = np.linspace(0, 1, 1501)[:-1]
-    outline = np.concatenate([arc.at(steps) for arc in walks.by_windows().loops[0]])
+    outline = np.concatenate([arc.at(steps) for arc in joint_region.by_windows().loops[0]])
     faces = shapely.polygonize([shapely.node(shapely.LinearRing(tool(outline)))])
     inside = shapely.union_all(faces)
     stretched = tool(np.array([-0.5, STRETCHED]))
     assert not inside.contains(shapely.Point(stretched))
     assert not inside.contains(shapely.Point(tool(np.zeros(2))))
     assert paper_rule.feasible(ROBOT, np.array([-0.5, STRETCHED]))
-    assert inside.area == pytest.approx(walks.workspace()["enclosed"], rel=1e-4)
-    assert inside.area < 0.3 * walks.workspace()["union"]
+    assert inside.area == pytest.approx(tool_paths.workspace()["enclosed"], rel=1e-4)
+    assert inside.area < 0.3 * tool_paths.workspace()["union"]
 
 
 # --- points, walls, bodies ------------------------------------------------------------------------
@@ -188,9 +188,9 @@ def test_walls_5_and_6_are_nested() -> None:
 
 
 def test_the_figure_meant_is_the_one_whose_caption_says_so() -> None:
-    cited, subject = NAMED
-    assert CAPTIONS[cited] != subject
-    assert [number for number, shows in CAPTIONS.items() if shows == subject] == [11]
+    cited, subject = paper.NAMED_FIGURE
+    assert paper.CAPTIONS[cited] != subject
+    assert [number for number, shows in paper.CAPTIONS.items() if shows == subject] == [11]
 
 
 # --- effort ---------------------------------------------------------------------------------------
@@ -214,7 +214,7 @@ def test_samples_needed_is_the_binomial_law() -> None:
 def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
     (ring,) = effort.contour_of_grid(200)
     assert np.allclose(ring[0], ring[-1])
-    region = np.concatenate([arc.points for arc in walks.by_windows().loops[0]])
+    region = np.concatenate([arc.points for arc in joint_region.by_windows().loops[0]])
     apart = shapely.Polygon(ring).symmetric_difference(shapely.Polygon(region)).area
     assert apart < 0.01
     errors = [effort.contour_error(n) for n in (50, 100, 200, 400)]

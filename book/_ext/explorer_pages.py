@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from html import escape
 from pathlib import Path
+from string import Template
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -19,11 +20,6 @@ FOLDER = "_static/explorer"
 # Before the frame has told its height: enough for both pictures, so that little moves.
 FIRST_HEIGHT = 760
 
-FRAME = """<iframe class="explorer" src="{file}" title="{title}" height="{height}">
-<p><a href="{file}">{title}</a></p>
-</iframe>
-"""
-
 
 class Explorer(SphinxDirective):
     """Write the explorer of a packaged robot beside the book and show it."""
@@ -35,11 +31,14 @@ class Explorer(SphinxDirective):
         robot = load_robot(name)
         file = Path(self.env.app.outdir, FOLDER, f"{name}.html")
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(explorer_page(robot, find_region(robot)), encoding="utf-8")
+        file.write_text(explorer_page(find_region(robot)), encoding="utf-8")
         here = Path(self.env.app.outdir, self.env.docname).parent
         address = Path(os.path.relpath(file, here)).as_posix()
         title = escape(f"Explorer of {robot.name}: its joint space beside the arm")
-        html = FRAME.format(file=escape(address), title=title, height=FIRST_HEIGHT)
+        frame = Path(self.env.app.confdir, "_templates", "explorer.html")
+        html = Template(frame.read_text(encoding="utf-8")).substitute(
+            file=escape(address), title=title, height=FIRST_HEIGHT
+        )
         return [nodes.raw("", html, format="html")]
 
 

@@ -7,18 +7,21 @@ const BOXES =
   "mjx-container, .pst-scrollable-table-container, .cell_output .text_html, .highlight pre, " +
   ".wide-figure";
 
+/** @type {(box: Element) => void} */
 function markWide(box) {
   const hidden = box.scrollWidth - box.clientWidth;
   box.classList.toggle("wide", hidden > 1);
   box.classList.toggle("more-left", hidden > 1 && box.scrollLeft > 1);
   box.classList.toggle("more-right", hidden > 1 && box.scrollLeft < hidden - 1);
-  if (hidden > 1) box.tabIndex = 0;
+  if (hidden > 1) box.setAttribute("tabindex", "0");
   else box.removeAttribute("tabindex");
 }
 
 // A box changes its size with the window, and when the cell that hides it is opened.
 function watchBoxes() {
-  const sizes = new ResizeObserver((changes) => changes.forEach(({ target }) => markWide(target)));
+  const sizes = new ResizeObserver((changes) => {
+    for (const { target } of changes) markWide(target);
+  });
   for (const box of document.querySelectorAll(BOXES)) {
     box.addEventListener("scroll", () => markWide(box));
     sizes.observe(box);
@@ -38,8 +41,10 @@ function holdPunctuation() {
   }
 }
 
+/** @type {(text: Node | null, pattern: RegExp) => string} */
 function cutOff(text, pattern) {
-  const found = text?.nodeType === Node.TEXT_NODE ? (text.data.match(pattern)?.[0] ?? "") : "";
+  if (!(text instanceof Text)) return "";
+  const found = text.data.match(pattern)?.[0] ?? "";
   if (found) text.data = text.data.replace(pattern, "");
   return found;
 }
@@ -48,31 +53,38 @@ function cutOff(text, pattern) {
 function showTopOfSidebar() {
   const sidebar = document.querySelector(".bd-sidebar-primary");
   const chapter = sidebar?.querySelector(".current.active");
+  if (!sidebar) return;
   const bottom = chapter ? chapter.getBoundingClientRect().bottom + sidebar.scrollTop : 0;
-  if (sidebar && bottom < window.innerHeight) sidebar.scrollTop = 0;
+  if (bottom < window.innerHeight) sidebar.scrollTop = 0;
 }
 
 // On paper the page is light, whatever the screen shows.
 const root = document.documentElement;
-let themeOnScreen = "light";
+/** @type {string | undefined} */
+let themeOnScreen;
 window.addEventListener("beforeprint", () => {
   themeOnScreen = root.dataset.theme;
   root.dataset.theme = "light";
 });
-window.addEventListener("afterprint", () => (root.dataset.theme = themeOnScreen));
+window.addEventListener("afterprint", () => {
+  root.dataset.theme = themeOnScreen ?? "light";
+});
 
 // An explorer in a frame tells its height; it is told whether the page is light or dark.
 function tellTheme() {
   const theme = root.dataset.theme === "dark" ? "dark" : "light";
-  for (const frame of document.querySelectorAll("iframe.explorer"))
-    frame.contentWindow.postMessage({ theme }, "*");
+  for (const frame of explorerFrames()) frame.contentWindow?.postMessage({ theme }, "*");
+}
+
+function explorerFrames() {
+  const frames = [...document.querySelectorAll("iframe.explorer")];
+  return frames.filter((frame) => frame instanceof HTMLIFrameElement);
 }
 
 window.addEventListener("message", ({ data, source }) => {
-  const frames = [...document.querySelectorAll("iframe.explorer")];
-  const frame = frames.find((one) => one.contentWindow === source);
+  const frame = explorerFrames().find((one) => one.contentWindow === source);
   if (!frame || !Number.isFinite(data?.explorerHeight)) return;
-  frame.height = Math.ceil(data.explorerHeight);
+  frame.height = String(Math.ceil(data.explorerHeight));
   tellTheme();
 });
 new MutationObserver(tellTheme).observe(root, { attributeFilter: ["data-theme"] });

@@ -1,4 +1,7 @@
-"""The companion of J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383: printed numbers and verdicts.
+"""The companion of J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383: what it prints, what holds.
 
-It calls `qbound`, which knows nothing of it; the book calls both.
+`printed`: tables and formulas, as data.  `ledger`: every statement and its verdict.
+`computations`: the function that judges each.  `verdicts`: from its outcome to the verdict.
+`evidence`: arms, regions and proofs that they share.  `collisions`: what Figure 11 may draw red.
+`results`, `recorded`: the book's numbers, written and read.  `commands`: `claims` and `results`.
 """

@@ -149,6 +149,19 @@ FIGURE_4_BOUNDS: Final = (
 """The six bounds that the caption of Figure 4 names."""
 
 
+CAPTIONS: Final = {
+    7: "the path of six points",
+    8: "a path of five points",
+    9: "a path of five points",
+    10: "an overlay of two paths",
+    11: "random configurations",
+}
+"""What the captions of Section 4's last figures announce."""
+
+NAMED_FIGURE: Final = (10, "random configurations")
+"""The figure that the text on numerical methods names, and what it says is seen there."""
+
+
 def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
     """Return every offset by its label, in cm; converted here and nowhere else.
 
@@ -184,6 +197,11 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
         for name in re.findall(r"\b[xz]_\w+|\bq\d\b", text)
     }
     return sympy.parse_expr(text, local_dict=names | {"arctan": readings[arctan]})
+
+
+def indices(label: str) -> tuple[int, ...]:
+    """Return the indices of a label, such as (2, 1, 2) of ``beta_{2,1,2}``."""
+    return tuple(map(int, re.findall(r"\d+", label)))
 
 
 def label(name: str) -> str:

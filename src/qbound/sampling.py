@@ -1,21 +1,20 @@
-"""Random sampling of joint space: the traditional method that the paper argues against (Figure 11).
+"""Random sampling of joint space: the traditional method, a fair opponent of the exact region.
 
-It sees boundary functions only, no region: whatever it finds, it finds by drawing. What "collision"
-means for a drawn configuration the paper does not say, so the predicate is a choice.
+It sees boundary functions only, no region: whatever it finds, it finds by drawing. What counts as
+free is the caller's choice, a predicate.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
-from qbound.boundary.functions import clearance, components, position
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Pair, Robot
+from qbound.boundary.functions import position
+from qbound.model.robot import Robot
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -64,7 +63,7 @@ def sample(
     limits: ArrayLike | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Sample:
-    """Draw `n` configurations evenly and judge each (Figure 11).
+    """Draw `n` configurations evenly and judge each.
 
     Parameters
     ----------
@@ -97,27 +96,3 @@ def joint_ranges(robot: Robot) -> Floats:
 def keeps_clear(robot: Robot, q: Floats) -> Bools:
     """Every boundary in use keeps its clearance: eqs. (11) and (12)."""
     return evaluator(robot, limits=False).feasible(q)
-
-
-def misses_points(robot: Robot, q: Floats) -> Bools:
-    """No pair of points coincides exactly: eq. (17) to the letter."""
-    pairs = [b for b in robot.boundaries if isinstance(b, Pair) and b.used]
-    apart = [(components(robot, pair)(q) != 0).any(axis=-1) for pair in pairs]
-    return np.asarray(np.all([np.ones(len(q), dtype=bool), *apart], axis=0))
-
-
-def keeps_components_positive(robot: Robot, q: Floats) -> Bools:
-    """No component of a boundary function in use is negative: eq. (9) to the letter."""
-    return _respected((components(robot, b) for b in robot.boundaries if b.used), q)
-
-
-def keeps_geometric(robot: Robot, q: Floats) -> Bools:
-    """Every half-space in use is respected; pairs of points are not looked at: eq. (12) alone."""
-    walls = [b for b in robot.boundaries if b.used and not isinstance(b, Pair)]
-    return _respected((clearance(robot, wall) for wall in walls), q)
-
-
-def _respected(forms: Iterable[HarmonicForm], q: Floats) -> Bools:
-    """No form of any stack is negative."""
-    values = [form(q).reshape(len(q), -1) for form in forms]
-    return np.asarray((np.concatenate([np.zeros((len(q), 1)), *values], axis=1) >= 0).all(axis=1))

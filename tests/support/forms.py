@@ -29,6 +29,28 @@ def forms(kinds, *terms) -> HarmonicForm:
     return HarmonicForm(table, kinds)
 
 
+def moved(stack: HarmonicForm, ranges: Ranges, rng) -> tuple[HarmonicForm, Ranges, float]:
+    """The same forms with joints zeroed elsewhere and slides in another unit; areas shrink by it.
+
+    What was q is stretch q' + by: nothing in it is a whole number any more.
+    """
+    matrices, sides, stretched = [], [], 1.0
+    for kind, side in zip(stack.kinds, ranges, strict=True):
+        by = rng.uniform(-3, 3)
+        if kind == "revolute":
+            stretch, (c, s) = 1.0, (np.cos(by), np.sin(by))
+            matrices.append(np.array([[1, 0, 0], [0, c, -s], [0, s, c]]))
+        else:
+            stretch = rng.uniform(0.3, 3)
+            matrices.append(
+                np.array([[1, 0, 0], [by, stretch, 0], [by**2, 2 * by * stretch, stretch**2]])
+            )
+        sides.append(side and tuple((x - by) / stretch for x in side))
+        stretched *= stretch
+    table = np.einsum("mij,ia,jb->mab", stack.coefficients, *matrices)
+    return HarmonicForm(table, stack.kinds), tuple(sides), 1 / stretched
+
+
 def random_form(seed: int, joints: int) -> HarmonicForm:
     """Two forms of joints of any kind, every coefficient drawn."""
     rng = np.random.default_rng(seed)

@@ -8,7 +8,9 @@ from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.entries import KINDS, SCHEMA, VERDICTS, Claim, claim, from_content
+from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, from_content
+from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.verdicts import VERDICTS
 
 
 def add_to(commands: Any) -> None:
@@ -78,8 +80,8 @@ def _say(chosen: list[Claim], whole: bool) -> None:
             continue
         print(f"{one.id}  {one.where}\n  says      {one.says}\n  verdict   {one.verdict}")
         print(f"  found     {one.found}")
-        if one.mended:
-            print(f"  mended    {one.mended}")
+        if one.corrected:
+            print(f"  corrected {one.corrected}")
         print(f"  evidence  {one.evidence.chapter}, {one.evidence.test}")
     if not whole:
         print(f"{len(chosen)} entries")

@@ -1,5 +1,6 @@
-"""The ledger: a verdict on every statement of the paper, derived from a computation."""
+"""What holds of the paper? Every statement that can be tested, and the verdict on it.
 
-from lizarraga2025.ledger.entries import Claim, Finding, claims, entry, judge, require, undetermined
-
-__all__ = ["Claim", "Finding", "claims", "entry", "judge", "require", "undetermined"]
+`entries` reads what each says (the files in ``statements``), `claims` joins this with what its
+function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `cite` tells
+how to cite it.
+"""

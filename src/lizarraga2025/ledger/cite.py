@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
+from importlib import resources
 from typing import Final
 
-from lizarraga2025.ledger.entries import Claim
+from lizarraga2025.ledger.claims import Claim
 from qbound import __version__
 
 YEAR: Final = 2026
 """Of the release; a test compares it with CITATION.cff."""
-
-PAGE: Final = "chapters/15_what_holds.html"
-"""Where the ledger stands in the book."""
 
 PAPER: Final = r"""@article{Lizarraga2025,
   author  = {Lizarraga, J. A. and Navarro, D. M. and Mata-Romero, M. E. and Luque-Vega, L. F. and
@@ -25,6 +24,12 @@ PAPER: Final = r"""@article{Lizarraga2025,
   pages   = {5383},
   doi     = {10.3390/app15105383}
 }"""
+
+
+def page() -> str:
+    """Return the page of the book that shows the ledger."""
+    file = resources.files("lizarraga2025") / "ledger" / "book.toml"
+    return str(tomllib.loads(file.read_text(encoding="utf-8"))["page"])
 
 
 def package() -> str:
@@ -42,7 +47,7 @@ def entry(claim: Claim) -> str:
     return f"""@misc{{qbound-{claim.id},
   author       = {{{{qbound maintainers}}}},
   title        = {{{{What holds, entry {claim.id}: {_escaped(claim.where)}}}}},
-  howpublished = {{qbound {__version__}, {_escaped(PAGE)}\\#{claim.anchor}}},
+  howpublished = {{qbound {__version__}, {_escaped(page())}\\#{claim.anchor}}},
   year         = {{{YEAR}}},
   note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""

@@ -7,7 +7,9 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.entries import KINDS, VERDICTS, Claim
+from lizarraga2025.ledger.claims import Claim
+from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.verdicts import VERDICTS
 
 WORDS = '<input type="search" name="words" autocomplete="off"'
 HEADER = ("Entry", "What the paper says", "Verdict", "What was found")
@@ -61,14 +63,16 @@ def _row(one: Claim) -> str:
         f'<th scope="row"><a href="#{one.anchor}">{one.id}</a></th>',
         f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>',
         f"<td>{badge(one.verdict)}</td>",
-        f"<td>{typeset(one.found)}{_mended(one)}{_evidence(one)}{_citation(one)}</td>",
+        f"<td>{typeset(one.found)}{_corrected(one)}{_evidence(one)}{_citation(one)}</td>",
     )
     data = f'data-kind="{one.kind}" data-verdict="{one.verdict}"'
     return f'<tr id="{one.anchor}" {data}>{"".join(cells)}</tr>'
 
 
-def _mended(one: Claim) -> str:
-    return f'<p class="ledger-mended"><b>Holds:</b> {typeset(one.mended)}</p>' if one.mended else ""
+def _corrected(one: Claim) -> str:
+    if not one.corrected:
+        return ""
+    return f'<p class="ledger-corrected"><b>Holds:</b> {typeset(one.corrected)}</p>'
 
 
 def _evidence(one: Claim) -> str:
@@ -83,7 +87,7 @@ def _citation(one: Claim) -> str:
 
 
 def _erratum(one: Claim) -> str:
-    ledger = f'<a href="{cite.PAGE.rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
+    ledger = f'<a href="{cite.page().rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
     words = (f"qbound claims {one.id}", "--recompute")
     again = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     repeat = f"{link_to_chapter(one)}; <code>{again}</code>"
@@ -91,7 +95,7 @@ def _erratum(one: Claim) -> str:
     return (
         f'<tr><th scope="row">{ledger}<br>{badge(one.verdict)}</th>'
         f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>'
-        f"<td>{typeset(one.mended)}</td>"
+        f"<td>{typeset(one.corrected)}</td>"
         f"<td>{why}</td></tr>"
     )
 

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import tomllib
-from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 from qbound.check import number
 from qbound.cli.chosen import add_robot
-from qbound.cli.values import check_targets, held, joint_value, write_text
-from qbound.model.robot import Joint, Robot
+from qbound.cli.files import check_targets, write_text
+from qbound.cli.values import box, held
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
-from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
+from qbound.proofs.certify import Bracket, bracket_scale, certify
+from qbound.proofs.points import as_decimal, read_points
+from qbound.proofs.reports import certificate_lines
 
-SIDES = ("lower", "upper")
 STATUS = {"proved": 0, "refuted": 1, "undecided": 3}
 
 
@@ -53,20 +52,23 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
-    if options.output:
-        check_targets([options.output])
+    check_targets([options.output])
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
-    _check_length(options.margin)
-    if options.largest_scale and (options.margin != "0" or options.slice):
-        raise ValueError("--largest-scale: for the robot as it is, without --margin and --slice")
+    margin = as_decimal("--margin", options.margin)
+    if number(margin) < 0:
+        raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
     if options.largest_scale:
+        if options.margin != "0" or options.slice:
+            raise ValueError(
+                "--largest-scale: for the robot as it is, without --margin and --slice"
+            )
         return _say_bracket(robot, bracket_scale(text), options.output)
     answer = certify(text, statement(robot, options))
     if options.output and answer.text:
         write_text(options.output, answer.text)
     if options.output != "-" or not answer.text:
-        print(f"{answer.said}\n{in_words(robot, answer)}".rstrip())
+        print("\n".join([answer.said, *certificate_lines(robot, answer)]))
     return STATUS[answer.verdict]
 
 
@@ -76,13 +78,12 @@ def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement
     if options.inset is not None and not options.region:
         raise ValueError("--inset: only --region is proved but for an inset")
     if options.box:
-        return statements.box(*_ranges(robot, options.box), options.margin)
+        return statements.box(*box(robot, options.box), options.margin)
     if options.path:
         return statements.path(read_points(robot, options.path), options.margin)
     if options.polygon:
-        return statements.filled(
-            [statements.anticlockwise(read_points(robot, options.polygon))], options.margin
-        )
+        loop = statements.anticlockwise(read_points(robot, options.polygon))
+        return statements.filled([loop], options.margin)
     if options.region:
         inset = statements.usual_inset(robot) if options.inset is None else options.inset
         return statements.inner_polygon(robot, inset, margin=options.margin, held=values)
@@ -90,98 +91,15 @@ def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement
     return statements.home_polygon(robot, scale, options.margin, values)
 
 
-def read_points(robot: Robot, file: str) -> list[list[str]]:
-    """Read a line of joint values a point, in the file's units; a first line may name joints."""
-    try:
-        with Path(file).open(newline="", encoding="utf-8-sig") as lines:
-            rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
-    except UnicodeDecodeError:
-        raise ValueError(f"{file}: not UTF-8 text") from None
-    names = [joint.name for joint in robot.joints]
-    if rows and [cell.strip() for cell in rows[0][1]] == names:
-        del rows[0]
-    return [
-        [_decimal(f"{file}, line {i}", cell) for cell in _full(file, i, row, names)]
-        for i, row in rows
-    ]
-
-
-def _full(file: str, i: int, row: Sequence[str], names: Sequence[str]) -> Sequence[str]:
-    if len(row) != len(names):
-        raise ValueError(f"{file}, line {i}: {len(row)} values for {', '.join(names)}")
-    return row
-
-
-def _decimal(where: str, text: str) -> str:
-    """Keep a decimal as it is written."""
-    try:
-        number(text.strip())
-    except ValueError:
-        raise ValueError(f"{where}: {text!r} is no decimal number") from None
-    return text.strip()
-
-
-def _check_length(margin: str) -> None:
-    _decimal("--margin", margin)
-    if number(margin) < 0:
-        raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
-
-
-def _ranges(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Read ``q1=-20deg:30deg`` for every joint; one without a range has that of its limits."""
-    names, found = [joint.name for joint in robot.joints], dict[str, Sequence[str]]()
-    for text in texts:
-        name, _, values = text.partition("=")
-        if name not in names:
-            raise ValueError(f"--box {text}: no joint {name!r}; there are {', '.join(names)}")
-        found[name] = values.split(":") if ":" in values else [values, values]
-    for joint, unit in zip(robot.joints, statements.units(robot), strict=True):
-        if joint.name not in found and joint.limits is None:
-            raise ValueError(f"--box: {joint.name} has no limits; give {joint.name}=LOW:HIGH")
-        if joint.name not in found and joint.limits is not None:
-            found[joint.name] = [statements.decimal(x / unit) for x in joint.limits]
-    rows = [list(_ends(robot, j, found[name])) for j, name in enumerate(names)]
-    return [low for low, _ in rows], [high for _, high in rows]
-
-
-def _ends(robot: Robot, j: int, texts: Sequence[str]) -> Iterator[str]:
-    """Keep decimals in the file's unit as they are written; convert the others."""
-    if len(texts) != 2:
-        raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
-    own = unit(robot, robot.joints[j])
-    for text in texts:
-        value = joint_value(robot, j, text)  # refuses what is no value
-        plain = text.strip().removesuffix(own)
-        exact = not plain.endswith(("deg", "rad"))
-        yield plain if exact else statements.decimal(value / statements.units(robot)[j])
-
-
-def in_words(robot: Robot, answer: Certificate) -> str:
-    """Say how large a proof is, or how deep a witness lies."""
-    if answer.witness is not None:
-        found = answer.witness
-        q = zip(robot.joints, found.q, strict=True)
-        places = ", ".join(f"{j.name} = {x:.9g} {unit(robot, j)}" for j, x in q)
-        limit = {f"{j.name}.{side}": unit(robot, j) for j in robot.joints for side in SIDES}
-        return f"depth {found.depth:.9g} {limit.get(found.boundary, robot.length_unit)} at {places}"
-    cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
-    return f"cells: {answer.leaves} ({cells})" if answer.verdict == "proved" else ""
-
-
-def unit(robot: Robot, joint: Joint) -> str:
-    """Return the file's unit of a joint's values."""
-    return robot.angle_unit if joint.kind == "revolute" else robot.length_unit
-
-
 def _say_bracket(robot: Robot, found: Bracket, output: str | None) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
     unsafe, refutation = found.unsafe
     if proof is not None and proof.verdict == "proved":
-        print(f"scale {safe}: proved\n{in_words(robot, proof)}")
+        print("\n".join([f"scale {safe}: proved", *certificate_lines(robot, proof)]))
         if output:
             write_text(output, proof.text)
     if refutation is not None and refutation.verdict == "refuted":
-        print(f"scale {unsafe}: refuted\n{in_words(robot, refutation)}")
+        print("\n".join([f"scale {unsafe}: refuted", *certificate_lines(robot, refutation)]))
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

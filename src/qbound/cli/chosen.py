@@ -1,11 +1,11 @@
-"""What several commands choose alike: rule, slice, component; and the region that they mean."""
+"""What several commands choose alike: robot, rule, slice; and the region that they mean."""
 
 from __future__ import annotations
 
 import argparse
 
 from qbound.model.robot import Robot
-from qbound.region import Component, Region, Rule, find_region
+from qbound.region import Region, Rule, find_region
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -35,11 +35,3 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
     if rule == "paper" and values:
         raise ValueError("--slice: the paper's rule knows two joints only")
     return find_region(robot, values, rule)
-
-
-def component_of(region: Region, k: int) -> Component:
-    """Return a component by its number, from 0 as in the JSON."""
-    count = len(region.components)
-    if not 0 <= k < count:
-        raise ValueError(f"no component {k}; there are {count}, numbered from 0")
-    return region.components[k]

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from qbound.cli.chosen import add_robot
-from qbound.cli.values import configuration, json_text, write_text
+from qbound.cli.files import write_text
+from qbound.cli.values import configuration
 from qbound.export.document import configuration_document
+from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 

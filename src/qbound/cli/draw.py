@@ -7,11 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, component_of, region_by_rule
-from qbound.cli.values import check_targets, configuration, held, write_all
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.files import check_targets, write_all
+from qbound.cli.values import configuration, held
+from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import plane_of_motion
+from qbound.paths.route import nth_component
 
 
 def add_to(commands: Any) -> None:
@@ -43,25 +47,23 @@ def run(options: argparse.Namespace) -> int:
     output = options.output or f"{Path(options.robot).stem}.svg"
     check_targets([output], ("svg", "png"))
     values = held(robot, options.slice)
-    q = np.array(robot.home if options.q is None else configuration(robot, options.q))
-    q[list(values)] = list(values.values())
-    both = options.region == options.arm
-    write_all([(output, _picture(options, q, values, both))])
+    q = robot.home if options.q is None else np.array(configuration(robot, options.q))
+    q = robot.with_held(q[robot.free(values)], values)
+    write_all([(output, _picture(robot, q, values, Path(output).suffix, options))])
     print(output)
     return 0
 
 
 def _picture(
-    options: argparse.Namespace, q: np.ndarray[Any, Any], values: dict[int, float], both: bool
+    robot: Robot, q: ArrayLike, values: dict[int, float], ending: str, options: argparse.Namespace
 ) -> bytes:
     from qbound.figures.pictures import Chart, pose_picture
 
-    robot, chart = load_robot(options.robot), None
+    both, chart, plane = options.region == options.arm, None, None
     if both or options.region:
         region = region_by_rule(robot, options.rule, values)
-        first, second = robot.free(values)
-        numbered = component_of(region, options.component) if region.components else None
-        chart = Chart(region, (first, second), numbered)
-    plane = (plane_of_motion(robot) or (0, 2)) if both or options.arm else None
-    kind = Path(options.output or ".svg").suffix.removeprefix(".").lower() or "svg"
-    return pose_picture(robot, q, chart, plane, kind)
+        numbered = nth_component(region, options.component) if region.components else None
+        chart = Chart(region, region.problem.joints, numbered)
+    if both or options.arm:
+        plane = plane_of_motion(robot) or (0, 2)
+    return pose_picture(robot, q, chart, plane, ending.removeprefix(".").lower())

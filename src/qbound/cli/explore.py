@@ -6,7 +6,8 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.values import check_targets, held, write_text
+from qbound.cli.files import check_targets, write_text
+from qbound.cli.values import held
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
@@ -35,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     check_targets([options.output])
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     region = region_by_rule(robot, options.rule, values)
-    write_text(options.output, explorer_page(robot, region, rule=options.rule, held=values))
+    write_text(options.output, explorer_page(region))
     return 0 if region.home is not None else 1
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import json
+from collections.abc import Iterator
+from functools import cache, partial
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.polygons import outlines, polygon_csv, polygon_npz
-from qbound.cli.values import Content, check_targets, held, json_text, write_all
+from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.values import held
+from qbound.export.formats import json_text
+from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robotfile import load_robot
 from qbound.region import Region
 
@@ -41,58 +44,44 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Find the region; 1 if the home pose is in none of its components."""
     robot = load_robot(options.robot)
-    files = [options.svg, options.csv, options.geojson, options.npz, options.json]
-    check_targets([file for file in files if file])
+    check_targets([options.svg, options.csv, options.geojson, options.npz, options.json])
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
-    write_all(_outputs(options, region))
-    if "-" not in files:
-        _say(region)
+    deliver(_outputs(options, region), _lines(region))
     return 0 if region.home is not None else 1
 
 
-def _outputs(options: argparse.Namespace, region: Region) -> list[tuple[str, Content]]:
-    """Make what was asked for; files in the order in which they are named here."""
-    outputs = list[tuple[str, Content]]()
-    joints, units = region.problem.joint_names, region.problem.units
-    if options.svg:
-        outputs.append((options.svg, _draw(region)))
-    if options.csv or options.npz:
-        drawn = outlines(region, options.deviation)
-        if options.csv:
-            outputs.append((options.csv, polygon_csv(drawn, joints, units)))
-        if options.npz:
-            outputs.append((options.npz, polygon_npz(region, drawn, joints, units)))
-    if options.geojson:
-        content = region.to_geojson(options.deviation)
-        outputs.append((options.geojson, json.dumps(content) + "\n"))
-    if options.json:
-        outputs.append((options.json, json_text(region.to_dict())))
-    return outputs
+def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
+    """Say what makes each file; they are made in this order."""
+    drawn = cache(partial(find_outlines, region, options.deviation))
+    return [
+        (options.svg, lambda: _draw(region)),
+        (options.csv, lambda: outlines_csv(drawn())),
+        (options.geojson, lambda: json_text(outlines_geojson(drawn()), None)),
+        (options.npz, lambda: outlines_npz(drawn())),
+        (options.json, lambda: json_text(region.to_dict())),
+    ]
 
 
-def _say(region: Region) -> None:
+def _lines(region: Region) -> Iterator[str]:
     unit = region.area_unit
     home = region.robot.home[list(region.problem.joints)]
     margins = region.margins(home).tolist()
     for name, margin in zip(region.boundaries, margins, strict=True):
         if margin < 0:
-            print(f"home violates {name}, margin {margin:.6g}")
+            yield f"home violates {name}, margin {margin:.6g}"
     if not region.components:
-        print(f"no component: no room is left by {', '.join(region.empty_because)}")
+        yield f"no component: no room is left by {', '.join(region.empty_because)}"
     elif region.home is None and min(margins) >= 0:
         touched = [n for n, m in zip(region.boundaries, margins, strict=True) if m == 0]
-        print(f"home is feasible, but in no component: it touches {', '.join(touched)}")
-    print(f"{len(region.components)} components, area {region.area:.9g} {unit} in all")
+        yield f"home is feasible, but in no component: it touches {', '.join(touched)}"
+    yield f"{len(region.components)} components, area {region.area:.9g} {unit} in all"
     for component in region.components:
         home_too = ", with the home pose" if component.contains_home else ""
         vertices = len(component.vertices)
-        print(f"  area {component.area:.9g} {unit}, {vertices} vertices{home_too}")
+        yield f"  area {component.area:.9g} {unit}, {vertices} vertices{home_too}"
 
 
 def _draw(region: Region) -> bytes:
-    from qbound.figures.pictures import Chart, pose_picture
+    from qbound.figures.pictures import region_picture
 
-    robot, problem = region.robot, region.problem
-    q = robot.with_held(robot.home[list(problem.joints)], problem.held)
-    numbered = region.components[0] if region.components else None
-    return pose_picture(robot, q, Chart(region, problem.joints, numbered), None)
+    return region_picture(region)

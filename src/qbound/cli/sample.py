@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import Any
-
-import numpy as np
 
 from qbound import sampling
 from qbound.cli.chosen import add_robot, add_rule
+from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import progress
-from qbound.cli.values import (
-    Content,
-    check_targets,
-    csv_text,
-    heading,
-    joint_units,
-    npz_bytes,
-    write_all,
-)
-from qbound.model.robot import Robot
+from qbound.export.formats import json_text
+from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.model.robotfile import load_robot
 from qbound.region import paper_rule
-from qbound.sampling import Sample
 
 
 def add_to(commands: Any) -> None:
@@ -52,57 +41,17 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"-n {options.n}: a sample has one configuration or more")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
-    robot = load_robot(options.robot)
-    files = [options.csv, options.npz, options.json]
-    check_targets([file for file in files if file])
-    judge = sampling.keeps_clear if options.rule == "clearance" else paper_rule.feasible
+    robot, rule, seed = load_robot(options.robot), options.rule, options.seed
+    check_targets([options.csv, options.npz, options.json])
+    judge = sampling.keeps_clear if rule == "clearance" else paper_rule.feasible
     told = progress("sampling", options.n)
-    drawn = sampling.sample(robot, options.n, judge, seed=options.seed, progress=told)
-    write_all(_outputs(options, robot, drawn))
-    if "-" not in files:
-        free, n = int(drawn.free.sum()), options.n
-        print(f"{free} of {n} are free: {drawn.fraction_free:.6g} +- {drawn.standard_error:.2g}")
+    drawn = sampling.sample(robot, options.n, judge, seed=seed, progress=told)
+    free, error = int(drawn.free.sum()), drawn.standard_error
+    outputs: list[Output] = [
+        (options.csv, lambda: sample_csv(robot, drawn)),
+        (options.npz, lambda: sample_npz(robot, drawn)),
+        (options.json, lambda: json_text(sample_document(robot, drawn, rule, seed), None)),
+    ]
+    line = f"{free} of {options.n} are free: {drawn.fraction_free:.6g} +- {error:.2g}"
+    deliver(outputs, [line])
     return 0
-
-
-def _outputs(options: argparse.Namespace, robot: Robot, drawn: Sample) -> list[tuple[str, Content]]:
-    outputs = list[tuple[str, Content]]()
-    if options.csv:
-        outputs.append((options.csv, _csv(robot, drawn)))
-    if options.npz:
-        outputs.append((options.npz, _npz(robot, drawn)))
-    if options.json:
-        outputs.append((options.json, _json(robot, drawn, options)))
-    return outputs
-
-
-def _csv(robot: Robot, drawn: Sample) -> str:
-    units = zip(robot.joints, joint_units(robot), strict=True)
-    header = [f"{joint.name}_{unit}" for joint, unit in units]
-    header += [f"{axis}_{robot.length_unit}" for axis in "xyz"] + ["free"]
-    rows = zip(drawn.q.tolist(), drawn.tool.tolist(), drawn.free.tolist(), strict=True)
-    return csv_text(header, ([*q, *tool, int(free)] for q, tool, free in rows))
-
-
-def _npz(robot: Robot, drawn: Sample) -> bytes:
-    names = np.array([joint.name for joint in robot.joints])
-    arrays = {"q": drawn.q, "tool": drawn.tool, "free": drawn.free, "joints": names}
-    return npz_bytes(arrays | {"units": np.array([*joint_units(robot), robot.length_unit])})
-
-
-def _json(robot: Robot, drawn: Sample, options: argparse.Namespace) -> str:
-    content = {
-        **heading("qbound/sample/1", robot, options.rule),
-        "ranges": sampling.joint_ranges(robot).tolist(),
-        "n": len(drawn.free),
-        "seed": options.seed,
-        "free": int(drawn.free.sum()),
-        "fraction_free": drawn.fraction_free,
-        "standard_error": drawn.standard_error,
-        "configurations": {
-            "q": drawn.q.tolist(),
-            "tool": drawn.tool.tolist(),
-            "free": drawn.free.tolist(),
-        },
-    }
-    return json.dumps(content) + "\n"

@@ -3,37 +3,25 @@
 from __future__ import annotations
 
 import argparse
-import json
-from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
-from qbound.cli import route
-from qbound.cli.chosen import add_robot, add_rule, add_slice
-from qbound.cli.pathreport import Report, report, report_content
-from qbound.cli.route import Route
-from qbound.cli.values import (
-    Content,
-    check_targets,
-    csv_text,
-    joint_units,
-    json_text,
-    shown,
-    write_all,
-)
+from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.values import held
+from qbound.export.formats import json_text
+from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
+from qbound.paths.report import PathReport, report
+from qbound.paths.route import Route, plan_route
 from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
     lasting,
     ros_trajectory,
-    row_times,
     stretched,
     timed,
 )
-from qbound.paths.traversal import Traversal
 
 
 def add_to(commands: Any) -> None:
@@ -79,92 +67,56 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    files = [options.csv, options.ros, options.svg, options.json]
-    check_targets([file for file in files if file])
+    check_targets([options.csv, options.ros, options.svg, options.json])
     robot = load_robot(options.robot)
-    way = route.plan(robot, options)
-    times = _in_time(robot, way.walk, options)
-    found = report(robot, way, options.rule)
-    write_all(_outputs(options, robot, way, times, found))
-    if "-" not in files:
-        _say(robot, way, times, found)
+    route = _route(robot, options)
+    times = _in_time(route, options)
+    found = report(route)
+    outputs: list[Output] = [
+        (options.csv, lambda: route_csv(route, times)),
+        (options.svg, lambda: _picture(found)),
+        (options.json, lambda: json_text(route_document(found, times))),
+    ]
+    if times is not None:
+        outputs.append((options.ros, lambda: json_text(ros_trajectory(robot, times), None)))
+    deliver(outputs, route_lines(found, times))
     return 0 if found.feasible else 1
 
 
-def _in_time(robot: Robot, walk: Traversal, options: argparse.Namespace) -> Trajectory | None:
+def _route(robot: Robot, options: argparse.Namespace) -> Route:
+    """Find the region and go along what the numbers are of."""
+    if options.arcs and options.scale != 1:
+        raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
+    if not options.scale > 0:
+        raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
+    return plan_route(
+        region_by_rule(robot, options.rule, held(robot, options.slice)),
+        options.order,
+        along="arcs" if options.arcs else "lines",
+        component=options.component,
+        closed=options.closed,
+        scale=options.scale,
+        deviation=options.deviation,
+    )
+
+
+def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
     """Time the path; None where nothing asks for times and the file states no velocities."""
-    if not 0 < options.speed_scale <= 1:
-        raise ValueError(f"--speed-scale {options.speed_scale:g}: above 0, at most 1")
+    robot, part = route.region.robot, options.speed_scale
+    if not 0 < part <= 1:
+        raise ValueError(f"--speed-scale {part:g}: above 0, at most 1")
     if options.duration is not None:
-        if options.speed_scale != 1:
+        if part != 1:
             raise ValueError("--duration and --speed-scale: the one decides the other")
-        return lasting(robot, walk, options.duration)
+        return lasting(robot, route.path, options.duration)
     if options.ros is None and any(joint.velocity is None for joint in robot.joints):
         return None
-    return stretched(timed(walk, joint_speeds(robot)), 1 / options.speed_scale)
+    return stretched(timed(route.path, joint_speeds(robot)), 1 / part)
 
 
-def _outputs(
-    options: argparse.Namespace, robot: Robot, way: Route, times: Trajectory | None, found: Report
-) -> list[tuple[str, Content]]:
-    outputs = list[tuple[str, Content]]()
-    if options.csv:
-        outputs.append((options.csv, _csv(robot, way.walk, times)))
-    if options.ros and times is not None:
-        outputs.append((options.ros, json.dumps(ros_trajectory(robot, times)) + "\n"))
-    if options.svg:
-        outputs.append((options.svg, _picture(robot, way, found.plane or (0, 2))))
-    if options.json:
-        content = report_content(robot, way, found, options)
-        content["duration"] = None if times is None else float(times.t[-1])
-        outputs.append((options.json, json_text(content)))
-    return outputs
-
-
-def _csv(robot: Robot, walk: Traversal, times: Trajectory | None) -> str:
-    """Return a row for each row of the path; the time is empty where no velocity is known."""
-    t = [""] * len(walk.q) if times is None else row_times(walk, times).tolist()
-    units = zip(robot.joints, joint_units(robot), strict=True)
-    header = ["t_s", *(f"{joint.name}_{unit}" for joint, unit in units)]
-    header += [f"{axis}_{robot.length_unit}" for axis in "xyz"]
-    rows = zip(t, walk.q.tolist(), walk.tool.tolist(), strict=True)
-    return csv_text(header, ([time, *q, *tool] for time, q, tool in rows))
-
-
-def _picture(robot: Robot, way: Route, plane: tuple[int, int]) -> bytes:
+def _picture(found: PathReport) -> bytes:
     from qbound.figures.pictures import Chart, traversal_picture
 
-    first, second = robot.free(way.held)
-    return traversal_picture(robot, Chart(way.region, (first, second)), way.walk, way.stops, plane)
-
-
-def _say(robot: Robot, way: Route, times: Trajectory | None, found: Report) -> None:
-    unit, walk = robot.length_unit, way.walk
-    known = "at most" if walk.proved else "measured"
-    print(f"{len(walk.legs)} legs: {', '.join(way.legs)}")
-    print(f"{len(walk.q)} rows; the tool's path deviates {walk.deviation:.3g} {unit} ({known})")
-    if times is not None:
-        print(f"{times.t[-1]:.6g} s")
-    print(f"final pose: {_pose(robot, walk.final_pose)}")
-    print(f"final tool: {_triple(walk.tool[-1])} {unit}; reach {walk.reach[-1]:.6g} {unit}")
-    print(f"largest reach: {found.farthest:.6g} {unit}, {way.where(found.farthest_at.s)}")
-    for crossing in found.crossings or ():
-        legs = " and ".join(way.where(place.s) for place in (crossing.first, crossing.second))
-        print(f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}")
-    for place in found.singular or ():
-        print(f"singular: {_pose(robot, place.q)}, {way.where(place.s)}")
-    for margin in found.margins:
-        text = f"smallest margin of {margin.boundary.name}: {margin.value:.6g} "
-        print(f"{text}{margin.boundary.unit}, {way.where(margin.place.s)}")
-    for margin in found.margins:
-        if margin.leaves is not None:
-            pose, where = _pose(robot, margin.leaves.q), way.where(margin.leaves.s)
-            print(f"outside: {margin.boundary.name} from {pose}, {where}")
-
-
-def _pose(robot: Robot, q: Sequence[float] | np.ndarray[Any, Any]) -> str:
-    return ", ".join(shown(robot, j, float(value)) for j, value in enumerate(q))
-
-
-def _triple(place: np.ndarray[Any, Any]) -> str:
-    return "(" + ", ".join(f"{value:.6g}" for value in place) + ")"
+    route, region = found.route, found.route.region
+    chart, plane = Chart(region, region.problem.joints), found.plane or (0, 2)
+    return traversal_picture(region.robot, chart, route.path, route.stops, plane)

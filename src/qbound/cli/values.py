@@ -1,25 +1,12 @@
-"""What a user types and what the commands write: joint values in, whole files out."""
+"""What a user types: joint values, held joints, boxes, places and poses."""
 
 from __future__ import annotations
 
-import csv
-import io
-import json
-import math
-import os
-import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from qbound import __version__
 from qbound.model.robot import Robot
-
-Content = str | bytes | Callable[[Path], object]
-"""A text, bytes, or a function that writes the file at a path."""
+from qbound.model.units import parse_joint_value
+from qbound.proofs.points import joint_decimal, limits_as_decimals
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
@@ -27,154 +14,66 @@ def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
     if len(texts) != len(robot.joints):
         names = ", ".join(joint.name for joint in robot.joints)
         raise ValueError(f"{len(texts)} values for {len(robot.joints)} joints: {names}")
-    return [joint_value(robot, j, text) for j, text in enumerate(texts)]
+    return [parse_joint_value(robot, j, text) for j, text in enumerate(texts)]
 
 
 def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
     """Read ``q3=20deg``: the joints that are held, by index, and their values."""
-    names = [joint.name for joint in robot.joints]
-    found = {}
+    found: dict[int, float] = {}
     for text in texts:
-        name, _, number = text.partition("=")
-        if name not in names:
-            raise ValueError(f"--slice {text}: no joint {name!r}; there are {', '.join(names)}")
-        if names.index(name) in found:
-            raise ValueError(f"--slice {text}: {name!r} is held twice")
-        found[names.index(name)] = joint_value(robot, names.index(name), number)
+        j, number = _assigned(robot, "--slice", text)
+        if j in found:
+            raise ValueError(f"--slice {text}: {robot.joints[j].name!r} is held twice")
+        found[j] = parse_joint_value(robot, j, number)
     return found
 
 
-def joint_value(robot: Robot, j: int, text: str) -> float:
-    """Read a joint value: with deg or rad, or a plain number in the robot file's own unit."""
-    revolute = robot.joints[j].kind == "revolute"
-    text = text.strip()
-    number, unit = text, robot.angle_unit if revolute else robot.length_unit
-    for suffix in ("deg", "rad"):
-        if revolute and text.endswith(suffix):
-            number, unit = text.removesuffix(suffix), suffix
+def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Read ``q1=-20deg:30deg``, or ``q1=20deg``: the low and the high end of every joint.
+
+    Decimals of the robot file's units; a joint that is not named has its limits.
+    """
+    found = {}
+    for text in texts:
+        j, number = _assigned(robot, "--box", text)
+        found[j] = number.split(":") if ":" in number else [number, number]
+    for j, joint in enumerate(robot.joints):
+        limits = limits_as_decimals(robot, j)
+        if j not in found and limits is None:
+            raise ValueError(f"--box: {joint.name} has no limits; give {joint.name}=LOW:HIGH")
+        found.setdefault(j, list(limits or ()))
+    rows = [_range(robot, j, found[j]) for j in range(len(robot.joints))]
+    return [low for low, _ in rows], [high for _, high in rows]
+
+
+def place(text: str) -> tuple[float, float]:
+    """Read ``X,Z``, lengths in the robot file's unit."""
     try:
-        value = float(number)
+        x, z = (float(number) for number in text.split(","))
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"{robot.joints[j].name}: {text!r} is no value, such as 20deg or 0.35rad")
-    return math.radians(value) if unit == "deg" else value
+        raise ValueError(f"--at {text}: a place is two lengths, such as --at=-20,40") from None
+    return x, z
 
 
-def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
-    """Write several files, every one whole, or none at all; ``-`` is standard output, written last.
-
-    Drafts are made beside the files and renamed when all of them are complete.
-    """
-    check_targets([file for file, _ in outputs])
-    targets = [(Path(file).resolve(), content) for file, content in outputs if file != "-"]
-    drafts = [path.with_name(f".{path.name}.{os.getpid()}.part") for path, _ in targets]
-    try:
-        for (path, content), draft in zip(targets, drafts, strict=True):
-            try:
-                _write(draft, content)
-            except OSError as error:
-                raise ValueError(f"{path}: not written: {error.strerror or error}") from None
-        for (path, _), draft in zip(targets, drafts, strict=True):
-            draft.replace(path)
-    finally:
-        for draft in drafts:
-            draft.unlink(missing_ok=True)
-    for content in (content for file, content in outputs if file == "-"):
-        if isinstance(content, bytes):
-            sys.stdout.buffer.write(content)
-        else:
-            print(content, end="")
+def pose(robot: Robot, joints: Sequence[int], text: str) -> list[float]:
+    """Read ``Q1,Q2``: values of some joints by index."""
+    numbers = text.split(",")
+    if len(numbers) != len(joints):
+        raise ValueError(f"--go {text}: {len(joints)} joint values are needed, as 20deg,-45deg")
+    return [parse_joint_value(robot, j, number) for j, number in zip(joints, numbers, strict=True)]
 
 
-def check_targets(files: Sequence[str], kinds: Sequence[str] = ()) -> None:
-    """Refuse, before any work, files that could not be written.
-
-    Parameters
-    ----------
-    kinds : sequence of str, optional
-        Endings that are allowed, such as ``svg``.
-
-    Raises
-    ------
-    ValueError
-        If two are the same, a folder is missing, a target is no regular file, or an ending unknown.
-    """
-    seen = set()
-    for file in files:
-        path = Path(file).resolve() if file != "-" else Path("-")
-        if path in seen:
-            raise ValueError(f"{file}: two outputs go to this one place")
-        seen.add(path)
-        if file == "-":
-            continue
-        if not path.parent.is_dir():
-            raise ValueError(f"{file}: No such file or directory: {path.parent}")
-        if path.exists() and not path.is_file():
-            raise ValueError(f"{file}: is no regular file")
-        if kinds and path.suffix.removeprefix(".").lower() not in kinds:
-            raise ValueError(
-                f"{file}: unknown ending {path.suffix!r}; wanted: .{', .'.join(kinds)}"
-            )
+def _assigned(robot: Robot, option: str, text: str) -> tuple[int, str]:
+    """Read ``NAME=VALUE``: the joint of that name, by index, and the text of the value."""
+    names = [joint.name for joint in robot.joints]
+    name, _, value = text.partition("=")
+    if name not in names:
+        raise ValueError(f"{option} {text}: no joint {name!r}; there are {', '.join(names)}")
+    return names.index(name), value
 
 
-def write_text(file: str, text: str) -> None:
-    """Write a text whole or not at all; ``-`` is standard output."""
-    write_all([(file, text)])
-
-
-def _write(draft: Path, content: Content) -> None:
-    if isinstance(content, str):
-        draft.write_text(content, encoding="utf-8", newline="\n")
-    elif isinstance(content, bytes):
-        draft.write_bytes(content)
-    else:
-        content(draft)
-
-
-def json_text(content: Mapping[str, object]) -> str:
-    """Return what a command found as JSON, a line an entry."""
-    return json.dumps(content, indent=1) + "\n"
-
-
-def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return comma-separated values with a header; numbers with all their digits."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return buffer.getvalue()
-
-
-def npz_bytes(arrays: Mapping[str, ArrayLike]) -> bytes:
-    """Return arrays as a NumPy .npz file, the same bytes on every run."""
-    buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=False, **{k: np.asarray(v) for k, v in arrays.items()})
-    return buffer.getvalue()
-
-
-def joint_units(robot: Robot, joints: Iterable[int] | None = None) -> list[str]:
-    """Return the unit of each joint's values: ``rad``, or the robot's length unit."""
-    chosen = range(len(robot.joints)) if joints is None else joints
-    return ["rad" if robot.kinds[j] == "revolute" else robot.length_unit for j in chosen]
-
-
-def heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
-    """Return what a JSON of paths or poses begins with: what, of which robot, in which units."""
-    return {
-        "schema": schema,
-        "robot": robot.name,
-        "version": __version__,
-        "rule": rule,
-        "joints": [joint.name for joint in robot.joints],
-        "units": {"joints": joint_units(robot), "length": robot.length_unit},
-    }
-
-
-def shown(robot: Robot, j: int, value: float) -> str:
-    """Return a joint's name and value, for a reader, in the units of the robot file."""
-    joint, unit = robot.joints[j], robot.length_unit
-    if joint.kind == "revolute":
-        unit = robot.angle_unit
-        value = math.degrees(value) if unit == "deg" else value
-    return f"{joint.name} = {value:.6g} {unit}"
+def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:
+    if len(texts) != 2:
+        raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
+    low, high = (joint_decimal(robot, j, text) for text in texts)
+    return low, high

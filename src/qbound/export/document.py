@@ -1,13 +1,12 @@
-"""Regions and configurations as plain data: what JSON, GeoJSON and shapely are given."""
+"""Regions and configurations as plain data, for JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numpy.typing import ArrayLike
 
-from qbound.export.polygons import Piece, polygons
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
 from qbound.region import Component, Region, find_region, margins
@@ -15,9 +14,6 @@ from qbound.region.arcs import Arc
 from qbound.version import __version__
 from qbound.workspace.areas import NoHomeError, find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
-
-if TYPE_CHECKING:
-    from shapely import MultiPolygon
 
 
 def region_document(region: Region) -> dict[str, Any]:
@@ -83,42 +79,6 @@ def configuration_document(
     return content
 
 
-def region_geojson(region: Region, deviation: float) -> dict[str, Any]:
-    """Return a FeatureCollection as GeoJSON has it, in joint values instead of places on Earth.
-
-    Every component is a feature; a ring ends where it begins. A component that goes round a joint
-    is cut where that joint is -pi or pi.
-    """
-    drawn = [polygons(component, deviation) for component in region.components]
-    features = [
-        {
-            "type": "Feature",
-            "properties": {
-                "component": k,
-                "contains_home": component.contains_home,
-                "area": component.area,
-                "deviation": measured,
-                "wraps": list(component.wraps),
-                "joints": list(region.problem.joint_names),
-                "unit": list(region.problem.units),
-            },
-            "geometry": {"type": "MultiPolygon", "coordinates": [_closed(p) for p in pieces]},
-        }
-        for k, (component, (pieces, measured)) in enumerate(
-            zip(region.components, drawn, strict=True)
-        )
-    ]
-    return {"type": "FeatureCollection", "features": features}
-
-
-def region_shapely(region: Region, deviation: float) -> MultiPolygon:
-    """Return the polygons of all components as one shapely geometry."""
-    from shapely import MultiPolygon, Polygon
-
-    pieces = [piece for c in region.components for piece in polygons(c, deviation)[0]]
-    return MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
-
-
 def _home_content(region: Region) -> dict[str, Any]:
     problem, robot = region.problem, region.robot
     home = robot.home[list(problem.joints)]
@@ -176,7 +136,3 @@ def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> di
         "contains_home": None if where is None else region.components[where].contains_home,
         "nearest": nearest,
     }
-
-
-def _closed(piece: Piece) -> list[list[list[float]]]:
-    return [[*ring.tolist(), ring[0].tolist()] for ring in (piece.outer, *piece.holes)]

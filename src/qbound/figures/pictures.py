@@ -133,13 +133,14 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
     robot, problem = region.robot, region.problem
     home = robot.home[list(problem.joints)]
     q = robot.with_held(home, problem.held)
-    _joint_panel(ax, robot, Chart(region, problem.joints, region.home), q[None])
+    numbered = region.components[0] if region.components else None
+    _joint_panel(ax, robot, Chart(region, problem.joints, numbered), q[None])
     ax.plot(*(home * figures.joint_scales(region)), "P", color=INK, ms=9, mec="white", zorder=7)
     return ax
 
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
-    """Return the picture of `plot_region`, home's vertices numbered."""
+    """Return the picture of `plot_region`, the first component's vertices numbered."""
     return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 

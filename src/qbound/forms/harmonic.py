@@ -3,26 +3,33 @@
 Every coordinate of every point of a serial chain is such a sum, and so is the squared distance of
 two points (a rotation keeps lengths). Both columns of the paper's eq. (29) and the clearance
 of eq. (11) are therefore arrays of coefficients with one axis a joint, and evaluation, gradient,
-restriction and Theorem 2's (a, b, c) are contractions of that array.
+restriction and Theorem 2's (a, b, c) are contractions of that array: of floats by one matrix
+product, of SymPy expressions and of balls (python-flint) by the same rules entry by entry.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
-from typing import TYPE_CHECKING, Any, Literal
+from functools import cached_property, reduce
+from math import prod
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.extras import require
+from qbound.forms.factors import FACTORS, Kind, basis, basis_slope
+from qbound.forms.waves import Waves, to_waves
 
 if TYPE_CHECKING:
     import sympy
 
-Kind = Literal["revolute", "prismatic"]
+__all__ = ["HarmonicForm", "Kind", "add_constant", "basis", "basis_slope"]
+
 Array = NDArray[Any]
+Values = ArrayLike | Sequence[Any]
+"""Joint values: floats, or objects such as balls and symbols."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +40,10 @@ class HarmonicForm:
     ----------
     coefficients : ndarray, shape (..., 3, ..., 3)
         The last ``len(kinds)`` axes belong to the joints, each of length 3; axes before them stack
-        forms (the three components of a vector, say). Floats, or SymPy expressions (dtype object).
+        forms (the three components of a vector, say). Floats; or SymPy expressions, rationals or
+        balls (dtype object).
     kinds : tuple of {"revolute", "prismatic"}
-        The factor of each joint: (1, cos q, sin q) or (1, q, q²).
+        The factor of each joint: (1, cos q, sin q) or (1, q, q²), a row of `factors.FACTORS`.
     """
 
     coefficients: Array
@@ -44,15 +52,20 @@ class HarmonicForm:
     def __post_init__(self) -> None:
         """Refuse an array whose joint axes do not match the kinds."""
         n = len(self.kinds)
-        if self.coefficients.shape[self.coefficients.ndim - n :] != (3,) * n:
+        if self.coefficients.shape[self._first :] != (3,) * n:
             raise ValueError(
                 f"{n} joints need {n} last axes of length 3, found {self.coefficients.shape}"
             )
 
     @property
+    def _first(self) -> int:
+        """Axis of the first joint."""
+        return self.coefficients.ndim - len(self.kinds)
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the stack; ``()`` for one form."""
-        return self.coefficients.shape[: self.coefficients.ndim - len(self.kinds)]
+        return self.coefficients.shape[: self._first]
 
     def __getitem__(self, index: Any) -> HarmonicForm:
         """Take forms out of the stack."""
@@ -76,35 +89,46 @@ class HarmonicForm:
         """Contract the first axis of the stack with a vector, or with the last axis of a matrix."""
         return HarmonicForm(np.tensordot(np.asarray(vector), self.coefficients, axes=1), self.kinds)
 
-    def __call__(self, q: ArrayLike) -> Array:
-        """Evaluate at configurations as one matrix product.
+    def __call__(self, q: Values) -> Array:
+        """Evaluate at configurations.
 
         Parameters
         ----------
         q : array_like, shape (..., n)
-            Joint values, rad or length.
+            Joint values, rad or length. Balls enclose the values over a box of configurations.
 
         Returns
         -------
         ndarray, shape (...) + self.shape
+            Dtype object where coefficients or joint values are no floats.
         """
         columns = self._columns(q)
-        return self._combine([basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)])
-
-    def gradient(self, q: ArrayLike) -> Array:
-        """Return the derivatives along each joint, shape (...) + self.shape + (n,)."""
-        columns = self._columns(q)
         factors = [basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
-        slopes = [basis_slope(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
-        return np.stack(
-            [
-                self._combine([*factors[:j], slopes[j], *factors[j + 1 :]])
-                for j in range(len(self.kinds))
-            ],
-            axis=-1,
-        )
+        return self.combined(factors, np.shape(columns[0]) if columns else ())
 
-    def along(self, joint: int, q: ArrayLike) -> Array:
+    def derivative(self, joint: int) -> HarmonicForm:
+        """Return the derivative along a joint: a harmonic form again."""
+        axis = self._first + joint
+        slope = FACTORS[self.kinds[joint]].slope.T
+        moved = np.tensordot(slope, self.coefficients, axes=([1], [axis]))
+        return HarmonicForm(np.moveaxis(moved, 0, axis), self.kinds)
+
+    @cached_property
+    def derivatives(self) -> HarmonicForm:
+        """The derivatives along every joint, a stack of shape self.shape + (n,)."""
+        along = [self.derivative(j).coefficients for j in range(len(self.kinds))]
+        return HarmonicForm(np.stack(along, axis=self._first), self.kinds)
+
+    @cached_property
+    def waves(self) -> Waves:
+        """The form as a sum of waves; floats only."""
+        return to_waves(self.coefficients, self.kinds)
+
+    def gradient(self, q: Values) -> Array:
+        """Return the derivatives along each joint, shape (...) + self.shape + (n,)."""
+        return self.derivatives(q)
+
+    def along(self, joint: int, q: Values) -> Array:
         """Return the coefficients of the one-joint form along `joint`, all others held at `q`.
 
         For a revolute joint these are (c0, a, b) of ``a cos q + b sin q + c0``: Theorem 2's a and
@@ -116,29 +140,36 @@ class HarmonicForm:
             Constant first. The entry of `q` for the joint itself is not read.
         """
         columns = self._columns(q)
-        factors = [basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
-        unit = np.eye(3)
-        picks = [np.broadcast_to(unit[i], (*np.shape(columns[0]), 3)) for i in range(3)]
-        return np.stack(
-            [self._combine([*factors[:joint], pick, *factors[joint + 1 :]]) for pick in picks],
-            axis=-1,
-        )
+        moved = np.moveaxis(self.coefficients, self._first + joint, self._first)
+        kinds = self.kinds[:joint] + self.kinds[joint + 1 :]
+        others = columns[:joint] + columns[joint + 1 :]
+        factors = [basis(kind, x) for kind, x in zip(kinds, others, strict=True)]
+        return HarmonicForm(moved, kinds).combined(factors, np.shape(columns[joint]))
+
+    def size(self, reach: Sequence[float]) -> Array:
+        """Bound the sum of the absolute values of all terms, each joint at most `reach` from 0.
+
+        Rounding is a small part of it. Floats; shape self.shape.
+        """
+        factors = [
+            np.array(FACTORS[kind].largest(x), dtype=float)
+            for kind, x in zip(self.kinds, reach, strict=True)
+        ]
+        return HarmonicForm(np.abs(self.coefficients), self.kinds).combined(factors)
 
     def restrict(self, held: Mapping[int, float]) -> HarmonicForm:
         """Hold some joints at given values: the form in the joints that are left."""
         coefficients = self.coefficients
-        first = coefficients.ndim - len(self.kinds)
         for joint in sorted(held, reverse=True):  # from the last, so that earlier axes stay put
             factor = basis(self.kinds[joint], held[joint])
-            coefficients = np.tensordot(coefficients, factor, axes=([first + joint], [0]))
+            coefficients = np.tensordot(coefficients, factor, axes=([self._first + joint], [0]))
         kinds = tuple(kind for j, kind in enumerate(self.kinds) if j not in held)
         return HarmonicForm(coefficients, kinds)
 
     def joints(self) -> tuple[int, ...]:
-        """Return the joints that the form depends on, by non-zero coefficients."""
-        nonzero = np.argwhere(self.coefficients != 0)
-        first = self.coefficients.ndim - len(self.kinds)
-        return tuple(j for j in range(len(self.kinds)) if np.any(nonzero[:, first + j]))
+        """Return the joints that the form depends on, by coefficients that are not surely zero."""
+        nonzero = np.argwhere(np.logical_not(self.coefficients == 0))
+        return tuple(j for j in range(len(self.kinds)) if np.any(nonzero[:, self._first + j]))
 
     def symbolic(self, q: Sequence[sympy.Expr]) -> Any:
         """Return the form as a SymPy expression (a list of them, nested as the stack is).
@@ -154,32 +185,57 @@ class HarmonicForm:
         if self.shape:
             return [self[i].symbolic(q) for i in range(self.shape[0])]
         factors = [
-            (sympy.S.One, sympy.cos(x), sympy.sin(x)) if kind == "revolute" else (1, x, x**2)
+            (sympy.S.One, *FACTORS[kind].functions(x))
             for kind, x in zip(self.kinds, q, strict=True)
         ]
         return sympy.Add(
             *(
-                c * sympy.Mul(*(factor[i] for factor, i in zip(factors, index, strict=True)))
+                c * prod(factor[i] for factor, i in zip(factors, index, strict=True))
                 for index, c in np.ndenumerate(self.coefficients)
                 if c != 0
             )
         )
 
-    def _columns(self, q: ArrayLike) -> list[Array]:
-        """Split (..., n) joint values into n float arrays of shape (...)."""
-        values, n = np.asarray(q, dtype=float), len(self.kinds)
+    def combined(self, factors: Sequence[Array], batch: tuple[int, ...] = ()) -> Array:
+        """Contract every joint's axis with given values of its factor.
+
+        Parameters
+        ----------
+        factors : sequence of ndarray, shape (..., 3)
+            One a joint, as `basis` gives them.
+        batch : tuple of int
+            The shape (...) of each factor.
+
+        Returns
+        -------
+        ndarray, shape (...) + self.shape
+        """
+        if any(x.dtype == object for x in (self.coefficients, *factors)):
+            return self._nested(factors, batch)
+        monomials = reduce(_outer, factors) if factors else np.ones((*batch, 1))
+        matrix = self.coefficients.reshape(-1, monomials.shape[-1])
+        values = monomials.reshape(-1, monomials.shape[-1]) @ matrix.T
+        return values.reshape((*batch, *self.shape))
+
+    def _nested(self, factors: Sequence[Array], batch: tuple[int, ...]) -> Array:
+        """Contract the last joint first: over a box sums of products are wider than nested ones."""
+        result = np.broadcast_to(self.coefficients, (*batch, *self.coefficients.shape))
+        for factor in reversed(factors):
+            between = (1,) * (result.ndim - len(batch) - 1)
+            result = (result * factor.reshape(*batch, *between, 3)).sum(axis=-1)
+        return result
+
+    def _columns(self, q: Values) -> list[Array]:
+        """Split (..., n) joint values into n arrays of shape (...), of floats or of objects."""
+        values, n = np.asarray(q), len(self.kinds)
+        if values.dtype != object:
+            values = values.astype(float)
         if values.shape[-1:] != (n,):
             found = values.shape[-1] if values.ndim else "a bare number"
             raise ValueError(
                 f"expected {n} joint value{'s' * (n != 1)} on the last axis, found {found}"
             )
         return list(np.moveaxis(values, -1, 0))
-
-    def _combine(self, factors: Sequence[Array]) -> Array:
-        """Contract every joint axis with its factor of shape (..., 3)."""
-        monomials = reduce(_outer, factors, np.ones(1))
-        matrix = self.coefficients.reshape(*self.shape, 3 ** len(self.kinds))
-        return np.tensordot(monomials, matrix, axes=([-1], [-1]))
 
 
 def _outer(left: Array, right: Array) -> Array:
@@ -195,19 +251,3 @@ def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
     constants: tuple[Any, ...] = (..., *(0,) * (coefficients.ndim - constant.ndim))
     result[constants] += constant
     return result
-
-
-def basis(kind: Kind, q: ArrayLike) -> Array:
-    """Return (1, cos q, sin q) or (1, q, q²), shape (..., 3)."""
-    q = np.asarray(q)
-    if kind == "revolute":
-        return np.stack([np.ones_like(q), np.cos(q), np.sin(q)], axis=-1)
-    return np.stack([np.ones_like(q), q, q * q], axis=-1)
-
-
-def basis_slope(kind: Kind, q: ArrayLike) -> Array:
-    """Return the derivative of `basis`, shape (..., 3)."""
-    q = np.asarray(q)
-    if kind == "revolute":
-        return np.stack([np.zeros_like(q), -np.sin(q), np.cos(q)], axis=-1)
-    return np.stack([np.zeros_like(q), np.ones_like(q), 2 * q], axis=-1)

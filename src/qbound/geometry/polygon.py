@@ -1,4 +1,4 @@
-"""Polygons in joint space: area, centroid, scaling about a point (Figures 5 and 6)."""
+"""Polygons in joint space: area, centroid, scaling about a point."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def centroid(vertices: ArrayLike) -> Floats:
 
 
 def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
-    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy (Figure 6)."""
+    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy."""
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
     return np.asarray(g + factor * (p - g))
 

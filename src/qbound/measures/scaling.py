@@ -1,4 +1,4 @@
-"""Scaling a polygon about a point until it is safe, and how far is far enough (Figure 6).
+"""Scaling a polygon about a point until it is safe, and how far is far enough.
 
 Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
 the scale found is covered by triangles on each of which every form is shown to be positive.
@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance, margin_of
+from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.simplices import halved
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
 
 Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 ROUNDS, PLACES = 14, 33
 MOST_TRIANGLES = 2_000_000
@@ -53,7 +54,7 @@ class SafeScale:
 def largest_safe_scale(
     vertices: ArrayLike, centre: ArrayLike, forms: Sequence[HarmonicForm], *, highest: float = 1.0
 ) -> SafeScale:
-    """Return the largest scale up to which a polygon stays where every form is >= 0 (Figure 6).
+    """Return the largest scale up to which a polygon stays where every form is >= 0.
 
     Parameters
     ----------
@@ -79,16 +80,14 @@ def largest_safe_scale(
     order, in floating point. A violation found on the way starts the search anew from there.
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    if not (np.isfinite(p).all() and np.isfinite(g).all()):
-        raise ValueError("vertices and centre must be finite numbers")
-    walls = _Walls.around(forms, g + highest * (p - g), g)
-    if not (walls.values(g) > 0).all():
+    stacked = _stacked(forms, g + highest * (p - g), g)
+    if not (stacked(g) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
-    best = _coarse(walls, p, g, highest)
+    best = _coarse(stacked, p, g, highest)
     while True:
-        best = _touch(walls, p, g, best, highest)
+        best = _touch(stacked, p, g, best, highest)
         proved = best.scale * (1 - PROVED_SCALE)
-        witness = _violation(walls, _fan(g + proved * (p - g), g))
+        witness = _violation(stacked, _fan(g + proved * (p - g), g))
         if witness is None:
             if best.form < 0:
                 return SafeScale(best.scale, proved, best.q, -1, -1)
@@ -115,11 +114,11 @@ def first_exit(
         Its index; -1 where none stops the ray.
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
-    return _exits(_Walls.around(forms, g + highest * rays, g), g, rays, highest)
+    return _exits(_stacked(forms, g + highest * rays, g), g, rays, highest)
 
 
 def least(
-    form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike, tolerance: float = 1e-9
+    form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike, tolerance: float = 1e-12
 ) -> tuple[float, Floats]:
     """Return the least value of a form over a polygon, and where, to within a tolerance.
 
@@ -127,17 +126,7 @@ def least(
     of it can hold a value below the least one found less `tolerance` of the form's size.
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    walls = _Walls.around([form], p, g)
-    slack = tolerance * np.abs(form.coefficients).max()
-    triangles, best, where = _fan(p, g), np.inf, g
-    while len(triangles):
-        corners = walls.values(triangles)[..., 0]
-        i = np.unravel_index(corners.argmin(), corners.shape)
-        if corners[i] < best:
-            best, where = float(corners[i]), triangles[i]
-        open_ = walls.bounds(triangles)[:, 0] < best - slack
-        triangles = walls.halved(triangles[open_], np.zeros(open_.sum(), dtype=np.intp))
-    return best, np.asarray(where)
+    return _least(form, _fan(p, g), tolerance)
 
 
 def worst_margins(
@@ -167,80 +156,42 @@ def least_along_edges(
 ) -> tuple[float, Floats]:
     """Return the least value of a form on a polygon's edges and where, to within a tolerance."""
     p = np.asarray(vertices, dtype=float)
-    start, end = p, np.roll(p, -1, axis=0)
-    walls = _Walls.around([form], p, p[0])
-    slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, p[0]
-    while len(start):
-        ends = walls.values(np.stack([start, end]))[..., 0]
-        i = np.unravel_index(ends.argmin(), ends.shape)
-        if ends[i] < best:
-            best, where = float(ends[i]), np.stack([start, end])[i]
-        thin = np.stack([start, (start + end) / 2, end], axis=1)
-        open_ = walls.bounds(thin)[:, 0] < best - slack
-        start, end = start[open_], end[open_]
-        middle = (start + end) / 2
-        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+    return _least(form, np.stack([p, np.roll(p, -1, axis=0)], axis=1), tolerance)
+
+
+def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, Floats]:
+    """Halve simplices until no part can hold a value below the least one found at a corner."""
+    _refuse_infinite(form, cells)
+    slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, cells[0, 0]
+    while len(cells):
+        corners = form(cells)
+        i = np.unravel_index(corners.argmin(), corners.shape)
+        if corners[i] < best:
+            best, where = float(corners[i]), cells[i]
+        cells = cells[second_order(form, cells) < best - slack]
+        cells = halved(cells, worst_edges(form, cells))
     return best, np.asarray(where)
 
 
-# --- bounds of second order -----------------------------------------------------------------------
+# --- all forms at once ----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
-class _Walls:
-    """Forms with bounds within a box: second derivatives along each joint, and rounding."""
-
-    forms: HarmonicForm
-    bend: Floats
-    noise: Floats
-
-    @classmethod
-    def around(cls, forms: Sequence[HarmonicForm], points: Floats, centre: Floats) -> _Walls:
-        """Bound the second derivatives within the box around some points and the centre."""
-        kinds = forms[0].kinds if forms else ("revolute", "revolute")
-        table = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
-        every = np.concatenate([points.reshape(-1, 2), centre[None]])
-        far, spread = np.abs(every).max(axis=0), np.ptp(every, axis=0) + 1e-300
-        (a0, a1, a2), (b0, b1, b2) = (_largest(kind, x) for kind, x in zip(kinds, far, strict=True))
-        size = np.abs(table)
-        first, mixed, second = (
-            np.einsum("mij,i,j->m", size, one, other)
-            for one, other in ((a2, b0), (a1, b1), (a0, b2))
-        )
-        # 2 |d1 d2| <= t d1^2 + d2^2 / t: what is left is convex, and bounds lie at corners
-        t = spread[1] / spread[0]
-        bend = np.stack([first + t * mixed, second + mixed / t], axis=-1)
-        noise = 2.0**-50 * np.einsum("mij,i,j->m", size, a0, b0)
-        return cls(HarmonicForm(table, kinds), bend, noise)
-
-    def values(self, q: Floats) -> Floats:
-        """Every form at configurations, shape (..., m)."""
-        return np.asarray(self.forms(q))
-
-    def bounds(self, triangles: Floats) -> Floats:
-        """Return a value below which no form falls on each triangle (n, 3, 2), shape (n, m)."""
-        middle = triangles.mean(axis=1)
-        d = triangles - middle[:, None]
-        slope = np.einsum("nmj,nkj->nkm", self.forms.gradient(middle), d)
-        drop = np.einsum("mj,nkj->nkm", self.bend, d * d) / 2
-        return np.asarray(self.values(middle) + (slope - drop).min(axis=1))
-
-    def halved(self, triangles: Floats, worst: NDArray[np.intp]) -> Floats:
-        """Halve triangles across the side along which the bound of their worst form loses most."""
-        sides = np.roll(triangles, -1, axis=1) - triangles
-        loss = np.einsum("nj,nkj->nk", self.bend[worst] + 1e-12 * self.bend.max(), sides**2)
-        k = loss.argmax(axis=1)
-        rows = np.arange(len(triangles))
-        a, b, c = (triangles[rows, (k + i) % 3] for i in range(3))
-        middle = (a + b) / 2
-        return np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
+def _stacked(forms: Sequence[HarmonicForm], points: Floats, centre: Floats) -> HarmonicForm:
+    """Return forms as one stack, if all is finite in the box around some points."""
+    kinds = forms[0].kinds if forms else ("revolute", "revolute")
+    table = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
+    stacked = HarmonicForm(table, kinds)
+    _refuse_infinite(stacked, np.vstack([points, centre]))
+    return stacked
 
 
-def _largest(kind: str, far: float) -> Floats:
-    """Bounds of (1, cos, sin) or (1, q, q^2) and of their first and second derivatives."""
-    if kind == "revolute":
-        return np.array([[1.0, 1, 1], [0, 1, 1], [0, 1, 1]])
-    return np.array([[1.0, far, far * far], [0, 1, 2 * far], [0, 0, 2]])
+def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
+    """Refuse NaN, which comparisons would take for safe, infinity, and what grows beyond it."""
+    reach = np.abs(points).reshape(-1, 2).max(axis=0)
+    with np.errstate(all="ignore"):
+        size = form.size(reach)
+    if not (np.isfinite(reach).all() and np.isfinite(size).all()):
+        raise ValueError("joint values and coefficients must be finite numbers")
 
 
 def _fan(p: Floats, g: Floats) -> Floats:
@@ -248,25 +199,23 @@ def _fan(p: Floats, g: Floats) -> Floats:
     return np.stack([np.broadcast_to(g, p.shape), p, np.roll(p, -1, axis=0)], axis=1)
 
 
-def _violation(walls: _Walls, triangles: Floats) -> Floats | None:
+def _violation(forms: HarmonicForm, triangles: Floats) -> Floats | None:
     """Return a point of the triangles at which a form is negative; None: shown to be nowhere."""
     looked_at = 0
     while len(triangles):
         looked_at += len(triangles)
         if looked_at > MOST_TRIANGLES:
             raise ArithmeticError("subdivision comes to no end: a form is zero along a line")
-        values = walls.values(triangles)
-        if len(walls.bend) and values.min() < 0:
+        least_values = forms(triangles).min(axis=-1, initial=np.inf)
+        if least_values.min() < 0:
             return np.asarray(
-                triangles[np.unravel_index(values.min(axis=-1).argmin(), (len(triangles), 3))]
+                triangles[np.unravel_index(least_values.argmin(), least_values.shape)]
             )
-        bounds = walls.bounds(triangles)
-        doubtful = (bounds <= 0).any(axis=1)
-        triangles = (
-            walls.halved(triangles[doubtful], bounds[doubtful].argmin(axis=1))
-            if doubtful.any()
-            else triangles[:0]
-        )
+        bounds = second_order(forms, triangles)
+        doubtful = ~(bounds > 0).all(axis=1)
+        triangles, bounds = triangles[doubtful], bounds[doubtful]
+        if len(triangles):
+            triangles = halved(triangles, worst_edges(forms, triangles, bounds.argmin(axis=1)))
     return None
 
 
@@ -274,17 +223,19 @@ def _violation(walls: _Walls, triangles: Floats) -> Floats | None:
 
 
 def _exits(
-    walls: _Walls, g: Floats, rays: Floats, highest: float
+    forms: HarmonicForm, g: Floats, rays: Floats, highest: float
 ) -> tuple[Floats, NDArray[np.intp]]:
     """Step along rays by what a bound of second order allows; the root is never jumped over."""
-    s = np.zeros((len(rays), len(walls.bend)))
-    bend = np.maximum(rays**2 @ walls.bend.T, 1e-300)
-    rows = np.arange(len(walls.bend))
+    (m,) = forms.shape
+    legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
+    bend = np.maximum(bending(forms, legs, rays[:, None])[:, 0], 1e-300)
+    noise = 2.0**-50 * forms.size(np.abs(legs).max(axis=(0, 1)))
+    s, rows = np.zeros((len(rays), m)), np.arange(m)
     for _ in range(400):
         q = g + s[..., None] * rays[:, None]
-        value = walls.values(q)[:, rows, rows]
-        value = np.where(value <= walls.noise, 0.0, value)
-        slope = np.einsum("nmj,nj->nm", walls.forms.gradient(q)[:, rows, rows], rays)
+        value = forms(q)[:, rows, rows]
+        value = np.where(value <= noise, 0.0, value)
+        slope = np.einsum("nmj,nj->nm", forms.gradient(q)[:, rows, rows], rays)
         root = np.sqrt(slope**2 + 2 * bend * value)
         # (slope + root) / bend, without the difference of near numbers where it falls
         step = np.where(
@@ -293,7 +244,7 @@ def _exits(
         before, s = s, np.minimum(s + step, highest)
         if (s - before <= 2.0**-50 * highest).all():
             break
-    if not len(rows):
+    if not m:
         return np.full(len(rays), highest), np.full(len(rays), -1)
     form = s.argmin(axis=1)
     least_s = s.min(axis=1)
@@ -310,16 +261,16 @@ class _Touch:
     high: float
 
 
-def _coarse(walls: _Walls, p: Floats, g: Floats, highest: float) -> _Touch:
+def _coarse(forms: HarmonicForm, p: Floats, g: Floats, highest: float) -> _Touch:
     """Return the best of a few rays to every edge."""
-    tries = [_on_edge(walls, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
+    tries = [_on_edge(forms, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
     return min(tries, key=lambda touch: touch.scale)
 
 
-def _touch(walls: _Walls, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
+def _touch(forms: HarmonicForm, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
     """Narrow the place of an edge at which it touches first."""
     for _ in range(ROUNDS):
-        found = _on_edge(walls, p, g, best.edge, best.low, best.high, highest)
+        found = _on_edge(forms, p, g, best.edge, best.low, best.high, highest)
         best = found if found.scale <= best.scale else best
         if best.high - best.low < 1e-12 or found is not best:
             break
@@ -336,9 +287,7 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
     q = best.q
     for _ in range(6):
         slope = form.gradient(q)
-        h = 1e-5 * along
-        bend = (form.gradient(q + h) - form.gradient(q - h)) / 2e-5
-        matrix = np.stack([slope, bend])
+        matrix = np.stack([slope, form.derivatives.gradient(q) @ along])
         if abs(np.linalg.det(matrix)) <= TANGENT * np.abs(matrix).max() ** 2:
             return best.q
         q = q - np.linalg.solve(matrix, [float(form(q)), float(slope @ along)])
@@ -346,15 +295,15 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
 
 
 def _on_edge(
-    walls: _Walls, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
+    forms: HarmonicForm, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
 ) -> _Touch:
     t = np.linspace(low, high, PLACES)
     start, end = p[edge], p[(edge + 1) % len(p)]
     rays = start + t[:, None] * (end - start) - g
-    scales, forms = _exits(walls, g, rays, highest)
+    scales, stopped = _exits(forms, g, rays, highest)
     i = int(scales.argmin())
     nearby = float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])
-    return _Touch(float(scales[i]), g + scales[i] * rays[i], edge, int(forms[i]), *nearby)
+    return _Touch(float(scales[i]), g + scales[i] * rays[i], edge, int(stopped[i]), *nearby)
 
 
 def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:

@@ -1,7 +1,7 @@
 """The exact region scaled about a point, its star shape, and polygons that are inside it for sure.
 
 A region that is star-shaped about its centroid contains every copy of itself that is scaled down
-about it: then the largest safe scale is 1, and each smaller scale buys clearance (Figure 6).
+about it: then the largest safe scale is 1, and each smaller scale buys clearance.
 """
 
 from __future__ import annotations
@@ -184,13 +184,12 @@ def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
 
 
 def _curving(form: HarmonicForm, q: Floats) -> Floats:
-    """Return the second derivative of a form along its level curves, by central differences."""
+    """Return the second derivative of a form along its level curves."""
     slope = form.gradient(q)
     tangent = np.stack([-slope[..., 1], slope[..., 0]], axis=-1)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-300)
-    h = 1e-5 * (1 + np.abs(q).max())
-    change = form.gradient(q + h * tangent) - form.gradient(q - h * tangent)
-    return np.asarray((change * tangent).sum(axis=-1) / (2 * h))
+    hessian = form.derivatives.gradient(q)
+    return np.asarray(np.einsum("...i,...ij,...j", tangent, hessian, tangent))
 
 
 def _inflections(form: HarmonicForm, arc: Arc) -> Floats:

@@ -1,6 +1,7 @@
 """Paths through a region: traversals, what they meet, and when each joint is where.
 
-- `traversal`: vertices or arcs in an order, the joint path and the tool's (Figures 7 to 10);
+- `traversal`: vertices or arcs in an order, the joint path and the tool's;
 - `encounters`: where a path crosses itself or the singular curve, and its margins;
-- `trajectory`: the path in time.
+- `trajectory`: the path in time;
+- `route`: vertices or arcs by number; `report`: what a route meets, gathered.
 """

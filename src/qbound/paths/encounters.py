@@ -12,13 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.functions import components, margin_function, position
+from qbound.boundary.evaluator import Evaluator, evaluator
+from qbound.boundary.functions import position
+from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import meetings
-from qbound.model import boundaries as model
 from qbound.model.robot import Robot
+from qbound.model.units import joint_units
 from qbound.paths.traversal import Traversal
-from qbound.region import Problem
-from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
+from qbound.region import Region
+from qbound.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
 Floats = NDArray[np.float64]
@@ -109,7 +111,7 @@ def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> lis
         if pair is None or any(_stops_at(walk, x) for x in pair):
             continue
         if all(abs(pair - (c.first.s, c.second.s)).max() >= SAME_PLACE for c in found):
-            first, second = (Place(float(x), walk.at(x)[0]) for x in pair)
+            first, second = (_place(walk, x) for x in pair)
             found.append(Crossing(path(pair[:1])[0], first, second))
     return sorted(found, key=lambda c: (c.first.s, c.second.s))
 
@@ -146,93 +148,76 @@ def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:
     """Places between rows of different sign, by bisection."""
     signs = np.sign(form(walk.at(grid)))
     changes = np.nonzero(signs[1:] != signs[:-1])[0]
-    low, high, sign = grid[changes], grid[changes + 1], signs[changes]
-    for _ in range(52 if len(changes) else 0):
-        middle = (low + high) / 2
-        before = np.sign(form(walk.at(middle))) == sign
-        low, high = np.where(before, middle, low), np.where(before, high, middle)
-    return [Place(float(s), walk.at(s)[0]) for s in low]
+
+    def as_before(s: Floats) -> NDArray[np.bool_]:
+        return np.asarray(np.sign(form(walk.at(s))) == signs[changes])
+
+    low, _ = last_before(as_before, grid[changes], grid[changes + 1])
+    return [_place(walk, s) for s in low]
 
 
-def boundaries(robot: Robot) -> list[Boundary]:
-    """Return every boundary in use and every joint limit, as lengths and joint units (eqs. 9-12).
+def boundaries(region: Region) -> list[Boundary]:
+    """Return all that a region keeps, as margins of every joint's values (eqs. 9-12).
 
-    The margin of a pair is ``|B| - d_min``; that of a half-space the height over it.
+    By the clearance rule every boundary in use and every joint limit; by the paper's the
+    half-spaces and the windows of Table 6, as limits that bear the names of their boundaries.
     """
-    found = [_of_boundary(robot, boundary) for boundary in robot.boundaries if boundary.used]
-    for j, joint in enumerate(robot.joints):
-        if joint.limits is not None:
-            unit = "rad" if joint.kind == "revolute" else robot.length_unit
-            names = f"{joint.name}.lower", f"{joint.name}.upper"
-            found += _limits(j, joint.limits, names, unit)
-    return found
-
-
-def stated_boundaries(robot: Robot, problem: Problem) -> list[Boundary]:
-    """Return the boundaries of a stated problem, such as the paper's rule, whose forms are lengths.
-
-    The windows of Table 6 are limits of the joints and bear the names of their boundaries.
-    """
-    found = []
-    for name, i in zip(problem.names, range(len(problem.names)), strict=True):
-        form = problem.forms[i]
-        scale = float(np.abs(form.coefficients).max())
-        found.append(Boundary(name, robot.length_unit, form, scale))
-    for j, ends in enumerate(problem.ranges):
-        if ends is not None:
-            unit = "rad" if problem.forms.kinds[j] == "revolute" else robot.length_unit
-            found += _limits(j, ends, problem.limits[j], unit)
-    return found
+    robot, problem = region.robot, region.problem
+    if problem.rule == "clearance":
+        compiled = evaluator(robot)
+        limited = zip(joint_units(robot), (joint.limits for joint in robot.joints), strict=True)
+    else:
+        compiled, limited = problem.evaluator, zip(problem.units, problem.ranges, strict=True)
+    ends = [unit for unit, limits in limited if limits is not None for _ in limits]
+    lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
+    sizes = compiled.rounding / ROUNDING  # of a pair's form, whose value is a length squared
+    sizes = np.where(np.isnan(compiled.distance), sizes, np.sqrt(sizes))
+    columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes.tolist(), strict=True))
+    return [Boundary(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns]
 
 
 def least_margin(walk: Traversal, boundary: Boundary) -> Margin:
-    """Find the smallest margin along a path, and where the path leaves if it does.
+    """Find the smallest margin along a path, and where the path leaves if it does."""
+    value, place = lowest(walk, boundary.margin)
+    return Margin(boundary, value, place, _leaves(walk, boundary, place.s))
+
+
+def lowest(walk: Traversal, function: Form) -> tuple[float, Place]:
+    """Return the smallest value of a function of the joint values along a path, and its place.
 
     The smallest row is the start; the interval around it is divided again until it is a point.
     """
-    grid = _grid(walk)
-    margins = boundary.margin(walk.at(grid))
-    i = int(margins.argmin())
-    low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
-    for _ in range(12):
-        fine = np.linspace(low, high, 33)
-        values = boundary.margin(walk.at(fine))
-        j = int(values.argmin())
-        low, high = fine[max(j - 1, 0)], fine[min(j + 1, 32)]
-    value, s = min((float(values[j]), float(fine[j])), (float(margins[i]), float(grid[i])))
-    leaves = _leaves(walk, boundary, np.sort(np.append(grid, s)))
-    return Margin(boundary, value, Place(s, walk.at(s)[0]), leaves)
+    s, found = _grid(walk), list[tuple[float, float]]()
+    for _ in range(13):
+        values = function(walk.at(s))
+        i = int(values.argmin())
+        found.append((float(values[i]), float(s[i])))
+        s = np.linspace(s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 33)
+    value, at = min(found[0], found[-1])
+    return value, _place(walk, at)
 
 
-def _leaves(walk: Traversal, boundary: Boundary, grid: Floats) -> Place | None:
-    """First place at which the margin is negative beyond rounding."""
-    rounding = ON_BOUNDARY * boundary.scale
-    outside = boundary.margin(walk.at(grid)) < -rounding
-    if not outside.any():
+def _leaves(walk: Traversal, boundary: Boundary, least: float) -> Place | None:
+    """First place at which the margin is negative beyond rounding; `least`: where it is least."""
+
+    def inside(s: Floats) -> NDArray[np.bool_]:
+        return np.asarray(boundary.margin(walk.at(s)) >= -ON_BOUNDARY * boundary.scale)
+
+    grid = np.sort(np.append(_grid(walk), least))
+    kept = inside(grid)
+    if kept.all():
         return None
-    i = int(outside.argmax())
-    low, high = grid[max(i - 1, 0)], grid[i]
-    for _ in range(52):
-        middle = (low + high) / 2
-        if boundary.margin(walk.at(middle))[0] < -rounding:
-            high = middle
-        else:
-            low = middle
-    return Place(float(high), walk.at(high)[0])
+    i = int(kept.argmin())
+    _, high = last_before(inside, grid[[max(i - 1, 0)]], grid[[i]])
+    return _place(walk, high[0])
 
 
-def _of_boundary(robot: Robot, boundary: model.Boundary) -> Boundary:
-    scale = float(np.abs(components(robot, boundary).coefficients).max())
-    return Boundary(boundary.name, robot.length_unit, margin_function(robot, boundary), scale)
+def _column(compiled: Evaluator, k: int) -> Form:
+    return lambda q: np.asarray(compiled.margins(q)[..., k])
 
 
-def _limits(j: int, ends: tuple[float, float], names: tuple[str, str], unit: str) -> list[Boundary]:
-    low, high = ends
-    scale = max(abs(low), abs(high))
-    return [
-        Boundary(names[0], unit, lambda q: q[..., j] - low, scale),
-        Boundary(names[1], unit, lambda q: high - q[..., j], scale),
-    ]
+def _place(walk: Traversal, s: float) -> Place:
+    return Place(float(s), walk.at(s)[0])
 
 
 def _grid(walk: Traversal) -> Floats:

@@ -14,7 +14,16 @@ from qbound.boundary.functions import position
 from qbound.geometry.polylines import Curve, flatten, self_crossings
 from qbound.model.robot import Robot
 
-__all__ = ["Leg", "Traversal", "follow", "self_crossings", "simple_orders", "straight", "traverse"]
+__all__ = [
+    "Leg",
+    "Traversal",
+    "follow",
+    "reach",
+    "self_crossings",
+    "simple_orders",
+    "straight",
+    "traverse",
+]
 
 Floats = NDArray[np.float64]
 
@@ -94,7 +103,7 @@ def traverse(
     step: float = 0.01,
     deviation: float | None = None,
 ) -> Traversal:
-    """Visit vertices in the order given, along straight lines in joint space (Figures 7-9).
+    """Visit vertices in the order given, along straight lines in joint space.
 
     Parameters
     ----------
@@ -169,6 +178,12 @@ def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:
     return Leg(lambda s: (1 - s)[:, None] * a + s[:, None] * b, _bend(robot, a, b))
 
 
+def reach(robot: Robot, q: ArrayLike) -> Floats:
+    """Return the distance of the tool from the origin of the first joint's frame; length."""
+    arm = robot.frames(q).position(robot.joints[0].frame, robot.tool, robot.base)
+    return np.asarray(np.linalg.norm(arm, axis=-1))
+
+
 def simple_orders(
     robot: Robot, vertices: ArrayLike, length: int, plane: tuple[int, int] = (0, 2)
 ) -> list[tuple[int, ...]]:
@@ -219,10 +234,8 @@ def _joined(
         if leg.bend is not None
     )
     proved = all(leg.bend is not None for leg in legs)
-    tool = position(robot, robot.tool)(q)
-    shoulder = robot.frames(q).position(robot.base, robot.joints[0].frame, robot.base)
-    reach = np.linalg.norm(tool - shoulder, axis=-1)
-    return Traversal(q, tool, stops, reach, s, tuple(legs), max(measured, *bounds, 0.0), proved)
+    tool, off = position(robot, robot.tool)(q), max(measured, *bounds, 0.0)
+    return Traversal(q, tool, stops, reach(robot, q), s, tuple(legs), off, proved)
 
 
 def _image(tool: Curve, at: Curve) -> Curve:

@@ -6,6 +6,8 @@
   `exact_windows` (the paper's rule, Table 6);
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
   `connection` (what is joined, and what is not);
-- certificates: `statements` (what is claimed), `triangulation` (of which polygon), `minorant` (the
-  lower bound), `certify` (the search), `check_arb` (the second checker, after `qbound.check`).
+- certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
+  which polygon), `minorant` (the lower bound), `certify` (the search), `check_arb` (the second
+  checker, after `qbound.check`);
+- `reports`: what was proved, as JSON and in words.
 """

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -19,9 +19,12 @@ from numpy.typing import NDArray
 
 from qbound import check
 from qbound.boundary.functions import clearance, margin_of
+from qbound.forms.bending import second_order, worst_edges
+from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.simplices import halved
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.minorant import Bound, Waves, longest_edges, second_order, to_waves
+from qbound.proofs.minorant import Bound
 from qbound.proofs.statements import (
     Statement,
     asked_for_more,
@@ -30,6 +33,7 @@ from qbound.proofs.statements import (
     scaled_polygon,
     units,
 )
+from qbound.proofs.verdict import Verdict
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -88,7 +92,7 @@ class Certificate:
 
     Attributes
     ----------
-    verdict : {"proved", "refuted", "undecided"}
+    verdict : Verdict
         The first two are confirmed in exact arithmetic by `check.check`.
     text : str
         The file, JSON; empty where undecided.
@@ -99,7 +103,7 @@ class Certificate:
     witness : Witness or None
     """
 
-    verdict: str
+    verdict: Verdict
     text: str
     said: str
     searches: dict[str, Search] = field(default_factory=dict)
@@ -132,21 +136,37 @@ def certify(
     _check_margin(statement["margin"])
     beyond = _beyond_limits(text, cells)
     if beyond is not None:
-        answer = _confirmed(_content(text, statement, "refuted", **beyond), {})
-        return replace(answer, witness=_witness(robot, statement, cells, beyond))
-    searches = search_all(robot, statement, cells, min(most, FIRST_LOOK), bound)
-    refuted = {name: found for name, found in searches.items() if found.q is not None}
-    if not refuted and any(found.left for found in searches.values()):
-        searches = search_all(robot, statement, cells, most, bound)
-        refuted = {name: found for name, found in searches.items() if found.q is not None}
-    if refuted:
-        deepest = _deepest(robot, statement, cells, refuted)
-        answer = _confirmed(_content(text, statement, "refuted", **deepest), searches)
-        return replace(answer, witness=_witness(robot, statement, cells, deepest))
-    if any(found.left for found in searches.values()):
-        return Certificate("undecided", "", _left(searches), searches)
+        return _refuted(text, robot, statement, cells, beyond, {})
+    for few in (min(most, FIRST_LOOK), most):
+        searches = search_all(robot, statement, cells, few, bound)
+        verdict = _verdict(searches)
+        if verdict is not Verdict.UNDECIDED:
+            break
+    if verdict is Verdict.REFUTED:
+        deepest = _deepest(robot, statement, cells, searches)
+        return _refuted(text, robot, statement, cells, deepest, searches)
+    if verdict is Verdict.UNDECIDED:
+        return Certificate(verdict, "", _left(searches), searches)
     proof = {name: list(found.trees) for name, found in searches.items()}
-    return _confirmed(_content(text, statement, "proved", proof=proof), searches)
+    return _confirmed(_content(text, statement, verdict, proof=proof), searches)
+
+
+def _verdict(searches: dict[str, Search]) -> Verdict:
+    """Return the answer of searches, which nothing has confirmed."""
+    refuted = any(found.q is not None for found in searches.values())
+    return Verdict.of(not any(found.left for found in searches.values()), refuted)
+
+
+def _refuted(
+    text: str,
+    robot: Robot,
+    statement: Statement,
+    cells: Sequence[Any],
+    evidence: dict[str, Any],
+    searches: dict[str, Search],
+) -> Certificate:
+    answer = _confirmed(_content(text, statement, Verdict.REFUTED, **evidence), searches)
+    return replace(answer, witness=_witness(robot, statement, cells, evidence))
 
 
 def search_all(
@@ -154,11 +174,11 @@ def search_all(
 ) -> dict[str, Search]:
     """Search every boundary in use that can be violated at all."""
     corners = np.array(cells, dtype=float) * units(robot)
-    walls = _walls(robot, statement)
-    return {name: search(waves, corners, most, bound) for name, waves in walls.items()}
+    forms = _forms(robot, statement)
+    return {name: search(form, corners, most, bound) for name, form in forms.items()}
 
 
-def search(waves: Waves, cells: Floats, most: int, bound: Bound = second_order) -> Search:
+def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_order) -> Search:
     """Cut cells across the edge that bends most until the bound is positive on each.
 
     Parameters
@@ -166,23 +186,23 @@ def search(waves: Waves, cells: Floats, most: int, bound: Bound = second_order) 
     cells : ndarray, shape (N, k, n)
         Corners of simplices, rad or length.
     """
-    slack = NEGLIGIBLE * np.abs(waves.amplitudes).sum()
+    slack = NEGLIGIBLE * np.abs(form.waves.amplitudes).sum()
     forest = _Forest(len(cells))
     numbers, roots, parts = np.arange(len(cells)), np.arange(len(cells)), np.ones(len(cells))
     leaves, opened = 0, 0
     for _ in range(DEEPEST):
-        centres = second_order(waves, cells.mean(axis=1, keepdims=True))
+        centres = form(cells.mean(axis=1))
         if len(cells) and centres.min() < -slack:
             worst, left = int(centres.argmin()), float(parts.sum() / forest.size)
             q = cells[worst].mean(axis=0)
             return Search((), leaves, len(cells), left, int(roots[worst]), q)
-        proved = bound(waves, cells) > slack
+        proved = bound(form, cells) > slack
         forest.close(numbers[proved])
         leaves, opened = leaves + int(proved.sum()), opened + len(cells)
         cells, numbers, roots, parts = (x[~proved] for x in (cells, numbers, roots, parts))
         if not len(cells) or opened > most:
             break
-        edges = longest_edges(waves, cells)
+        edges = worst_edges(form, cells)
         cells, numbers = halved(cells, edges), forest.cut(numbers, edges)
         roots, parts = np.repeat(roots, 2), np.repeat(parts / 2, 2)
     return Search(forest.trees(), leaves, len(cells), float(parts.sum() / max(forest.size, 1)))
@@ -221,17 +241,6 @@ class _Forest:
         return "".join(written)
 
 
-def halved(cells: Floats, edges: NDArray[Any]) -> Floats:
-    """Cut each cell at the middle of an edge (i, k): the half with corner i, then that with k."""
-    i, k = (ends[edges] for ends in np.triu_indices(cells.shape[1], 1))
-    rows = np.arange(len(cells))
-    middle = (cells[rows, i] + cells[rows, k]) / 2
-    halves = np.repeat(cells, 2, axis=0)
-    halves[2 * rows, k] = middle
-    halves[2 * rows + 1, i] = middle
-    return halves
-
-
 def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
     """Return the simplices on which a proof rests, shape (N, k, n), from its cells and trees."""
     found = []
@@ -250,11 +259,11 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 # --- what is asked for ----------------------------------------------------------------------------
 
 
-def _walls(robot: Robot, statement: Statement) -> dict[str, Waves]:
-    """Waves of the boundaries in use, by name; without those that nothing can violate."""
+def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
+    """Forms of the boundaries in use, by name; without those that nothing can violate."""
     wider = asked_for_more(robot, float(Fraction(statement["margin"])))
     return {
-        wall.name: to_waves(clearance(wider, wall))
+        wall.name: clearance(wider, wall)
         for wall in wider.boundaries
         if wall.used and wider.least_distance(wall) != 0
     }
@@ -292,19 +301,18 @@ def _check_margin(margin: str) -> None:
 
 
 def _deepest(
-    robot: Robot, statement: Statement, cells: Sequence[Any], refuted: dict[str, Search]
+    robot: Robot, statement: Statement, cells: Sequence[Any], searches: dict[str, Search]
 ) -> dict[str, Any]:
-    """Follow each violated boundary to where it is violated most; return the deepest as witness."""
+    """Follow each violated boundary to where it is violated most: the deepest is the witness."""
     corners = np.array(cells, dtype=float) * units(robot)
     wider = asked_for_more(robot, float(Fraction(statement["margin"])))
     found = []
-    for name, result in refuted.items():
-        assert result.cell is not None
-        assert result.q is not None
-        form = clearance(wider, wider.boundary(name))
-        weights = _lowest(form, corners[result.cell], result.q)
-        value = float(form(weights @ corners[result.cell]))
-        found.append((_depth(wider, name, value), name, result.cell, weights))
+    for name, result in searches.items():
+        if result.cell is not None and result.q is not None:
+            form = clearance(wider, wider.boundary(name))
+            cell, weights = _lowest(form, corners, result.cell, result.q)
+            value = float(form(weights @ corners[cell]))
+            found.append((_depth(wider, name, value), name, cell, weights))
     _, name, cell, weights = max(found, key=lambda item: item[0])
     return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
 
@@ -331,19 +339,23 @@ def _depth(robot: Robot, name: str, value: float) -> float:
     return -float(margin_of(robot, robot.boundary(name), value))
 
 
-def _lowest(form: Callable[[Floats], Floats], cell: Floats, start: Floats) -> Floats:
-    """Return the weights of a configuration in a cell at which a form is low, from `start` down.
+def _lowest(form: HarmonicForm, cells: Floats, cell: int, q: Floats) -> tuple[int, Floats]:
+    """Return the cell, and the weights of its corners, where a form is lowest, by a local search.
 
-    A copy of the cell shrinks around the lowest of its corners, middles and centre so far.
+    In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
+    the search starts at the centres and, in one cell, at a configuration that is known to be low.
     """
-    k = len(cell)
+    count, k = cells.shape[:2]
     i, j = np.triu_indices(k, 1)
     tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
-    lowest = _weights(cell, start)
+    lowest, rows = np.full((count, k), 1 / k), np.arange(count)
+    lowest[cell] = _weights(cells[cell], q)
     for size in 0.75 ** np.arange(80):
-        around = np.vstack([lowest, (1 - size) * lowest + size * tries])
-        lowest = around[form(around @ cell).argmin()]
-    return np.asarray(lowest)
+        near = (1 - size) * lowest[:, None] + size * tries
+        around = np.concatenate([lowest[:, None], near], axis=1)
+        lowest = around[rows, form(around @ cells).argmin(axis=1)]
+    best = int(form(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
+    return best, lowest[best]
 
 
 def _weights(cell: Floats, q: Floats) -> Floats:
@@ -364,7 +376,7 @@ def _decimals(weights: Floats) -> list[str]:
 # --- the file -------------------------------------------------------------------------------------
 
 
-def _content(text: str, statement: Statement, verdict: str, **evidence: Any) -> dict[str, Any]:
+def _content(text: str, statement: Statement, verdict: Verdict, **evidence: Any) -> dict[str, Any]:
     return {
         "schema": "qbound/certificate/1",
         "verdict": verdict,
@@ -381,7 +393,9 @@ def _confirmed(content: dict[str, Any], searches: dict[str, Search]) -> Certific
     try:
         _, said = check.check(text)
     except ValueError as error:
-        return Certificate("undecided", "", f"not confirmed in exact arithmetic: {error}", searches)
+        return Certificate(
+            Verdict.UNDECIDED, "", f"not confirmed in exact arithmetic: {error}", searches
+        )
     return Certificate(content["verdict"], text, said, searches)
 
 
@@ -426,20 +440,16 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
     low, high, tries = 0.0, 0.0, highest
     while low < highest and (not low or not high or high - low > width) and tries > width:
         answer = _tried(robot, scaled_polygon(robot, corners, tries))
-        if answer == "undecided":
+        if answer is Verdict.UNDECIDED:
             break
-        low, high = (tries, high) if answer == "proved" else (low, tries)
+        low, high = (tries, high) if answer is Verdict.PROVED else (low, tries)
         tries = round((low + high) / 2, 12)
     return Bracket(*(_at_scale(text, robot, corners, scale) for scale in (low, high)))
 
 
-def _tried(robot: Robot, statement: Statement) -> str:
-    """Return the answer of the search alone, which nothing has confirmed."""
+def _tried(robot: Robot, statement: Statement) -> Verdict:
     cells = check.read_cells(statement)
-    searches = search_all(robot, statement, cells, 20 * FIRST_LOOK).values()
-    if any(found.q is not None for found in searches):
-        return "refuted"
-    return "undecided" if any(found.left for found in searches) else "proved"
+    return _verdict(search_all(robot, statement, cells, 20 * FIRST_LOOK))
 
 
 def _at_scale(

@@ -12,11 +12,11 @@ import itertools
 import json
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 from qbound.extras import require
+from qbound.proofs.verdict import Verdict
 
 BITS = 160
 """Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
@@ -33,8 +33,8 @@ class Wave:
     powers: tuple[int, ...]
 
 
-def verify(text: str) -> str:
-    """Return "proved" or "refuted".
+def verify(text: str) -> Verdict:
+    """Return what a certificate proves: that its statement is true, or that it is not.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ def verify(text: str) -> str:
     ------
     ValueError
         If it does not prove what it says.
-    ImportError
-        If python-flint is missing.
+    ModuleNotFoundError
+        Without python-flint (the extra `proofs`).
     """
     require("flint")
-    import flint
+    from flint import ctx
 
-    with _precision(flint.ctx):
+    with ctx.workprec(BITS):
         content = json.loads(text)
         robot = tomllib.loads(content["robot"], parse_float=str)
         if hashlib.sha256(content["robot"].encode()).hexdigest() != content["sha256"]:
@@ -61,23 +61,14 @@ def verify(text: str) -> str:
         if _exact(content["statement"]["margin"]) < 0:
             raise ValueError("a negative margin")
         cells = _cells(content["statement"])
-        if content["verdict"] == "refuted":
+        verdict = Verdict(content["verdict"])
+        if verdict is Verdict.REFUTED:
             _refute(robot, content, cells)
-        elif content["verdict"] == "proved" and cells:
+        elif verdict is Verdict.PROVED and cells:
             _prove(robot, content, cells)
         else:
             raise ValueError("it says nothing")
-    return str(content["verdict"])
-
-
-@contextmanager
-def _precision(context: Any) -> Iterator[None]:
-    """Set the precision, which is the whole process's, and set it back."""
-    before, context.prec = context.prec, BITS
-    try:
-        yield
-    finally:
-        context.prec = before
+    return verdict
 
 
 def _prove(robot: Table, content: Table, cells: Sequence[Any]) -> None:

@@ -11,15 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise, product
-from typing import Literal
+from itertools import product
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.extras import require
+from qbound.forms.angles import nearest_turn
 from qbound.proofs.dyadic import DEEPEST, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.paving import Paving, start
+from qbound.proofs.verdict import Verdict
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,7 +38,8 @@ class Connection:
 
     Attributes
     ----------
-    answer : {"connected", "separated", "infeasible", "undecided"}
+    verdict : Verdict
+        Whether they are connected.
     paving : Paving
         The cells that prove it.
     path : ndarray, shape (k, n), or None
@@ -45,10 +49,19 @@ class Connection:
         Which of the two (0, 1) lies in a cell that is proved infeasible.
     """
 
-    answer: Answer
+    verdict: Verdict
     paving: Paving
     path: Floats | None = None
     infeasible: tuple[int, ...] = ()
+
+    @property
+    def answer(self) -> Answer:
+        """The verdict in words that say why."""
+        if self.verdict is Verdict.UNDECIDED:
+            return "undecided"
+        if self.verdict is Verdict.PROVED:
+            return "connected"
+        return "infeasible" if self.infeasible else "separated"
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,15 +113,16 @@ def connection(
             raise ValueError(f"{q} is no configuration of {len(problem.kinds)} joints")
     paving = start(problem)
     while True:
-        bad = tuple(k for k, q in enumerate((one, other)) if _words(paving, q) == {"infeasible"})
+        said = [_verdicts(paving, q) for q in (one, other)]
+        bad = tuple(k for k, words in enumerate(said) if words == {Verdict.REFUTED})
         if bad:
-            return Connection("infeasible", paving, infeasible=bad)
-        if paving.level % len(problem.kinds) == 0:
+            return Connection(Verdict.REFUTED, paving, infeasible=bad)
+        spent = 2 * len(paving.undecided) > most or paving.level >= DEEPEST
+        last = spent or not len(paving.undecided)
+        if last or paving.level % len(problem.kinds) == 0:
             found = _judged(paving, one, other)
-            if found is not None:
+            if last or found.verdict is not Verdict.UNDECIDED:
                 return found
-        if 2 * len(paving.undecided) > most or paving.level >= DEEPEST or not len(paving.undecided):
-            return _judged(paving, one, other) or Connection("undecided", paving)
         paving = paving.refined()
 
 
@@ -136,9 +150,8 @@ def wall(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
     groups = outer_groups(paving)
     held = groups.holding(paving, q)
     own = np.concatenate([np.isin(label, list(held)) for label in groups.label])
-    circles = [r is None for r in paving.problem.ranges]
     everything = (*groups.cells, *paving.infeasible)
-    edges = _touching(everything, circles, corners=True)
+    edges = _touching(everything, _circles(paving), corners=True)
     inside = np.concatenate([own, np.zeros(sum(map(len, paving.infeasible)), dtype=bool)])
     one, other = edges.T
     met = np.zeros(len(inside), dtype=bool)
@@ -148,35 +161,50 @@ def wall(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
     return tuple(c[k] for c, k in zip(paving.infeasible, chosen, strict=True) if k.any())
 
 
-def _words(paving: Paving, q: ArrayLike) -> set[str]:
-    words = {word for word, _ in paving.cells_of(q)}
+def _verdicts(paving: Paving, q: ArrayLike) -> set[Verdict]:
+    words = paving.verdicts(q)
     if not words:
         values = ", ".join(f"{x:.6g}" for x in np.asarray(q, dtype=float))
         raise ValueError(f"({values}) lies outside the joints' limits")
     return words
 
 
-def _judged(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection | None:
+def _judged(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
+    """Return what a paving proves of two configurations that it does not prove infeasible."""
     if separated(paving, one, other):
-        return Connection("separated", paving)
-    if all(_words(paving, q) == {"feasible"} for q in (one, other)):
+        return Connection(Verdict.REFUTED, paving)
+    path = None
+    if all(paving.verdicts(q) == {Verdict.PROVED} for q in (one, other)):
         path = _path(paving, np.asarray(one, dtype=float), np.asarray(other, dtype=float))
-        return None if path is None else Connection("connected", paving, path)
-    return None
+    return Connection(Verdict.of(path is not None, False), paving, path)
 
 
 # --- which cells touch ----------------------------------------------------------------------------
 
 
 def _groups(paving: Paving, cells: Sequence[Cells], *, corners: bool) -> Groups:
-    circles = [r is None for r in paving.problem.ranges]
-    edges = _touching(cells, circles, corners=corners)
-    count = sum(map(len, cells))
-    label = np.split(_labels(count, edges), np.cumsum([len(c) for c in cells])[:-1])
-    return Groups(tuple(cells), tuple(label), edges)
+    require("scipy")
+    from scipy.sparse.csgraph import connected_components
+
+    edges = _touching(cells, _circles(paving), corners=corners)
+    _, label = connected_components(_graph(sum(map(len, cells)), edges), directed=False)
+    ends = np.cumsum([len(c) for c in cells])[:-1]
+    return Groups(tuple(cells), tuple(np.split(label, ends)), edges)
 
 
-def _touching(cells: Sequence[Cells], circles: Sequence[bool], *, corners: bool) -> Ints:
+def _graph(count: int, edges: Ints) -> Any:
+    """Return the graph of cells that touch as a sparse matrix."""
+    from scipy.sparse import coo_array
+
+    return coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(count, count)).tocsr()
+
+
+def _circles(paving: Paving) -> NDArray[np.bool_]:
+    """Tell which joints turn all the way round."""
+    return np.array([r is None for r in paving.problem.ranges])
+
+
+def _touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: bool) -> Ints:
     """Return all pairs of touching cells, numbered through.
 
     Of two touching cells the larger holds a neighbour, of the smaller one's size, of the smaller.
@@ -195,24 +223,23 @@ def _touching(cells: Sequence[Cells], circles: Sequence[bool], *, corners: bool)
         for step in steps:
             index, there = _stepped(small, np.array(step), circles)
             for b, large in enumerate(cells):
-                if large.level <= small.level:
+                if large.level <= small.level and len(large):
                     wanted = _key(index >> (small.bits - large.bits), large.bits)
                     place = np.searchsorted(keys[b], wanted, sorter=orders[b])
-                    match = (
-                        orders[b][np.minimum(place, len(large) - 1)] if len(large) else place * 0
-                    )
-                    hit = there & (keys[b][match] == wanted) if len(large) else there & False
-                    pair = np.flatnonzero(hit)
+                    match = orders[b][np.minimum(place, len(large) - 1)]
+                    pair = np.flatnonzero(there & (keys[b][match] == wanted))
                     edges.append(np.stack([first[a] + pair, first[b] + match[pair]], axis=-1))
     return np.concatenate(edges)
 
 
-def _stepped(cells: Cells, step: Ints, circles: Sequence[bool]) -> tuple[Ints, NDArray[np.bool_]]:
+def _stepped(
+    cells: Cells, step: Ints, circles: NDArray[np.bool_]
+) -> tuple[Ints, NDArray[np.bool_]]:
     """Return the neighbours' indices one step away, and which of them exist."""
     size = 2**cells.bits
     index = cells.index + step
     outside = (index < 0) | (index >= size)
-    return index % size, ~(outside & ~np.array(circles)).any(axis=1)
+    return index % size, np.asarray(~(outside & ~circles).any(axis=1))
 
 
 def _key(index: Ints, bits: Ints) -> Ints:
@@ -223,87 +250,54 @@ def _key(index: Ints, bits: Ints) -> Ints:
     return key
 
 
-def _labels(count: int, edges: Ints) -> Ints:
-    """Return the smallest number of each connected set: take neighbours' until none changes."""
-    label = np.arange(count)
-    while True:
-        least = label.copy()
-        low = np.minimum(label[edges[:, 0]], label[edges[:, 1]])
-        np.minimum.at(least, label[edges[:, 0]], low)
-        np.minimum.at(least, label[edges[:, 1]], low)
-        while (least != least[least]).any():
-            least = least[least]
-        new = least[label]
-        if (new == label).all():
-            return label
-        label = new
-
-
 # --- a path through feasible cells ----------------------------------------------------------------
 
 
 def _path(paving: Paving, one: Floats, other: Floats) -> Floats | None:
     """Return a path from centre to centre through shared faces, or None."""
     groups = inner_groups(paving)
-    start_at, end_at = (_numbers(paving, groups, q) for q in (one, other))
-    chain = _chain(groups, start_at, end_at)
-    if chain is None:
+    chain = _chain(groups, *(_numbers(paving, groups, q) for q in (one, other)))
+    if not chain:
         return None
-    low, high = (
-        np.concatenate(p) for p in zip(*map(paving.room.places, groups.cells), strict=True)
-    )
-    circles = np.array([r is None for r in paving.problem.ranges])
+    places = zip(*map(paving.room.places, groups.cells), strict=True)
+    low, high = (np.concatenate(ends)[chain] for ends in places)
+    centres, circles = (low + high) / 2, _circles(paving)
     corners = [one]
-    for a, b in pairwise(chain):
-        gate = _gate(low[a], high[a], low[b], high[b], circles)
-        corners += [_near(centre, corners[-1], circles) for centre in ((low[a] + high[a]) / 2,)]
-        corners += [_near(gate, corners[-1], circles)]
-    corners += [_near((low[chain[-1]] + high[chain[-1]]) / 2, corners[-1], circles)]
-    corners += [_near(other, corners[-1], circles)]
-    return np.array(corners)
+    for k, centre in enumerate(centres):
+        corners.append(_near(centre, corners[-1], circles))
+        if k + 1 < len(chain):
+            shift = _near(centres[k + 1], centre, circles) - centres[k + 1]
+            face = np.maximum(low[k], low[k + 1] + shift), np.minimum(high[k], high[k + 1] + shift)
+            corners.append(_near(sum(face) / 2, corners[-1], circles))
+    return np.array([*corners, _near(other, corners[-1], circles)])
 
 
-def _numbers(paving: Paving, groups: Groups, q: Floats) -> set[int]:
+def _numbers(paving: Paving, groups: Groups, q: Floats) -> Ints:
     """Return the numbers of the feasible cells that may hold a configuration."""
-    held = np.concatenate([paving.holding(c, q) for c in groups.cells])
-    return set(np.flatnonzero(held).tolist())
+    return np.flatnonzero(np.concatenate([paving.holding(c, q) for c in groups.cells]))
 
 
-def _chain(groups: Groups, ones: set[int], others: set[int]) -> list[int] | None:
-    """Return the shortest chain of touching cells, by breadth-first search from all of `ones`."""
-    neighbours: dict[int, list[int]] = {}
-    for a, b in groups.edges.tolist():
-        neighbours.setdefault(a, []).append(b)
-        neighbours.setdefault(b, []).append(a)
-    before: dict[int, int | None] = dict.fromkeys(ones)
-    queue = list(ones)
-    for a in queue:
-        if a in others:
-            return _back(before, a)
-        for b in neighbours.get(a, ()):
-            if b not in before:
-                before[b] = a
-                queue.append(b)
-    return None
+def _chain(groups: Groups, ones: Ints, others: Ints) -> list[int]:
+    """Return a shortest chain of touching cells from one of some cells to one of others."""
+    from scipy.sparse.csgraph import dijkstra
 
-
-def _back(before: dict[int, int | None], last: int) -> list[int]:
-    chain, step = [], before[last]
-    chain.append(last)
-    while step is not None:
-        chain.append(step)
-        step = before[step]
+    graph = _graph(sum(map(len, groups.cells)), groups.edges)
+    steps, before, _ = dijkstra(
+        graph,
+        directed=False,
+        indices=ones,
+        unweighted=True,
+        min_only=True,
+        return_predecessors=True,
+    )
+    chain = [int(others[steps[others].argmin()])]
+    if not np.isfinite(steps[chain[0]]):
+        return []
+    while steps[chain[-1]]:
+        chain.append(int(before[chain[-1]]))
     return chain[::-1]
 
 
-def _gate(low_a: Floats, high_a: Floats, low_b: Floats, high_b: Floats, circles: Floats) -> Floats:
-    """Return the middle of the face that two cells share, near the first."""
-    shift = np.where(
-        circles, 2 * np.pi * np.round(((low_a + high_a) - (low_b + high_b)) / (4 * np.pi)), 0.0
-    )
-    return np.asarray((np.maximum(low_a, low_b + shift) + np.minimum(high_a, high_b + shift)) / 2)
-
-
-def _near(q: Floats, place: Floats, circles: Floats) -> Floats:
+def _near(q: Floats, place: Floats, circles: NDArray[np.bool_]) -> Floats:
     """Shift a configuration by full turns next to a place."""
-    return np.asarray(q + np.where(circles, 2 * np.pi * np.round((place - q) / (2 * np.pi)), 0.0))
+    return np.where(circles, nearest_turn(q, place), q)

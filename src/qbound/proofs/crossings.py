@@ -20,10 +20,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import along, ball, derivative, gradient, precision, turns, values
+from qbound.proofs.balls import ball, balls, precision, turns
 from qbound.proofs.dyadic import Cells, Room
 from qbound.proofs.exact import ExactProblem
+from qbound.proofs.verdict import Verdict
 
 if TYPE_CHECKING:
     from flint import arb
@@ -57,15 +59,14 @@ class Crossing:
         The boundaries that vanish there.
     curves : tuple of int
         The same by number: forms first, then the ends of ranges in the order of `sides`.
-    others : str
-        "positive": all other forms are proved positive there; "negative": one is proved
-        negative; "undecided".
+    others : Verdict
+        Whether all other forms are positive there; refuted: one is proved negative.
     """
 
     q: Balls
     names: tuple[str, str]
     curves: tuple[int, ...]
-    others: str
+    others: Verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ class Crossings:
     @property
     def feasible(self) -> tuple[Crossing, ...]:
         """Crossings at which every other form is positive: the vertices of the region."""
-        return tuple(c for c in self.found if c.others == "positive")
+        return tuple(c for c in self.found if c.others is Verdict.PROVED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,7 @@ class Side:
 def crossings(problem: ExactProblem, *, within: bool = False) -> Crossings:
     """Find all crossings of two forms, of a form and a limit, and of two limits.
 
-    Not in the paper, which reads its six points off a picture (Figure 5).
+    Not in the paper, which reads its six points off a picture.
 
     Parameters
     ----------
@@ -141,7 +142,7 @@ def folds(problem: ExactProblem, *, within: bool = False) -> Crossings:
     """
     m = len(problem.names)
     with precision(BITS):
-        slopes = derivative(problem.forms, 1)
+        slopes = problem.forms.derivative(1)
         forms = np.concatenate([problem.forms.coefficients, slopes.coefficients])
         pairs = [(i, m + i) for i in range(m) if not _vanishes(slopes.coefficients[i])]
         stacked = HarmonicForm(forms, problem.kinds)
@@ -158,20 +159,18 @@ class _Pair:
     """Two forms and their gradients in balls; the zeros found so far, with the boxes of proof."""
 
     def __init__(self, forms: HarmonicForm, ij: tuple[int, int]) -> None:
-        chosen = np.vectorize(ball, otypes=[object])(forms.coefficients[list(ij)])
-        self.forms = HarmonicForm(chosen, forms.kinds)
-        self.slopes = gradient(self.forms)
+        self.forms = HarmonicForm(balls(forms.coefficients[list(ij)]), forms.kinds)
         self.zeros: list[tuple[list[arb], list[arb]]] = []
 
     def krawczyk(self, x: list[arb]) -> list[arb] | None:
         """Apply the operator to a box; None where the middle's derivative cannot be inverted."""
         middle = [ball(side.mid()) for side in x]
-        inverse = _inverse(values(self.slopes, middle))
+        inverse = _inverse(self.forms.gradient(middle))
         if inverse is None:
             return None
         spread = np.array([side - m for side, m in zip(x, middle, strict=True)])
-        rest = np.array([[1, 0], [0, 1]]) - inverse @ values(self.slopes, x)
-        image = np.array(middle) - inverse @ values(self.forms, middle) + rest @ spread
+        rest = np.eye(2, dtype=int) - inverse @ self.forms.gradient(x)
+        image = np.array(middle) - inverse @ self.forms(middle) + rest @ spread
         return list(image)
 
     def settle(self, cell: list[arb], circles: Sequence[bool]) -> bool:
@@ -290,7 +289,7 @@ def _same(point: Sequence[arb], box: Sequence[arb], circles: Sequence[bool]) -> 
 
 
 def _vanishes(coefficients: Array) -> bool:
-    return all(ball(c).is_zero() for c in coefficients.ravel())
+    return all(c.is_zero() for c in balls(coefficients).flat)
 
 
 # --- places and signs -----------------------------------------------------------------------------
@@ -317,11 +316,8 @@ def judged(
     problem: ExactProblem, q: Balls, names: tuple[str, str], curves: Sequence[int]
 ) -> Crossing:
     """Attach the sign of the forms that do not vanish at a point by its making."""
-    there = values(problem.forms, q)
-    others = [ball(x) for i, x in enumerate(there) if i not in curves]
-    if any(x < 0 for x in others):
-        return Crossing(q, names, tuple(curves), "negative")
-    word = "positive" if all(x > 0 for x in others) else "undecided"
+    others = np.delete(balls(problem.forms(q)), [i for i in curves if i < len(problem.names)])
+    word = Verdict.of(all(x > 0 for x in others), any(x < 0 for x in others))
     return Crossing(q, names, tuple(curves), word)
 
 
@@ -348,28 +344,33 @@ def side_roots(problem: ExactProblem, form: int, side: Side) -> list[Balls] | No
     """
     other = 1 - side.joint
     point = [side.value, side.value]
-    coefficients = [ball(c) for c in along(problem.forms, other, point)[form]]
+    coefficients = balls(problem.forms[form].along(other, point))
     roots = line_roots(problem.kinds[other], coefficients)
     if roots is None:
         return None
     placed = [_turned(problem, other, root) for root in roots]
     if None in placed:
         return None
-    inside = [root for chosen in placed for root in chosen or ()]
-    return [(side.value, v) if other else (v, side.value) for v in inside]
+    return [placed_at(side.joint, side.value, v) for found in placed for v in found or ()]
 
 
-def line_roots(kind: str, c: Sequence[arb]) -> list[arb] | None:
+def placed_at(joint: int, t: arb, v: arb) -> Balls:
+    """Return the point with the value t of one joint and v of the other."""
+    return (t, v) if joint == 0 else (v, t)
+
+
+def line_roots(kind: Kind, c: Sequence[arb] | Array) -> list[arb] | None:
     """Solve c0 + c1 cos v + c2 sin v = 0, or c0 + c1 v + c2 v² = 0; None if perhaps double."""
     c0, c1, c2 = c
-    if kind == "prismatic" and c2.is_zero():
+    slides = kind == "prismatic"
+    if slides and c2.is_zero():
         return [-c0 / c1] if not c1.contains(0) else ([] if not c0.contains(0) else None)
-    square = c1 * c1 + c2 * c2 - c0 * c0 if kind == "revolute" else c1 * c1 - 4 * c0 * c2
+    square = FACTORS[kind].discriminant(c)
     if square < 0:
         return []
-    if not square > 0 or (kind == "prismatic" and c2.contains(0)):
+    if not square > 0 or (slides and c2.contains(0)):
         return None
-    if kind == "prismatic":
+    if slides:
         return [(-c1 + sign * square.sqrt()) / (2 * c2) for sign in (-1, 1)]
     theta, alpha = type(c0).atan2(c2, c1), type(c0).atan2(square.sqrt(), -c0)
     return [theta - alpha, theta + alpha]

@@ -18,14 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, ball, derivative, factor, gradient, magnitude, precision
+from qbound.proofs.balls import above, ball, balls, precision
 
 if TYPE_CHECKING:
     from flint import arb
@@ -93,29 +93,26 @@ class Room:
 
     forms: HarmonicForm
     ends: Ends
-    _factors: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
+    _rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Round the coefficients, and bound what that and all later rounding can do."""
-        n, m = len(self.forms.kinds), len(self.forms.coefficients)
+        n, kinds = len(self.forms.kinds), self.forms.kinds
         with precision(BITS):
             reach = [max(above(abs(low)), above(abs(high))) for low, high in self.ends]
-            slopes = gradient(self.forms)
-            second = [magnitude(derivative(slopes, j), reach) for j in range(n)]
-            self.curvature: Floats = np.stack(second, axis=-1) if m else np.zeros((0, n, n))
-            stacked = np.concatenate(
-                [self.forms.coefficients[:, None], slopes.coefficients], axis=1
-            ).reshape(m * (n + 1), 3**n)
-            self.table: Floats = np.vectorize(float, otypes=[float])(
-                np.vectorize(ball, otypes=[object])(stacked)
+            slopes = self.forms.derivatives
+            self.curvature: Floats = magnitude(slopes.derivatives, reach)
+            exact = balls(
+                np.concatenate([self.forms.coefficients[:, None], slopes.coefficients], axis=1)
             )
-        sizes = reduce(
-            _products, [_sizes(k, r) for k, r in zip(self.forms.kinds, reach, strict=True)]
-        )
-        # Rounded factors, coefficients, products and sums: each errs by 2^-53 of its size; 2^-51
-        # leaves room for other rounding modes and for the sizes' own rounding.
+            table = exact.astype(float)
+            lost = np.vectorize(above, otypes=[float])(abs(exact - table))
+        self.table = HarmonicForm(table, kinds)
+        # Rounded factors, products and sums: each errs by 2^-53 of its size; 2^-51 leaves room for
+        # other rounding modes and for the sizes' own rounding.
         count = 3**n + 2 * n + 4
-        self.slack: Floats = (count * 2.0**-51 * (np.abs(self.table) @ sizes)).reshape(m, n + 1)
+        self.slack: Floats = count * 2.0**-51 * self.table.size(reach)
+        self.slack += 2 * HarmonicForm(lost, kinds).size(reach)
 
     def whole(self) -> Cells:
         """Return the one cell that is the whole range."""
@@ -123,11 +120,10 @@ class Room:
 
     def bounds(self, cells: Cells) -> tuple[Floats, Floats]:
         """Bound every form over every closed cell: below and above, shape (k, m) each."""
-        n, m = len(self.forms.kinds), len(self.forms.coefficients)
         with precision(BITS):
             h = self._half_widths(cells)
-            factors = [self._table(j, b, cells.index[:, j]) for j, b in enumerate(cells.bits)]
-        found = (reduce(_products, factors) @ self.table.T).reshape(len(cells), m, n + 1)
+            factors = [self._factor(j, b, cells.index[:, j]) for j, b in enumerate(cells.bits)]
+        found = self.table.combined(factors, (len(cells),))
         slope = (np.abs(found[..., 1:]) + self.slack[:, 1:]) @ h
         bend = 0.5 * np.einsum("mij,i,j->m", self.curvature, h, h)
         spread = slope + bend + self.slack[:, 0]
@@ -158,27 +154,42 @@ class Room:
         pairs = zip(self.ends, cells.bits, strict=True)
         return np.array([above((high - low) / 2 ** int(b + 1)) for (low, high), b in pairs])
 
-    def _table(self, joint: int, bits: int, index: Ints) -> Floats:
+    def _factor(self, joint: int, bits: int, index: Ints) -> Floats:
         """Return the rounded factors at the centres of some cells along one joint, shape (k, 3)."""
         different, back = np.unique(index, return_inverse=True)
-        rows = np.array([self._factor(joint, int(bits), int(i)) for i in different])
+        rows = np.array([self._row(joint, int(bits), int(i)) for i in different])
         return np.asarray(rows.reshape(-1, 3)[back])
 
-    def _factor(self, joint: int, bits: int, index: int) -> list[float]:
+    def _row(self, joint: int, bits: int, index: int) -> list[float]:
         key = joint, bits, index
-        if key not in self._factors:
+        if key not in self._rows:
             low, high = self.ends[joint]
             centre = low + (high - low) * (2 * index + 1) / 2 ** (bits + 1)
-            self._factors[key] = [float(ball(x)) for x in factor(self.forms.kinds[joint], centre)]
-        return self._factors[key]
+            one, two = FACTORS[self.forms.kinds[joint]].functions(centre)
+            self._rows[key] = [1.0, float(one), float(two)]
+        return self._rows[key]
 
 
-def _products(left: Floats, right: Floats) -> Floats:
-    """Multiply (..., a) by (..., b) into all products, (..., a b)."""
-    product = left[..., :, None] * right[..., None, :]
-    return product.reshape(*product.shape[:-2], -1)
+def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
+    """Bound the absolute value of each form over whole ranges, from above.
 
+    Over all angles x A y with unit vectors x and y is at most the Frobenius norm of A: cosine and
+    sine of one joint are one unit vector.
 
-def _sizes(kind: str, reach: float) -> Floats:
-    """Bound |(1, cos q, sin q)| or |(1, q, q^2)| over a range."""
-    return np.array([1.0, 1.0, 1.0]) if kind == "revolute" else np.array([1.0, reach, reach**2])
+    Parameters
+    ----------
+    forms : HarmonicForm
+        Coefficients exact, balls or floats.
+    reach : sequence of float
+        Largest absolute value of each joint.
+    """
+    first = len(forms.shape)
+    blocks = balls(forms.coefficients) ** 2
+    for axis, (kind, largest) in enumerate(zip(forms.kinds, reach, strict=True), start=first):
+        row = FACTORS[kind]
+        squares = row.units * balls(row.largest(ball(largest))) ** 2
+        blocks = np.moveaxis(np.tensordot(squares, blocks, axes=([1], [axis])), 0, axis)
+    # What is negative in the ball of a square is rounding and falls away.
+    roots = np.vectorize(lambda x: x.nonnegative_part().sqrt(), otypes=[object])(blocks)
+    total = roots.sum(axis=tuple(range(first, roots.ndim)))
+    return np.asarray(np.vectorize(above, otypes=[float])(total))

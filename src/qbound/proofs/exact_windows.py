@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from qbound.boundary.functions import pair_vector
 from qbound.model.robot import HalfSpace, Robot
-from qbound.proofs.balls import along, ball, pi, precision, turns
+from qbound.proofs.balls import ball, balls, pi, precision, turns
+from qbound.proofs.crossings import line_roots
 from qbound.proofs.exact import BITS, ExactProblem, exact_state
 from qbound.region import paper_rule
 from qbound.region.paper_rule import Window
@@ -53,10 +54,9 @@ def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
 def _upper(exact: Robot, window: Window) -> arb:
     """Return the root theta + alpha of a window's component, on the window's turn (eq. 39)."""
     pair: Any = exact.boundary(window.boundary)
-    vector = pair_vector(exact, pair)[window.component - 1]
-    c0, a, b = map(ball, along(vector, window.joint, [ball(0)] * len(exact.joints)))
-    square = a * a + b * b - c0 * c0
-    if not square > 0:
+    component = pair_vector(exact, pair)[window.component - 1]
+    c = balls(component.along(window.joint, [ball(0)] * len(exact.joints)))
+    roots = line_roots(exact.kinds[window.joint], c)
+    if not roots:
         raise ValueError(f"{window.boundary}: it is not proved that this component reaches zero")
-    root = type(a).atan2(b, a) + type(a).atan2(square.sqrt(), -c0)
-    return root + turns(round((window.upper - float(root)) / float(2 * pi())))
+    return roots[-1] + turns(round((window.upper - float(roots[-1])) / float(2 * pi())))

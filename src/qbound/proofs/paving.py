@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.proofs.balls import below, precision
+from qbound.proofs.balls import ball, below, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, Cells, Room
 from qbound.proofs.exact import ExactProblem
+from qbound.proofs.verdict import Verdict
 
 if TYPE_CHECKING:
     from flint import arb
@@ -75,11 +76,9 @@ class Paving:
 
     def volume(self, part: Fraction) -> arb:
         """Return a part of the range in the product of the joints' units, as a ball."""
-        from flint import fmpq
-
         with precision(BITS):
-            whole = prod((high - low for low, high in self.room.ends), start=_one())
-            return whole * fmpq(part.numerator, part.denominator)
+            whole = prod(high - low for low, high in self.room.ends)
+            return ball(whole * part.numerator) / part.denominator
 
     def refined(self) -> Paving:
         """Halve every undecided cell and sort the halves.
@@ -93,10 +92,10 @@ class Paving:
             raise ValueError(f"cells have been halved {DEEPEST} times: no smaller ones")
         return _sorted(self, self.undecided.halves())
 
-    def cells_of(self, q: ArrayLike) -> list[tuple[str, Cells]]:
-        """Return what the paving says of a configuration: "feasible", "infeasible" or "undecided".
+    def verdicts(self, q: ArrayLike) -> set[Verdict]:
+        """Return what is known of a configuration being feasible, by all cells that may hold it.
 
-        A configuration on the border of cells lies in several: each is returned, with its cells.
+        On the border of cells they may say different things; outside the range there is none.
 
         Parameters
         ----------
@@ -104,11 +103,12 @@ class Paving:
             rad or length; each double counts as it is. A joint that turns all the way round takes
             any turn.
         """
-        groups = [("feasible", c) for c in self.feasible]
-        groups += [("infeasible", c) for c in self.infeasible]
-        groups += [("undecided", self.undecided)]
-        found = [(word, cells[self.holding(cells, q)]) for word, cells in groups]
-        return [(word, cells) for word, cells in found if len(cells)]
+        groups = (
+            (Verdict.PROVED, self.feasible),
+            (Verdict.REFUTED, self.infeasible),
+            (Verdict.UNDECIDED, (self.undecided,)),
+        )
+        return {word for word, cells in groups if any(self.holding(c, q).any() for c in cells)}
 
     def holding(self, cells: Cells, q: ArrayLike) -> NDArray[np.bool_]:
         """Tell which closed cells may hold a configuration; all that do are among them."""
@@ -125,11 +125,9 @@ class Paving:
 
     def _places(self, joint: int, value: float, bits: int) -> tuple[int, int]:
         """Return the first and the last index of cells that may hold a joint value."""
-        from flint import arb
-
         with precision(BITS):
             low, high = self.room.ends[joint]
-            place = (arb(value) - low) / (high - low) * 2**bits
+            place = (ball(value) - low) / (high - low) * 2**bits
             ends = place.lower().ceil().unique_fmpz(), place.upper().floor().unique_fmpz()
         if None in ends:  # so large that rounding spans whole turns: it may lie anywhere
             return 0, 2**bits - 1
@@ -193,9 +191,3 @@ def _some(cells: Cells) -> tuple[Cells, ...]:
 
 def _fraction(cells: Cells) -> Fraction:
     return Fraction(len(cells), 2**cells.level)
-
-
-def _one() -> arb:
-    from flint import arb
-
-    return arb(1)

@@ -3,32 +3,30 @@
 det J depends on the second joint alone, so it is a boundary like any other: the region of one sign
 is proved with it as one more form, and its image has the area of the integral of abs(det J), which
 Green's theorem turns into one of q1 det J dq2 along the proved arcs. Not in the paper, which
-samples (Figure 11).
+samples.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from qbound.boundary.functions import position
-from qbound.forms.harmonic import HarmonicForm, Kind
+from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.balls import ball, derivative, precision, values
+from qbound.proofs.balls import ball, balls, precision
 from qbound.proofs.exact import BITS, ExactProblem
 from qbound.proofs.proved_region import BITS as AREA_BITS
 from qbound.proofs.proved_region import ProvedComponent, prove_region
 from qbound.proofs.runs import area_under
 from qbound.region import Problem, solve
+from qbound.workspace import planar
 
 if TYPE_CHECKING:
     from flint import arb
-
-Array = NDArray[Any]
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""
@@ -64,29 +62,16 @@ def jacobian_determinant(exact: Robot) -> HarmonicForm:
     Raises
     ------
     ValueError
-        If the tool leaves the plane of x and z, or det J depends on the first joint.
+        If the tool leaves the plane of x and z.
     """
+    from flint import fmpq
+
     with precision(BITS):
         tool = position(exact, exact.tool)
-        if any(not ball(c).contains(0) for c in derivative(tool[1], 0).coefficients.ravel()) or any(
-            not ball(c).contains(0) for c in derivative(tool[1], 1).coefficients.ravel()
-        ):
+        if not all(c.contains(0) for c in balls(tool[1].derivatives.coefficients).flat):
             raise ValueError(f"{exact.name}: the tool leaves the plane of x and z")
-        one, other = (derivative(tool, j) for j in (0, 1))
-        low, middle, high = (_determinant(one, other, (0, k)) for k in (0, 1, 2))
-        table = np.zeros((3, 3), dtype=object)
-        mean, half = (low + high) / 2, (low - high) / 2
-        revolute = exact.kinds[1] == "revolute"  # places 0, pi / 2, pi; else 0, 1, 2
-        curve = high - 2 * middle + low
-        table[0] = (
-            [mean, half, middle - mean] if revolute else [low, middle - low - curve / 2, curve / 2]
-        )
-        form = HarmonicForm(table, exact.kinds)
-        for place in product(range(5), repeat=2):
-            q = [ball(p) * 6 / 5 for p in place]
-            if not (_at(one, other, q) - values(form, q)[()]).contains(0):
-                raise ValueError(f"{exact.name}: det J depends on the first joint")
-    return form
+        rational = tool.coefficients[[0, 2]] + fmpq(0)  # whole numbers would be halved to floats
+        return planar.jacobian_determinant(HarmonicForm(rational, exact.kinds))
 
 
 def proved_images(
@@ -124,7 +109,7 @@ def _swept(problem: ExactProblem, part: ProvedComponent) -> arb:
         (p1, p2), (q1, q2) = loop[0].start, loop[-1].end
         if not ((q1 - p1).contains(0) and (q2 - p2).contains(0)):
             raise ValueError("a part of the region goes round a joint: its image is not proved")
-        weight = [ball(c) for c in problem.forms.coefficients[-1, 0]]
+        weight = balls(problem.forms.coefficients[-1, 0])
         total += sum((area_under(problem, run, weight) for run in loop), start=ball(0))
     return total
 
@@ -136,24 +121,4 @@ def _with(problem: ExactProblem, determinant: HarmonicForm, side: int) -> ExactP
 
 
 def _with_floats(problem: Problem, determinant: HarmonicForm, side: int) -> Problem:
-    row = np.vectorize(lambda c: float(ball(c)), otypes=[float])(side * determinant.coefficients)
-    return problem.with_form(SINGULAR, row)
-
-
-def _determinant(one: HarmonicForm, other: HarmonicForm, place: tuple[int, int]) -> Any:
-    """Return det J where the joints are at 0, 1 or 2 quarter turns, or units: exactly."""
-    factors = [np.array(_factor(k, p), dtype=object) for k, p in zip(one.kinds, place, strict=True)]
-    (x1, _, z1), (x2, _, z2) = ((f.coefficients @ factors[1]) @ factors[0] for f in (one, other))
-    return x1 * z2 - z1 * x2
-
-
-def _factor(kind: Kind, place: int) -> tuple[int, int, int]:
-    if kind == "revolute":
-        return ((1, 1, 0), (1, 0, 1), (1, -1, 0))[place]
-    return 1, place, place**2
-
-
-def _at(one: HarmonicForm, other: HarmonicForm, q: list[arb]) -> arb:
-    (x1, _, z1), (x2, _, z2) = values(one, q), values(other, q)
-    determinant: arb = x1 * z2 - z1 * x2
-    return determinant
+    return problem.with_form(SINGULAR, side * balls(determinant.coefficients).astype(float))

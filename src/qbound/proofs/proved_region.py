@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import ball, precision, turns
 from qbound.proofs.crossings import (
@@ -30,11 +31,13 @@ from qbound.proofs.crossings import (
     crossings,
     folds,
     judged,
+    placed_at,
     side_roots,
     sides,
 )
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
+from qbound.proofs.verdict import Verdict
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 
@@ -208,7 +211,7 @@ class _Prover:
         unrolled: list[tuple[int, Floats]] = []
         for curve, points in named[first:] + named[:first]:
             shift = self._shift(unrolled[-1][1][-1] - points[0]) if unrolled else 0
-            unrolled.append((curve, _dense(points) + shift))
+            unrolled.append((curve, _dense(points) + TURN * shift))
         return [
             (curve, np.concatenate([points for _, points in group]))
             for curve, group in groupby(unrolled, key=lambda item: item[0])
@@ -231,9 +234,9 @@ class _Prover:
         return self.problem.names.index(arc.boundary)
 
     def _shift(self, gap: Floats) -> Floats:
-        """Return the full turns next to a gap, on joints that turn all the way round."""
+        """Return the number of full turns next to a gap, of joints that turn all the way round."""
         circles = np.array([r is None for r in self.problem.ranges])
-        return np.where(circles, 2 * np.pi * np.round(gap / (2 * np.pi)), 0.0)
+        return np.where(circles, whole_turns(gap), 0.0)
 
     def _corner(self, before: int, after: int, place: Floats) -> Anchor:
         """Return the proved crossing at a proposed vertex, or any point of a loop without one."""
@@ -251,8 +254,8 @@ class _Prover:
     def _turned(self, anchor: Anchor, place: Floats) -> Anchor:
         """Shift a point by full turns next to a place."""
         index, q = anchor
-        shift = self._shift(place - np.array([float(x) for x in q])) / (2 * np.pi)
-        return index, (q[0] + turns(round(shift[0])), q[1] + turns(round(shift[1])))
+        one, other = map(int, self._shift(place - np.array(q).astype(float)))
+        return index, (q[0] + turns(one), q[1] + turns(other))
 
     def _name(self, curve: int) -> str:
         m = len(self.problem.names)
@@ -319,7 +322,7 @@ class _Prover:
         name, problem = self._name(run.curve), self.problem
         if run.sign and not Curve(problem, run).is_graph():
             raise Unproved(f"{name}: a run is not proved to be a graph")
-        if judged(problem, run.middle, (name, name), (run.curve,)).others != "positive":
+        if judged(problem, run.middle, (name, name), (run.curve,)).others is not Verdict.PROVED:
             raise Unproved(f"{name}: a run is not proved to be feasible")
         if not on_the_left(problem, run):
             raise Unproved(f"{name}: the region is not on the left of a run")
@@ -338,13 +341,13 @@ class _Prover:
         if not self.runs:
             middle = [sum(ends, start=ball(0)) / 2 + ball(LINE) for ends in self.problem.ends]
             word = judged(self.problem, (middle[0], middle[1]), ("", ""), ()).others
-            if word != ("positive" if count else "negative"):
+            if word is not (Verdict.PROVED if count else Verdict.REFUTED):
                 raise Unproved(f"{count} components without a boundary are proposed")
         for points in (self.points, self.folds):
-            hidden = [" and ".join(c.names) for c in points.found if c.others == "undecided"]
+            hidden = [" and ".join(c.names) for c in points.found if c.others is Verdict.UNDECIDED]
             if points.undecided or hidden:
                 raise Unproved(f"not proved complete: {', '.join([*points.undecided, *hidden])}")
-        feasible = [k for k, c in enumerate(self.points.found) if c.others == "positive"]
+        feasible = [k for k, c in enumerate(self.points.found) if c.others is Verdict.PROVED]
         if sorted(self.used) != feasible:
             raise Unproved(f"{len(self.used)} vertices are proposed, {len(feasible)} are proved")
         for fold in self.folds.feasible:
@@ -364,14 +367,13 @@ class _Prover:
                 self._known_if_feasible(i, q)
         for k, other in enumerate(self.sides, start=m):
             if other.joint != side.joint:
-                q = (side.value, other.value) if side.joint == 0 else (other.value, side.value)
-                self._known_if_feasible(k, q)
+                self._known_if_feasible(k, placed_at(side.joint, side.value, other.value))
 
     def _known_if_feasible(self, curve: int, q: Balls) -> None:
         word = judged(self.problem, q, ("", ""), (curve,)).others
-        if word == "undecided":
+        if word is Verdict.UNDECIDED:
             raise Unproved(f"{self._name(curve)}: a point on a line is on two boundaries")
-        if word == "positive":
+        if word is Verdict.PROVED:
             self._known(curve, q)
 
     def _known(self, curve: int, q: Balls) -> None:

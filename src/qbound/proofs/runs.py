@@ -13,14 +13,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from qbound.forms.harmonic import Kind
-from qbound.proofs.balls import along, ball, derivative, factor, interval, turns, values
-from qbound.proofs.crossings import Balls, line_roots, sides
+from qbound.forms.angles import whole_turns
+from qbound.forms.factors import FACTORS
+from qbound.proofs.balls import ball, balls, turns
+from qbound.proofs.crossings import Balls, line_roots, placed_at, sides
 from qbound.proofs.exact import ExactProblem
 
 if TYPE_CHECKING:
     from flint import arb
+
+Array = NDArray[Any]
 
 NARROWEST = 40
 """Halvings of a run after which it is not proved that its curve goes on."""
@@ -72,38 +76,35 @@ class Curve:
 
     def __init__(self, problem: ExactProblem, run: Run) -> None:
         table = problem.forms.coefficients[run.curve]
-        table = table if run.joint == 0 else table.T
-        self.table = [[ball(c) for c in row] for row in table]
-        self.base, self.lift = problem.kinds[run.joint], problem.kinds[1 - run.joint]
+        self.table = balls(table if run.joint == 0 else table.T).tolist()
+        self.base, self.lift = (FACTORS[problem.kinds[j]] for j in (run.joint, 1 - run.joint))
+        self.slides = problem.kinds[1 - run.joint] == "prismatic"
         self.run = run
         low, high = run.reach
         c1 = self.along((low + high) / 2)[1]
         # The stable one of two formulas for a root: where c1 and w add up rather than cancel.
-        self.adds_up = self.lift == "prismatic" and c1.mid() * run.sign > 0
+        self.adds_up = self.slides and c1.mid() * run.sign > 0
 
     def along(self, t: Any) -> list[Any]:
         """Return (c0, c1, c2) along the other joint at t, a real or a complex ball."""
-        one, two = factor(self.base, t)[1:]
+        one, two = self.base.functions(t)
         return [a + b * one + c * two for a, b, c in zip(*self.table, strict=True)]
 
     def slopes(self, t: Any) -> list[Any]:
         """Return the derivatives of (c0, c1, c2) by t."""
-        _, one, two = factor(self.base, t)
-        if self.base == "revolute":
-            return [c * one - b * two for _, b, c in zip(*self.table, strict=True)]
-        return [b + 2 * c * one for _, b, c in zip(*self.table, strict=True)]
-
-    def square(self, c: Sequence[Any]) -> Any:
-        """Return P: the squared derivative of the form along the other joint at its roots."""
-        c0, c1, c2 = c
-        return c1 * c1 + (c2 * c2 - c0 * c0 if self.lift == "revolute" else -4 * c0 * c2)
+        functions = (1, *self.base.functions(t))
+        _, one, two = (
+            sum(int(s) * f for s, f in zip(row, functions, strict=True) if s)
+            for row in self.base.slope
+        )
+        return [b * one + c * two for _, b, c in zip(*self.table, strict=True)]
 
     def is_graph(self) -> bool:
         """Prove that P is positive all along the run, by halving it."""
         pieces = [(*self.run.reach, 0)]
         while pieces:
             low, high, depth = pieces.pop()
-            if not self.square(self.along(interval(low, high))) > 0:
+            if not self.lift.discriminant(self.along(low.union(high))) > 0:
                 if depth == NARROWEST:
                     return False
                 middle = ball(((low + high) / 2).mid())
@@ -113,22 +114,22 @@ class Curve:
     def factors(self, c: Sequence[Any], w: Any) -> list[Any]:
         """Return (1, cos v, sin v), or (1, v, v²), of the root whose derivative is w."""
         c0, c1, c2 = c
-        if self.lift == "revolute":
-            d2 = c1 * c1 + c2 * c2
-            return [1, (w * c2 - c0 * c1) / d2, -(c0 * c2 + w * c1) / d2]
-        v = -2 * c0 / (c1 + w) if self.adds_up else (w - c1) / (2 * c2)
-        return [1, v, v * v]
+        if self.slides:
+            v = -2 * c0 / (c1 + w) if self.adds_up else (w - c1) / (2 * c2)
+            return [1, v, v * v]
+        d2 = c1 * c1 + c2 * c2
+        return [1, (w * c2 - c0 * c1) / d2, -(c0 * c2 + w * c1) / d2]
 
     def lifted(self, t: Any, analytic: bool) -> tuple[Any, list[Any]]:
         """Return slope and factors of the graph at a complex ball; not finite if not analytic."""
         c = self.along(t)
-        w = self.run.sign * self.square(c).sqrt(analytic=analytic)
+        w = self.run.sign * self.lift.discriminant(c).sqrt(analytic=analytic)
         factors = self.factors(c, w)
         pairs = zip(self.slopes(t), factors, strict=True)
         return -sum(x * y for x, y in pairs) / w, factors
 
 
-def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] = (1, 0, 0)) -> arb:
+def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] | Array = (1, 0, 0)) -> arb:
     """Return the integral of q1 D(q2) dq2 along a run (Green), as a ball.
 
     Parameters
@@ -138,8 +139,8 @@ def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] = (1, 0, 0
     """
     from flint import acb
 
-    kind, ends = problem.kinds[1], (run.start, run.end)
-    p, q = (q1 * _antiderivative(kind, weight, q2) for q1, q2 in ends)
+    antiderivative = FACTORS[problem.kinds[1]].antiderivative
+    p, q = (q1 * antiderivative(weight, q2) for q1, q2 in (run.start, run.end))
     if run.curve >= len(problem.names):  # an end of a range: one joint stands still
         return q - p if run.joint == 1 else ball(0)
     curve = Curve(problem, run)
@@ -150,19 +151,11 @@ def area_under(problem: ExactProblem, run: Run, weight: Sequence[Any] = (1, 0, 0
         return t * density * lifted[0]
 
     def over_second(t: Any, analytic: bool) -> Any:
-        return _antiderivative(kind, weight, t) * curve.lifted(t, analytic)[0]
+        return antiderivative(weight, t) * curve.lifted(t, analytic)[0]
 
     integrand = over_first if run.joint == 0 else over_second
     total: arb = acb.integral(integrand, run.start[run.joint], run.end[run.joint]).real
     return total if run.joint == 0 else q - p - total
-
-
-def _antiderivative(kind: Kind, weight: Sequence[Any], v: Any) -> Any:
-    """Return the antiderivative of w0 + w1 cos v + w2 sin v, or of w0 + w1 v + w2 v²."""
-    w0, w1, w2 = weight
-    if kind == "revolute":
-        return w0 * v + w1 * v.sin() - w2 * v.cos()
-    return w0 * v + w1 * v**2 / 2 + w2 * v**3 / 3
 
 
 def on_the_left(problem: ExactProblem, run: Run) -> bool:
@@ -186,20 +179,20 @@ def root_near(
     if curve >= len(problem.names):
         v: arb | None = sides(problem)[curve - len(problem.names)].value
     else:
-        form = problem.forms[[curve]]
-        c = [ball(x) for x in along(form, other, [t, t])[0]]
+        c = balls(problem.forms[curve].along(other, [t, t]))
         roots = line_roots(problem.kinds[other], c) or []
-        v = next(
-            (r for r in roots if _sign(problem, curve, other, _pair(joint, t, r)) == sign), None
-        )
+        points = (placed_at(joint, t, root) for root in roots)
+        right = (q[other] for q in points if sign_along(problem, curve, other, q) == sign)
+        v = next(right, None)
         if v is not None and problem.kinds[other] == "revolute":
-            v = v + turns(round((place[other] - float(v)) / (2 * np.pi)))
-    return None if v is None else _pair(joint, t, v)
+            v = v + turns(int(whole_turns(place[other] - float(v))))
+    return None if v is None else placed_at(joint, t, v)
 
 
 def sign_along(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
     """Return the sign of a form's derivative along a joint; 0 if it is not proved."""
-    return _sign(problem, curve, joint, q)
+    slope = ball(problem.forms[curve].derivative(joint)(q))
+    return int(slope > 0) - int(slope < 0)
 
 
 def lies_on(problem: ExactProblem, run: Run, q: Balls) -> bool | None:
@@ -220,7 +213,7 @@ def lies_on(problem: ExactProblem, run: Run, q: Balls) -> bool | None:
         if run.curve >= len(problem.names):
             sign = 1
         else:
-            sign = run.sign * _sign(problem, run.curve, other, q)
+            sign = run.sign * sign_along(problem, run.curve, other, q)
         if sign > 0 and t > low and t < high:
             return True
         if sign >= 0:
@@ -234,12 +227,3 @@ def _turns_to(problem: ExactProblem, run: Run, q: Balls) -> range:
         return range(1)
     low, high = (float((end - q[run.joint]) / turns(1)) for end in run.reach)
     return range(int(np.floor(low)), int(np.ceil(high)) + 1)
-
-
-def _pair(joint: int, t: arb, v: arb) -> Balls:
-    return (t, v) if joint == 0 else (v, t)
-
-
-def _sign(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
-    slope = ball(values(derivative(problem.forms[[curve]], joint), q)[0])
-    return int(slope > 0) - int(slope < 0)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound import check
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.proofs.triangulation import triangulate
@@ -88,14 +89,12 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     if len(free) != 2:
         raise ValueError(f"a polygon lies in the plane of two joints; here {len(free)} change")
     i, j = free
-    triangles = triangulate([[(p[i], p[j]) for p in loop] for loop in rows])
+    places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
-    return {
-        "set": "polygon",
-        "margin": margin,
-        "points": points,
-        "triangles": [list(t) for t in triangles],
-    }
+    triangles = [list(triangle) for triangle in triangulate(places)]
+    statement = {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
+    check.read_cells(statement)  # exact: the triangles tile the polygon
+    return statement
 
 
 def anticlockwise(points: Sequence[Sequence[str]]) -> list[list[str]]:
@@ -115,7 +114,7 @@ def usual_inset(robot: Robot) -> float:
 def home_polygon(
     robot: Robot, scale: float = 1, margin: str = "0", held: Mapping[int, float] | None = None
 ) -> Statement:
-    """State that the polygon of the home component's vertices, scaled, is safe (Figures 5 and 6).
+    """State that the polygon of the home component's vertices, scaled, is safe.
 
     Parameters
     ----------

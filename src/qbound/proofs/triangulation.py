@@ -1,10 +1,12 @@
-"""Triangles that fill a polygon exactly: ears are clipped by exact signs (not in the paper)."""
+"""Triangles that fill a polygon exactly, by shapely (not in the paper)."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import pairwise
+
+from qbound.extras import require
 
 Place = tuple[Fraction, Fraction]
 Triangle = tuple[int, int, int]
@@ -26,78 +28,27 @@ def triangulate(loops: Sequence[Sequence[Place]]) -> list[Triangle]:
     Raises
     ------
     ValueError
-        If a loop crosses itself or another one, or does not have the inside on its left.
+        If the loops cross themselves or each other, or do not have the inside on their left.
+
+    Notes
+    -----
+    Decimals times a power of ten are whole numbers, which doubles hold exactly up to 2^53, more
+    than `statements.DIGITS` need. What longer decimals may spoil the checkers refuse.
     """
-    places = [place for loop in loops for place in loop]
-    starts = [sum(map(len, loops[:i])) for i in range(len(loops))]
-    rings = [
-        list(range(start, start + len(loop))) for start, loop in zip(starts, loops, strict=True)
-    ]
-    outline, *holes = sorted(rings, key=lambda ring: -_area([places[i] for i in ring]))
-    for hole in sorted(holes, key=lambda ring: -max(places[i][0] for i in ring)):
-        outline = _bridged(places, outline, hole, [ring for ring in rings if ring != outline])
-    return _ears(places, outline)
+    require("shapely")
+    import shapely
 
-
-def cross(a: Place, b: Place, c: Place) -> Fraction:
-    """Return twice the signed area of a triangle."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _area(places: Sequence[Place]) -> Fraction:
-    origin = places[0]
-    return sum((cross(origin, b, c) for b, c in pairwise(places)), Fraction(0))
-
-
-def _ears(places: Sequence[Place], ring: list[int]) -> list[Triangle]:
-    """Clip ears until a triangle is left."""
-    ring, found, start = list(ring), [], 0
-    while len(ring) > 2:
-        turns = [(start + i) % len(ring) for i in range(len(ring))]
-        ear = next((i for i in turns if _is_ear(places, ring, i)), None)
-        if ear is None:
-            raise ValueError("the polygon crosses itself, or its inside is not on the left")
-        found.append((ring[ear - 1], ring[ear], ring[(ear + 1) % len(ring)]))
-        del ring[ear]
-        start = ear  # next to the last ear, so that triangles do not all share one corner
-    return found
-
-
-def _is_ear(places: Sequence[Place], ring: list[int], i: int) -> bool:
-    """Tell whether corner i turns left and no other corner lies in its closed triangle."""
-    a, b, c = (places[ring[(i + k) % len(ring)]] for k in (-1, 0, 1))
-    if cross(a, b, c) <= 0:
-        return False
-    others = (p for p in (places[k] for k in ring) if p not in (a, b, c))
-    return not any(
-        cross(a, b, p) >= 0 and cross(b, c, p) >= 0 and cross(c, a, p) >= 0 for p in others
-    )
-
-
-def _bridged(
-    places: Sequence[Place], outline: list[int], hole: list[int], rings: Sequence[list[int]]
-) -> list[int]:
-    """Join a hole to the outline by the shortest bridge that crosses no edge, there and back."""
-    walks = [*rings, outline]
-    edges = [(places[w[k - 1]], places[w[k]]) for w in walks for k in range(len(w))]
-    pairs = [(i, k) for i in range(len(outline)) for k in range(len(hole))]
-    pairs.sort(key=lambda ik: _distance(places[outline[ik[0]]], places[hole[ik[1]]]))
-    for i, k in pairs:
-        if not any(_meet(places[outline[i]], places[hole[k]], *edge) for edge in edges):
-            return outline[: i + 1] + hole[k:] + hole[: k + 1] + outline[i:]
-    raise ValueError("the loops of the polygon cross each other")
-
-
-def _distance(a: Place, b: Place) -> Fraction:
-    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
-
-
-def _meet(a: Place, b: Place, c: Place, d: Place) -> bool:
-    """Tell whether two segments meet elsewhere than in a common end."""
-    if {a, b} & {c, d}:
-        return False
-    return (
-        cross(a, b, c) * cross(a, b, d) <= 0
-        and cross(c, d, a) * cross(c, d, b) <= 0
-        and any((cross(a, b, c), cross(a, b, d)))
-    )
+    if min(map(len, loops)) < 3:
+        raise ValueError("a loop of a polygon has 3 corners or more")
+    whole = math.lcm(*(x.denominator for loop in loops for place in loop for x in place))
+    rings = [[(float(x * whole), float(y * whole)) for x, y in loop] for loop in loops]
+    outline, *holes = sorted(rings, key=lambda ring: -shapely.Polygon(ring).area)
+    polygon = shapely.Polygon(outline, holes)
+    turned = [shapely.LinearRing(ring).is_ccw for ring in (outline, *holes)]
+    if not polygon.is_valid or turned != [True, *(False for _ in holes)]:
+        reason = shapely.is_valid_reason(polygon)
+        raise ValueError(f"the polygon crosses itself, or its inside is not on the left: {reason}")
+    triangles = shapely.orient_polygons(shapely.constrained_delaunay_triangles(polygon))
+    number = {place: k for k, place in enumerate(place for ring in rings for place in ring)}
+    corners = [[number[place] for place in part.exterior.coords[:3]] for part in triangles.geoms]
+    return [(a, b, c) for a, b, c in corners]

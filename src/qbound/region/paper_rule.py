@@ -149,7 +149,7 @@ def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
 
 
 def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bound, Floats]]:
-    """Return every bound of Table 6 as a curve of two joints, for drawing (Figure 4).
+    """Return every bound of Table 6 as a curve of two joints, for drawing.
 
     Windows are straight lines; a half-space is its two roots along the second joint, turned
     into the range, with NaN where it has none or leaves the range.
@@ -177,7 +177,7 @@ def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bo
 
 
 def vertices(robot: Robot) -> list[Vertex]:
-    """Return the corners of the region of two joints in closed form, anticlockwise (Figure 5).
+    """Return the corners of the region of two joints in closed form, anticlockwise.
 
     They are the corners of the box that no half-space removes, and the points where a half-space
     crosses an edge of the box: Theorem 2 along that edge.

@@ -189,15 +189,15 @@ class Region:
 
     def to_geojson(self, deviation: float = 1e-3) -> dict[str, Any]:
         """Return polygons of a stated deviation as GeoJSON has them."""
-        from qbound.export.document import region_geojson
+        from qbound.export.outlines import find_outlines, outlines_geojson
 
-        return region_geojson(self, deviation)
+        return outlines_geojson(find_outlines(self, deviation))
 
     def to_shapely(self, deviation: float = 1e-3) -> MultiPolygon:
         """Return polygons of a stated deviation as one shapely geometry."""
-        from qbound.export.document import region_shapely
+        from qbound.export.outlines import find_outlines, outlines_shapely
 
-        return region_shapely(self, deviation)
+        return outlines_shapely(find_outlines(self, deviation))
 
     def _repr_svg_(self) -> str | None:
         """Return the picture that Jupyter shows, where matplotlib is installed."""

@@ -4,5 +4,6 @@
 - `fibres`: the region as intervals of the first joint, one set for each value of the second;
 - `cover`, `layers`: these intervals laid over each other on the circles or lines of the tool;
 - `image_crossings`: where the images of two postures' boundaries cross;
-- `areas`: the workspace, its aspects and areas; `passage`: which poses it joins.
+- `areas`: the workspace, its aspects and areas; `passage`: which poses it joins;
+- `report`: all of these, as they were asked for.
 """

@@ -5,7 +5,7 @@ along its slide), one for each distance u of the second joint from the fold. On 
 places that the arm reaches are intervals: the fibres of the region moved along by a known angle
 (or length), one set a posture. The lengths of their union and intersection, times abs(det J),
 integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
-samples (Figure 11).
+samples.
 """
 
 from __future__ import annotations
@@ -199,12 +199,12 @@ def _mixed(laid: Cover) -> Floats:
 
 
 def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
-    """Return the area of the places reached both safely and unsafely (Figure 11).
+    """Return the area of the places reached both safely and unsafely.
 
     Parameters
     ----------
     square : pair of (low, high) or None
-        The joint values that are looked at, such as those that Figure 11 draws from; None for one
+        The joint values that are looked at, such as those that a sample draws from; None for one
         full turn. A configuration is safe if it is in any component, unsafe if it is in none.
     """
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry import polygon
+from qbound.geometry.bisection import last_before
 from qbound.region import Component
 from qbound.region.arcs import Arc
 from qbound.workspace.fibres import Fibres
@@ -113,18 +114,19 @@ def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
 
 
 def _exit(region: Fibres, a: Floats, b: Floats, n: int = 4097) -> Exit | None:
-    """Return the first change of sign found at n places of the straight path, by bisection."""
-    forms, t = region.problem.forms, np.linspace(0, 1, n)
-    negative = forms(a + t[:, None] * (b - a)) <= 0
-    if not negative.any():
+    """Return where the straight path leaves first, seen at n places of it and then bisected."""
+
+    def kept(t: Floats) -> NDArray[np.bool_]:
+        return np.asarray(region.problem.forms(a + t[:, None] * (b - a)) > 0)
+
+    def inside(t: Floats) -> NDArray[np.bool_]:
+        return np.asarray(kept(t).all(axis=1))
+
+    t = np.linspace(0, 1, n)
+    safe = inside(t)
+    if safe.all():
         return None
-    row = int(negative.any(axis=1).argmax())
-    found = []
-    for i in np.flatnonzero(negative[row]):
-        low, high = t[row - 1], t[row]
-        while low < (middle := (low + high) / 2) < high:
-            inside = forms[int(i)](a + middle * (b - a)) > 0
-            low, high = (middle, high) if inside else (low, middle)
-        found.append((float(low), region.problem.names[int(i)]))
-    place, name = min(found)
-    return Exit(a + place * (b - a), name)
+    row = int(safe.argmin())
+    low, high = last_before(inside, t[[row - 1]], t[[row]])
+    name = region.problem.names[int(kept(high)[0].argmin())]
+    return Exit(a + low * (b - a), name)

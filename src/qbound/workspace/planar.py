@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import position
 from qbound.forms.angles import nearest_turn
-from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.forms.factors import FACTORS, Kind, basis
+from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.tolerances import NEGLIGIBLE, ZERO_AMPLITUDE
 
@@ -173,7 +174,7 @@ def planar_arm(robot: Robot, held: Mapping[int, float] | None = None) -> PlanarA
     axes = _plane(r)
     tool = r.dot(axes)
     frame = _first_joint(tool)
-    singular = _determinant(tool)
+    singular = _without_rounding(jacobian_determinant(tool), tool)
     if not singular.coefficients.any():
         raise NoPlanarWorkspaceError("det J = 0 everywhere: the tool moves along a curve only")
     return PlanarArm(tool, axes, singular, *frame)
@@ -301,15 +302,31 @@ def _first_joint(tool: HarmonicForm) -> tuple[complex, complex, int, Complexes]:
     return complex(c[0, 0]), 1 + 0j, sense, c[1] if sense > 0 else c[1].conj()
 
 
-def _determinant(tool: HarmonicForm) -> HarmonicForm:
-    """Return det J as a form of the second joint: three values determine it."""
-    kind = tool.kinds[1]
-    reach = np.abs(tool.coefficients).max()
-    at = np.array([0, 2, 4]) * math.pi / 3 if kind == "revolute" else np.array([-1, 0, 1]) * reach
-    jacobian = tool.gradient(np.stack([np.zeros(3), at], axis=-1))
-    size = np.linalg.norm(jacobian, axis=1).prod(axis=-1).max()
-    c = np.linalg.solve(basis(kind, at), np.linalg.det(jacobian))
-    rounding = np.abs(c) * np.abs(basis(kind, at)).max(axis=0) <= ZERO_AMPLITUDE * size
-    coefficients = np.zeros((3, 3))
-    coefficients[0] = np.where(rounding, 0.0, c)
-    return HarmonicForm(coefficients, tool.kinds)
+def jacobian_determinant(tool: HarmonicForm) -> HarmonicForm:
+    """Return det J of a tool map of two joints in its plane: a form of the second joint alone.
+
+    A first joint that keeps the plane moves it rigidly, so that its own value, here 0, does not
+    matter; and of the products all parts of higher degree cancel.
+
+    Parameters
+    ----------
+    tool : HarmonicForm, shape (2,)
+        Numbers of any type that can be halved.
+    """
+    still = basis(tool.kinds[0], 0).astype(int)
+    one, other = (
+        np.tensordot(still, tool.derivative(j).coefficients, axes=([0], [1])) for j in (0, 1)
+    )
+    products = np.multiply.outer(one[0], other[1]) - np.multiply.outer(one[1], other[0])
+    table = np.zeros((3, 3), dtype=products.dtype)
+    table[0] = (FACTORS[tool.kinds[1]].product * products).sum(axis=(1, 2)) / 2
+    return HarmonicForm(table, tool.kinds)
+
+
+def _without_rounding(singular: HarmonicForm, tool: HarmonicForm) -> HarmonicForm:
+    """Set to zero what is rounding in det J beside the products that it is a difference of."""
+    reach = [float(np.abs(tool.coefficients).max())] * 2
+    size = np.linalg.norm(tool.derivatives.size(reach), axis=0).prod()
+    terms = np.abs(singular.coefficients) * FACTORS[tool.kinds[1]].largest(reach[1])
+    kept = terms > ZERO_AMPLITUDE * size
+    return HarmonicForm(np.where(kept, singular.coefficients, 0.0), tool.kinds)

@@ -1,0 +1,55 @@
+"""Which function computes which entry: every function names the ids that it answers for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import TypeVar
+
+from lizarraga2025 import computations
+from lizarraga2025.verdicts import Finding
+
+Computation = Callable[[], Finding]
+Case = TypeVar("Case")
+
+_BY_ID: dict[str, Computation] = {}
+
+
+def computes(name: str) -> Callable[[Computation], Computation]:
+    """Register a function for an entry.
+
+    Raises
+    ------
+    ValueError
+        If another function answers for the id.
+    """
+
+    def register(function: Computation) -> Computation:
+        if name in _BY_ID:
+            raise ValueError(f"two functions compute the entry {name}")
+        _BY_ID[name] = function
+        return function
+
+    return register
+
+
+def computes_each(
+    cases: Mapping[str, Case],
+) -> Callable[[Callable[[Case], Finding]], Callable[[Case], Finding]]:
+    """Register a function for several entries of a kind, each with what it is called with."""
+
+    def register(function: Callable[[Case], Finding]) -> Callable[[Case], Finding]:
+        for name, case in cases.items():
+            computes(name)(partial(function, case))
+        return function
+
+    return register
+
+
+def by_id() -> Mapping[str, Computation]:
+    """Return the function of every entry; importing a module of this package registers its own."""
+    for module in iter_modules(computations.__path__):
+        import_module(f"{computations.__name__}.{module.name}")
+    return _BY_ID

@@ -1,0 +1,6 @@
+"""What do the computations start from? Each thing once, and cached.
+
+`arms`: the paper's robot and its variants.  `joint_region`: its regions and the scaled polygon.
+`tool_paths`: traversals and the workspace.  `effort`: what an area costs by each method.
+`proofs`: identities.  `rounding`: how far printed digits may be off.
+"""

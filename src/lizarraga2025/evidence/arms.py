@@ -1,0 +1,102 @@
+"""Which arms are judged? The paper's robot as printed, and the variants it is compared with."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from qbound import HarmonicForm, clearance, load_robot
+from qbound.boundary.functions import position
+from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot, with_symbols
+
+if TYPE_CHECKING:
+    import sympy
+
+
+@cache
+def robot() -> Robot:
+    """Return the paper's robot with the printed offsets."""
+    return load_robot("minervabot-v2")
+
+
+@cache
+def corrected() -> Robot:
+    """Return the robot with the one digit corrected: x_{2,13} = 9.09 cm."""
+    return load_robot("minervabot-v2-mended")
+
+
+@cache
+def symmetric() -> Robot:
+    """Return the exactly symmetric robot behind the rounded offsets."""
+    return load_robot("minervabot-v2-symmetric")
+
+
+@cache
+def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
+    """Return the robot with symbols for lengths, and their printed values in cm."""
+    return with_symbols(robot())
+
+
+@cache
+def in_millimetres() -> Robot:
+    """Return the robot with points 12 and 13 in millimetres, as Table 4 prints them."""
+    points = (replace(p, at=p.at / 10) if p.name in ("12", "13") else p for p in robot().points)
+    return replace(robot(), points=tuple(points))
+
+
+@cache
+def sliding() -> Robot:
+    """Return the paper's arm with a third joint that slides the tool out along link 2."""
+    slide = Prismatic(
+        "q3",
+        "2",
+        "slide",
+        np.zeros(3),
+        np.eye(3),
+        np.array([1.0, 0, 0]),
+        (-10.0, 10.0),
+    )
+    points = tuple(replace(p, frame="slide") if p.name == "3" else p for p in robot().points)
+    return replace(
+        robot(),
+        joints=(*robot().joints, slide),
+        points=points,
+        boundaries=(*robot().boundaries, Pair("B8", ("6", "3"), 5.0)),
+        home=np.zeros(3),
+    )
+
+
+@cache
+def of_slides() -> Robot:
+    """Return the arm with two slides, along x and z, in place of its joints: a linear map."""
+    joints = tuple(
+        joint.as_type(Prismatic, axis=axis, limits=(-9.0, 9.0))
+        for joint, axis in zip(robot().joints, np.eye(3)[[0, 2]], strict=True)
+    )
+    return replace(robot(), joints=joints)
+
+
+def pairs(of: Robot | None = None) -> tuple[Pair, ...]:
+    """Return the point pairs, of the paper's robot B1 to B4 (Tables 3 and 4)."""
+    return tuple(b for b in (of or robot()).boundaries if isinstance(b, Pair))
+
+
+@cache
+def half_spaces() -> tuple[HalfSpace, ...]:
+    """Return the three half-spaces, B5 to B7 (Table 5)."""
+    return tuple(b for b in robot().boundaries if isinstance(b, HalfSpace))
+
+
+@cache
+def floor() -> HarmonicForm:
+    """Return the height of the tool above its limit, cm (B7)."""
+    return clearance(robot(), robot().boundary("B7"))
+
+
+@cache
+def tool_form() -> HarmonicForm:
+    """Return the place of the tool, cm."""
+    return position(robot(), robot().tool)

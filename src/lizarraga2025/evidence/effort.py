@@ -1,0 +1,92 @@
+"""What an area costs by each method, counted in evaluations: no clock is read.
+
+The area is that of the region by the paper's rule, known exactly. One evaluation is one
+configuration judged (sampling, grid) or one solution of Theorem 2 (closed form).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lizarraga2025.evidence.arms import floor, robot
+from lizarraga2025.evidence.joint_region import by_windows, share_of_square, vertices
+from qbound.forms.angles import nearest_turn
+from qbound.geometry import polygon
+from qbound.model.robot import HalfSpace
+from qbound.region import paper_rule
+from qbound.region.arcs import legendre
+
+Floats = NDArray[np.float64]
+
+CLOSED_FORM_START = 12
+"""Solutions of Theorem 2 before any arc: 8 components of point pairs, 4 sides against B7."""
+
+
+def samples_needed(relative: float) -> float:
+    """Return how many random configurations give the area with this relative standard error."""
+    p = share_of_square()
+    return float((1 - p) / p / relative**2)
+
+
+@cache
+def contour_of_grid(n: int) -> tuple[Floats, ...]:
+    """Return the outlines that marching squares draws on an n by n grid over one turn, rad.
+
+    The grid carries the least margin of any side of the box and of the tool's limit.
+    """
+    from skimage.measure import find_contours
+
+    lattice = np.linspace(-np.pi, np.pi, n)
+    q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), axis=-1)
+    box = paper_rule.box(robot())
+    sides = np.minimum(q - box.lower, box.upper - q).min(axis=-1)
+    margin = np.minimum(sides, floor()(q) / np.hypot(15, 25.98))
+    step = lattice[1] - lattice[0]
+    rings = find_contours(margin, 0.0)  # type: ignore[no-untyped-call]
+    return tuple(ring * step - np.pi for ring in rings)
+
+
+def contour_is_closed(n: int) -> bool:
+    """Tell whether the outlines on an n by n grid are one closed curve."""
+    rings = contour_of_grid(n)
+    return len(rings) == 1 and np.allclose(rings[0][0], rings[0][-1])
+
+
+def contour_error(n: int) -> float:
+    """Return the relative error of the area inside the contour of an n by n grid."""
+    (ring,) = contour_of_grid(n)
+    return abs(abs(polygon.area(ring[:-1])) / by_windows().area - 1)
+
+
+def closed_form_evaluations(relative: float) -> int:
+    """Return how many solutions of Theorem 2 give the area with less than this relative error."""
+    nodes = next(n for n in range(1, 99) if closed_form_error(n) < relative)
+    return CLOSED_FORM_START + 2 * nodes
+
+
+def closed_form_error(nodes: int) -> float:
+    """Return the relative error of the area with so many Gauss nodes on each of the two arcs."""
+    return abs(closed_form_area(nodes) / by_windows().area - 1)
+
+
+def closed_form_area(nodes: int) -> float:
+    """Return the polygon's area less the slivers between its edges and the arcs of B7."""
+    corners = paper_rule.vertices(robot())
+    area = polygon.area(vertices())
+    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
+        (bound,) = set(one.bounds) & set(other.bounds)
+        if isinstance(robot().boundary(bound.boundary), HalfSpace):
+            area -= _sliver(bound, one.q, other.q, nodes)
+    return area
+
+
+def _sliver(bound: paper_rule.Bound, start: Floats, end: Floats, nodes: int) -> float:
+    """Integral of the curve's height over its chord, from start to end."""
+    x, weight = legendre(nodes)
+    chord = start + (x[:, None] + 1) / 2 * (end - start)
+    lower, upper = paper_rule.geometric_bounds(robot(), bound.boundary, chord)
+    curve = nearest_turn(upper if bound.k == paper_rule.UPPER else lower, chord[:, 1])
+    return float(weight @ (curve - chord[:, 1]) * (end - start)[0] / 2)

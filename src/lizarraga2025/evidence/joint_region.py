@@ -1,0 +1,96 @@
+"""Which region of joint space? By the paper's windows and by clearances, and the scaled polygon."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lizarraga2025.evidence.arms import floor, robot
+from qbound import find_region
+from qbound.geometry import polygon
+from qbound.measures import bodies, scaling
+from qbound.measures.scaling import SafeScale
+from qbound.model.robot import Robot
+from qbound.region import Component, Region, paper_rule, solve
+from qbound.sampling import Sample, sample
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+SCALE = 0.95
+"""The book's scale: the paper states none."""
+
+
+@cache
+def by_windows() -> Component:
+    """Return the exact region by the paper's rule."""
+    (region,) = solve(paper_rule.problem(robot()), robot().home).components
+    return region
+
+
+@cache
+def by_clearances() -> Region:
+    """Return all regions by the clearance rule."""
+    return find_region(robot())
+
+
+@cache
+def vertices(of: Robot | None = None) -> Floats:
+    """Return the six points of Figure 5, rad, shape (6, 2)."""
+    return np.array([corner.q for corner in paper_rule.vertices(of or robot())])
+
+
+@cache
+def scaled(factor: float = SCALE, of: Robot | None = None) -> Floats:
+    """Return the polygon scaled about the centroid of its area, rad."""
+    return polygon.scaled(vertices(of), factor, polygon.centroid(vertices(of)))
+
+
+@cache
+def largest_scale(centre: str = "area") -> SafeScale:
+    """Return the largest safe scale of the polygon about either centroid."""
+    p = vertices()
+    about = polygon.centroid(p) if centre == "area" else p.mean(axis=0)
+    return scaling.largest_safe_scale(p, about, [floor()])
+
+
+def least_height(factor: float) -> float:
+    """Return the least height of the tool above its limit on the scaled polygon's edges, cm."""
+    return scaling.least_along_edges(floor(), scaled(factor))[0]
+
+
+def depth_below_edges() -> Floats:
+    """Return how far the tool is below its limit, at most, on each edge of the polygon, cm."""
+    heights = floor()(polygon.along_edges(vertices(), np.linspace(0, 1, 4001)))
+    return np.asarray(-heights.min(axis=1))
+
+
+def body_gap(q: Floats, of: Robot | None = None) -> Floats:
+    """Return the least gap of any two bodies at configurations of shape (..., 2), cm."""
+    found = bodies.gaps(of or robot(), q)
+    return np.asarray(np.min(list(found.values()), axis=0))
+
+
+def bodies_allow(q: Floats) -> Bools:
+    """Tell where no two bodies overlap and the tool keeps its limit."""
+    return np.asarray((body_gap(q) > 0) & (floor()(q) >= 0))
+
+
+@cache
+def square(n: int = 360) -> Floats:
+    """Return the middles of an n by n grid of one turn of both joints, rad, shape (n, n, 2)."""
+    middles = (np.arange(n) + 0.5) * (2 * np.pi / n) - np.pi
+    return np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
+
+
+@cache
+def drawn() -> Sample:
+    """Return the book's draw of 100,000 configurations, judged by the paper's rule."""
+    return sample(robot(), 100_000, paper_rule.feasible, seed=11)
+
+
+def share_of_square() -> float:
+    """Return the part of one turn of both joints that the paper's rule leaves free."""
+    return by_windows().area / (2 * np.pi) ** 2

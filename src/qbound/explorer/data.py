@@ -1,0 +1,263 @@
+"""What the explorer's page is told (not in the paper).
+
+Python computes what is exact and slow (components, arcs, the largest safe scale) and hands it over
+as data, together with the coefficients from which the page computes what moves.
+``web/explorer.d.ts`` describes the same data to the scripts that read them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.boundary.functions import clearance, position
+from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry import polygon
+from qbound.geometry.polylines import flatten
+from qbound.measures.scaling import largest_safe_scale
+from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
+from qbound.region import Component, Region
+from qbound.region.arcs import Arc
+from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
+from qbound.version import __version__
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
+
+Floats = NDArray[np.float64]
+Data = dict[str, Any]
+
+SAMPLES: Final = 1500
+SEED: Final = 11
+SIX_POINT_WALKS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
+"""Right-hand and left-hand path of six points, as the book reads Figures 8 and 9."""
+
+
+def explorer_data(region: Region) -> Data:
+    """Return what the explorer's page is told, as JSON (schema qbound/explorer/1).
+
+    Parameters
+    ----------
+    region : Region
+        Of a robot. By the paper's rule a pair of points is respected where the points do not
+        coincide; the windows of Table 6 come as limits.
+
+    Returns
+    -------
+    dict
+        Angles in radians, lengths in the robot's unit. A form is a list of terms: its coefficient
+        and, for each joint, which of (1, cos q, sin q) or (1, q, q²) it multiplies.
+
+    Raises
+    ------
+    ValueError
+        If the region is of forms, not of a robot.
+    """
+    robot, problem = region.robot, region.problem
+    held, free = problem.held, list(problem.joints)
+    q = robot.with_held(robot.home[free], held)
+    views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
+    tool = position(robot, robot.tool)
+    return {
+        "schema": "qbound/explorer/1",
+        "version": __version__,
+        "name": robot.name,
+        "rule": problem.rule,
+        "length_unit": robot.length_unit,
+        "free": free,
+        "q": q.tolist(),
+        "joints": [_joint(joint) for joint in robot.joints],
+        "points": [_point(robot, i) for i in range(len(robot.points))],
+        "bodies": [
+            {"frame": robot.depth(b.frame), "outline": np.insert(b.polygon, 1, 0, 1).tolist()}
+            for b in robot.bodies
+        ],
+        "boundaries": [_boundary(robot, b, problem.rule) for b in robot.boundaries],
+        "limits": _limits(region, free),
+        "tool": [p.name for p in robot.points].index(robot.tool),
+        "tool_forms": [_terms(tool[i]) for i in range(3)],
+        "reach": _reach(robot),
+        "plane": _plane(robot, q, free[0], free[1]),
+        "views": views,
+        "components": [_component(c, views) for c in region.components],
+        "polygon": _polygon(region),
+        "workspace": _workspace(robot, region, held, q[free]),
+        "sample": _sample(views),
+    }
+
+
+# --- the robot -----------------------------------------------------------------------------------
+
+
+def _joint(joint: Joint) -> Data:
+    return {
+        "name": joint.name,
+        "kind": joint.kind,
+        "origin": joint.origin.tolist(),
+        "mount": joint.mount.tolist(),
+        "axis": joint.axis.tolist(),
+        "limits": joint.limits,
+        "wraps": joint.limits is None,
+    }
+
+
+def _point(robot: Robot, i: int) -> Data:
+    point = robot.points[i]
+    depth = robot.depth(point.frame)
+    return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
+
+
+def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
+    names = [point.name for point in robot.points]
+    data = {"name": boundary.name, "used": boundary.used}
+    form = clearance(robot, boundary)
+    if isinstance(boundary, HalfSpace):
+        offset = boundary.offset + robot.point(boundary.point).radius
+        data |= {"kind": "half-space", "points": [names.index(boundary.point)]}
+        data |= {"normal": boundary.normal.tolist(), "offset": offset}
+    elif isinstance(boundary, Pair):
+        required = robot.required_distance(boundary)
+        if rule == "paper":  # eq. (17): the points must not coincide
+            form, required = form + required**2, 0.0
+        data |= {"kind": "pair", "points": [names.index(p) for p in boundary.points]}
+        data |= {"required": required}
+    return data | {"form": _terms(form)}
+
+
+def _terms(form: HarmonicForm) -> list[list[float]]:
+    """List the terms of a form that are not zero: coefficient, then one index a joint."""
+    places = np.argwhere(form.coefficients != 0)
+    return [[float(form.coefficients[tuple(p)]), *p.tolist()] for p in places]
+
+
+def _reach(robot: Robot) -> float:
+    """Bound the tool's distance from the base; the robot's size."""
+    lengths = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
+    slides = [max(map(abs, j.limits)) for j in robot.joints if j.kind == "prismatic" and j.limits]
+    return sum(lengths) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
+
+
+def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
+    """Choose the plane to draw: across the turning axis, upright, x to the right.
+
+    It is fixed in the frame that carries the first free joint.
+    """
+    frames = robot.frames(q)
+    one, other = robot.joints[first], robot.joints[second]
+    carrier = frames.rotation(robot.base, one.parent)
+    turn = carrier.T @ frames.rotation(robot.base, other.parent)
+    axes = [one.mount @ one.axis, turn @ other.mount @ other.axis]
+    n = _across(axes, [one.kind, other.kind])
+    up = carrier.T @ np.array([0.0, 0.0, 1.0])
+    v = up - (up @ n) * n
+    if np.linalg.norm(v) <= 1e-6:
+        v = carrier.T @ np.array([0.0, 1.0, 0.0])
+        v = v - (v @ n) * n
+    v /= np.linalg.norm(v)
+    u = np.cross(v, n)
+    if (carrier @ u) @ np.array([1.0, 1e-3, 0.0]) < 0:
+        u = -u
+    return {"frame": first, "u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
+
+
+def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:
+    """Return the normal of the plane of motion: the axis of a turn, or across both slides."""
+    for axis, kind in zip(axes, kinds, strict=True):
+        if kind == "revolute":
+            return np.asarray(axis, dtype=float)
+    normal = np.cross(axes[0], axes[1])
+    size = np.linalg.norm(normal)
+    return np.asarray(normal / size) if size > ZERO_AMPLITUDE else np.array([0.0, 1.0, 0.0])
+
+
+# --- the region ----------------------------------------------------------------------------------
+
+
+def _view(joint: Joint, home: Component | None, k: int) -> Data:
+    """Choose the range to draw: the limits, or one turn that shows the home component whole."""
+    if joint.limits is not None:
+        low, high = joint.limits
+        return {"low": low, "high": high, "wraps": False}
+    middle = 0.0
+    if home is not None and not any(home.wraps):
+        values = np.concatenate([arc.points[:, k] for loop in home.loops for arc in loop])
+        if np.abs(values).max() > np.pi:
+            middle = float(values.min() + values.max()) / 2
+    return {"low": middle - np.pi, "high": middle + np.pi, "wraps": True}
+
+
+def _limits(region: Region, free: Sequence[int]) -> list[Data]:
+    """List the ends of both ranges; `middle` says which turn of an angle counts."""
+    found: list[Data] = []
+    for j, bounds, names in zip(free, region.problem.ranges, region.problem.limits, strict=True):
+        if bounds is not None:
+            for name, side, value in zip(names, (-1, 1), bounds, strict=True):
+                row = {"name": name, "joint": j, "side": side, "value": value}
+                found.append(row | {"middle": sum(bounds) / 2})
+    return found
+
+
+def _component(component: Component, views: Sequence[Data]) -> Data:
+    centroid = component.centroid
+    return {
+        "home": component.contains_home,
+        "area": component.area,
+        "centroid": None if centroid is None else centroid.tolist(),
+        "wraps": list(component.wraps),
+        "loops": [[_arc(arc, views) for arc in loop] for loop in component.loops],
+        "vertices": [
+            {"q": v.q.tolist(), "boundaries": list(v.boundaries)} for v in component.vertices
+        ],
+    }
+
+
+def _arc(arc: Arc, views: Sequence[Data]) -> Data:
+    """Keep as many of an arc's exact points as a drawing needs."""
+    deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
+    s, _ = flatten(arc.at, deviation, len(arc.pieces.roots))
+    points = arc.at(s).round(6).tolist()
+    return {"boundary": arc.boundary, "branch": arc.branch, "points": points}
+
+
+def _polygon(region: Region) -> Data | None:
+    """Return the vertex polygon of the home component, its largest safe scale, its walks."""
+    home = region.home
+    if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
+        return None
+    vertices = np.array([vertex.q for vertex in home.vertices])
+    forms = [region.problem.forms[i] for i in range(len(region.problem.names))]
+    try:
+        centre = polygon.centroid(vertices)
+        largest = largest_safe_scale(vertices, centre, forms)
+    except (ValueError, ArithmeticError):  # its centroid is not safe, or an edge lies in a wall
+        return None
+    return {
+        "vertices": vertices.tolist(),
+        "centroid": centre.tolist(),
+        "largest": largest.scale,
+        "binds": None if largest.form < 0 else region.problem.names[largest.form],
+        "walks": _walks(len(vertices)),
+    }
+
+
+def _workspace(robot: Robot, region: Region, held: Mapping[int, float], q: Floats) -> Data | None:
+    """Return the areas of the exact workspace; None where the tool has no planar one."""
+    try:
+        found = find_workspace(planar_arm(robot, held), region.problem, q)
+    except ValueError:  # no home component, or a tool that leaves the plane
+        return None
+    return {"area": found.area, "covered_twice": found.covered_twice}
+
+
+def _walks(m: int) -> list[list[int]]:
+    """List orders in which to visit m vertices: once round (Figure 7), and Figures 8 and 9."""
+    return [[*range(m), 0], *map(list, SIX_POINT_WALKS if m == 6 else ())]
+
+
+def _sample(views: Sequence[Data]) -> list[list[float]]:
+    """Draw random configurations (Figure 11); the page judges each."""
+    low, high = (np.array([view[end] for view in views]) for end in ("low", "high"))
+    drawn = np.random.default_rng(SEED).uniform(low, high, (SAMPLES, 2))
+    return [[float(f"{x:.4g}") for x in pair] for pair in drawn]

@@ -1,0 +1,345 @@
+/* What a reader holds: sliders, fields, buttons, handles, keys, a link. Then the page begins. */
+
+/** @type {Record<string, number[]>} */
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const MAX_SCALE = 1.05;
+
+/* --- a link that restores the state ------------------------------------------------------------ */
+
+/** @type {() => string} */
+function hashOf() {
+  const shown = Object.entries(state.show).flatMap(([name, shows]) => (shows ? [name] : []));
+  const values = {
+    q: state.q.map((value) => Number(value.toFixed(5))).join(","),
+    scale: Number(state.scale.toFixed(4)),
+    walk: state.walk,
+    at: Number(state.progress.toFixed(3)),
+    show: shown.join(","),
+  };
+  const pairs = Object.entries(values).map(([key, value]) => `${key}=${value}`);
+  return `#${pairs.join("&")}`;
+}
+
+function remember() {
+  const link = window.location.href.split("#")[0] + hashOf();
+  inputOf("link").value = link;
+  partOf("full-page", HTMLAnchorElement).href = link;
+  window.clearTimeout(timers.remember);
+  timers.remember = window.setTimeout(() => {
+    if (window.location.href !== link) window.history.replaceState(null, "", link);
+  }, 250);
+}
+
+/** Read a link; whatever is no number of this robot is left alone. */
+function restore() {
+  const read = new URLSearchParams(window.location.hash.slice(1));
+  const q = (read.get("q") || "none").split(",").map(Number);
+  if (q.length === state.q.length && q.every(Number.isFinite))
+    state.q = withPair(robot, q.map(heldValue), inView(pairOf(q)));
+  /** @type {(name: string, high: number) => number | null} */
+  const bounded = (name, high) => {
+    const value = Number(read.get(name) ?? "none");
+    return value >= 0 && value <= high ? value : null;
+  };
+  state.scale = bounded("scale", largestScale()) ?? state.scale;
+  state.progress = bounded("at", 1) ?? 0;
+  const walk = bounded("walk", robot.polygon ? robot.polygon.walks.length - 1 : 0) ?? 0;
+  state.walk = Number.isInteger(walk) ? walk : 0;
+  const names = read.get("show")?.split(",");
+  for (const name of shownNames()) state.show[name] = names?.includes(name) ?? state.show[name];
+}
+
+/** @type {() => (keyof State["show"])[]} */
+function shownNames() {
+  return ["workspace", "polygon", "sample", "names"];
+}
+
+/** Where no boundary binds, no scale beyond 1 was searched.
+ * @type {() => number} */
+function largestScale() {
+  return robot.polygon?.binds ? MAX_SCALE : 1;
+}
+
+/* --- controls ---------------------------------------------------------------------------------- */
+
+/** An element of the page.
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} name
+ * @param {Partial<HTMLElementTagNameMap[K]>} properties
+ * @param {...(Node | string)} children
+ * @returns {HTMLElementTagNameMap[K]} */
+function element(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+function buildPose() {
+  byId("pose").replaceChildren(...robot.joints.map(poseRow));
+}
+
+/** A slider and a field for one joint.
+ * @type {(joint: Joint, j: number) => HTMLDivElement} */
+function poseRow(joint, j) {
+  const turn = joint.kind === "revolute";
+  const factor = turn ? DEGREE : 1;
+  const [low, high] = rangeShown(joint, j).map((value) => value / factor);
+  const [min, max] = [String(low), String(high)];
+  const step = String(turn ? 0.1 : (high - low) / 1000);
+  const slide = element("input", { type: "range", id: `slide-${j}`, min, max, step });
+  const field = element("input", { type: "number", id: `value-${j}`, min, max, step: "any" });
+  const name = joint.name + (robot.free.includes(j) ? "" : " (held)");
+  slide.ariaLabel = name;
+  field.ariaLabel = `${name}, ${turn ? "degrees" : robot.length_unit}`;
+  for (const input of [slide, field]) {
+    input.addEventListener("input", () => {
+      const value = Number(input.value);
+      if (input.value !== "" && Number.isFinite(value)) setJoint(j, value * factor);
+    });
+  }
+  field.addEventListener("blur", showPose);
+  const unit = element("span", { className: "unit" }, field, turn ? "°" : robot.length_unit);
+  return element("div", { className: "slider" }, element("span", {}, name), slide, unit);
+}
+
+/** The range of a joint's slider: what is drawn, its limits, or one turn.
+ * @type {(joint: Joint, j: number) => number[]} */
+function rangeShown(joint, j) {
+  const k = robot.free.indexOf(j);
+  if (k >= 0) return [robot.views[k].low, robot.views[k].high];
+  return joint.limits ?? [-Math.PI, Math.PI];
+}
+
+/** @type {(j: number, value: number) => void} */
+function setJoint(j, value) {
+  if (robot.free.includes(j)) {
+    movePose(pairOf(state.q.map((old, i) => (i === j ? value : old))));
+    return;
+  }
+  stopPlaying();
+  state.q[j] = heldValue(value, j);
+  state.path = null;
+  state.mirror = null;
+  rebuild();
+}
+
+function buildMargins() {
+  byId("margins").replaceChildren(...margins(robot, state.q).map(marginRow));
+}
+
+/** @type {(margin: Margin, i: number) => HTMLTableRowElement} */
+function marginRow({ name, used }, i) {
+  const row = element("tr", { className: used ? "" : "unused" });
+  row.append(
+    element("th", { scope: "row" }, name),
+    element("td", {}, betweenText(i)),
+    element("td", { className: "number" }),
+  );
+  /** @type {(hover: string | null) => void} */
+  const point = (hover) => {
+    state.hover = hover;
+    refresh();
+  };
+  row.addEventListener("pointerenter", () => point(name));
+  row.addEventListener("pointerleave", () => point(null));
+  return row;
+}
+
+function buildScale() {
+  byId("scaling").hidden = !robot.polygon;
+  if (!robot.polygon) return;
+  const { largest, walks, binds } = robot.polygon;
+  inputOf("scale").max = String(largestScale());
+  const more = binds === null ? " or more" : "";
+  byId("largest").textContent = `Largest safe scale: ${number(largest, 4)}${more}`;
+  byId("scale-mark").style.left = `${(100 * largest) / largestScale()}%`;
+  byId("largest").addEventListener("click", () => setScale(largest));
+  inputOf("scale").addEventListener("input", () => setScale(Number(inputOf("scale").value)));
+  buildWalk(partOf("walk", HTMLSelectElement), walks);
+}
+
+/** @type {(choice: HTMLSelectElement, walks: number[][]) => void} */
+function buildWalk(choice, walks) {
+  const orders = walks.map((walk) => walk.map((k) => k + 1).join(" – "));
+  choice.replaceChildren(
+    ...orders.map((order, i) => element("option", { value: String(i) }, order)),
+  );
+  choice.value = String(state.walk);
+  inputOf("progress").value = String(state.progress);
+  choice.addEventListener("change", () => {
+    state.walk = Number(choice.value);
+    state.progress = 0;
+    showProgress();
+  });
+  inputOf("progress").addEventListener("input", () => {
+    state.progress = Number(inputOf("progress").value);
+    showProgress();
+  });
+  const speed = partOf("speed", HTMLSelectElement);
+  speed.addEventListener("change", () => {
+    state.speed = Number(speed.value);
+  });
+  byId("play").addEventListener("click", playWalk);
+}
+
+/** @type {(scale: number) => void} */
+function setScale(scale) {
+  stopPlaying();
+  state.scale = scale;
+  state.show.polygon = true;
+  if (state.path && state.path.length > 2) state.path = walkStops();
+  buildShow();
+  redraw();
+}
+
+function buildShow() {
+  const words = {
+    workspace: "Where the tool can go (geometric workspace)",
+    polygon: "Polygon of the vertices",
+    sample: `${robot.sample.length} random poses`,
+    names: "Names of all points",
+  };
+  const names = shownNames().filter((name) => name !== "polygon" || robot.polygon);
+  const boxes = names.map((name) => {
+    const box = element("input", {
+      type: "checkbox",
+      id: `show-${name}`,
+      checked: state.show[name],
+    });
+    box.addEventListener("change", () => {
+      state.show[name] = box.checked;
+      redraw();
+    });
+    return element("label", { className: "check" }, box, words[name]);
+  });
+  byId("show").replaceChildren(...boxes);
+}
+
+function goHome() {
+  state.path = null;
+  movePose(pairOf(robot.q));
+}
+
+/* --- hands and keys ---------------------------------------------------------------------------- */
+
+/** Where a pointer is, in a picture's own pixels.
+ * @type {(svg: SVGSVGElement, event: MouseEvent) => Point} */
+function pixelOf(svg, event) {
+  const box = svg.getBoundingClientRect();
+  const view = svg.viewBox.baseVal;
+  return [
+    ((event.clientX - box.left) * view.width) / box.width,
+    ((event.clientY - box.top) * view.height) / box.height,
+  ];
+}
+
+/** Drag from a handle, or with a mouse from anywhere; a tap moves at once.
+ * @type {(svg: SVGSVGElement, move: (pixel: Point) => void) => void} */
+function draggable(svg, move) {
+  /** @type {number | null} */
+  let held = null;
+  svg.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    const { target, pointerType, pointerId } = event;
+    const onHandle = target instanceof Element && target.classList.contains("reach-me");
+    if (pointerType === "touch" && !onHandle) return;
+    held = pointerId;
+    svg.setPointerCapture(pointerId);
+    svg.focus({ preventScroll: true });
+    event.preventDefault();
+    if (!onHandle) move(pixelOf(svg, event));
+  });
+  svg.addEventListener("pointermove", (event) => {
+    if (event.pointerId === held) move(pixelOf(svg, event));
+  });
+  for (const name of ["pointerup", "pointercancel"]) {
+    svg.addEventListener(name, () => {
+      held = null;
+    });
+  }
+  svg.addEventListener("click", (event) => {
+    if (event instanceof PointerEvent && event.pointerType === "touch") move(pixelOf(svg, event));
+  });
+}
+
+/** @type {(svg: SVGSVGElement, step: (direction: number[], large: boolean) => void) => void} */
+function onKeys(svg, step) {
+  svg.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const key = event.key.toLowerCase();
+    if (ARROWS[event.key]) step(ARROWS[event.key], event.shiftKey);
+    else if (key === "h") goHome();
+    else if (key === "f") playFlip();
+    else return;
+    event.preventDefault();
+  });
+}
+
+/** @type {(direction: number[], large: boolean) => void} */
+function stepJoints(direction, large) {
+  const sizes = robot.views.map(({ low, high }, k) =>
+    slice.map.kinds[k] === "revolute" ? DEGREE : (high - low) / 200,
+  );
+  const factor = large ? 10 : 1;
+  movePose(pairOf(state.q).map((value, k) => value + direction[k] * sizes[k] * factor));
+}
+
+/** @type {(direction: number[], large: boolean) => void} */
+function stepTool(direction, large) {
+  const size = robot.reach * (large ? 0.05 : 0.01);
+  const place = toolAt(slice.map, pairOf(state.q));
+  moveTool(place.map((value, k) => value + direction[k] * size));
+}
+
+function listen() {
+  const [jointSvg, planeSvg] = [partOf("joints", SVGSVGElement), partOf("plane", SVGSVGElement)];
+  draggable(jointSvg, (pixel) => movePose(joints.from(pixel)));
+  draggable(planeSvg, (pixel) => moveTool(plane.from(pixel)));
+  onKeys(jointSvg, stepJoints);
+  onKeys(planeSvg, stepTool);
+  byId("home").addEventListener("click", goHome);
+  byId("flip").addEventListener("click", playFlip);
+  byId("task-go").addEventListener("click", playTask);
+  byId("task-again").addEventListener("click", () => {
+    setMirror();
+    refresh();
+  });
+  byId("copy").addEventListener("click", copyLink);
+  window.addEventListener("hashchange", () => {
+    restore();
+    buildShow();
+    rebuild();
+  });
+  new ResizeObserver(redraw).observe(jointSvg.parentElement ?? document.body);
+}
+
+function copyLink() {
+  inputOf("link").select();
+  navigator.clipboard?.writeText(inputOf("link").value).catch(() => {});
+}
+
+/* --- inside another page ----------------------------------------------------------------------- */
+
+/** In a frame the page tells its height, and is told whether its surroundings are dark. One that
+    stands in its frame's `srcdoc` (a notebook's output) has no address, and no room elsewhere. */
+function embed() {
+  const root = document.documentElement;
+  const hasAddress = window.location.protocol !== "about:";
+  byId("share").hidden = !hasAddress;
+  if (window.parent === window || !hasAddress) return;
+  root.classList.add("embedded");
+  const tell = () => window.parent.postMessage({ explorerHeight: root.offsetHeight }, "*");
+  new ResizeObserver(tell).observe(document.body);
+  window.addEventListener("message", ({ data }) => {
+    if (["light", "dark"].includes(data?.theme)) root.style.colorScheme = data.theme;
+  });
+}
+
+embed();
+restore();
+buildPose();
+buildMargins();
+buildScale();
+buildShow();
+rebuild();
+listen();

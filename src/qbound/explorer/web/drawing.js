@@ -1,0 +1,123 @@
+/* What both pictures are made of: elements, scales, layers, names, a handle. */
+
+const SVG = "http://www.w3.org/2000/svg";
+
+/** An element of a picture.
+ * @template {keyof SVGElementTagNameMap} K
+ * @param {K} name
+ * @param {Record<string, string | number>} attributes
+ * @param {string} text
+ * @returns {SVGElementTagNameMap[K]} */
+function make(name, attributes, text = "") {
+  const element = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  element.textContent = text;
+  return element;
+}
+
+/** The part of the page that has an id, of the kind that the caller needs.
+ * @template {Element} T
+ * @param {string} id
+ * @param {new () => T} kind
+ * @returns {T} */
+function partOf(id, kind) {
+  const found = document.getElementById(id);
+  if (!(found instanceof kind)) throw new Error(`The page has no ${kind.name} "${id}".`);
+  return found;
+}
+
+/** A picture with two scales: `at` leads from values to pixels, `from` back.
+ * @type {(svg: SVGSVGElement, ranges: number[][], margin: Picture["box"], equal: boolean) => Picture} */
+function picture(svg, ranges, margin, equal) {
+  const width = Math.max(240, svg.parentElement?.clientWidth ?? 0);
+  const height = Math.round(Math.min(width, 560));
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.setAttribute("height", String(height));
+  const [[x0, x1], [y0, y1]] = ranges;
+  const [w, h] = [width - margin.left - margin.right, height - margin.top - margin.bottom];
+  let [a, b] = [w / (x1 - x0), h / (y1 - y0)];
+  if (equal) a = b = Math.min(a, b);
+  const left = margin.left + (w - a * (x1 - x0)) / 2;
+  const top = margin.top + (h - b * (y1 - y0)) / 2;
+  return {
+    svg,
+    width,
+    height,
+    box: { left, top, right: left + a * (x1 - x0), bottom: top + b * (y1 - y0) },
+    at: ([x, y]) => [left + a * (x - x0), top + b * (y1 - y)],
+    from: ([x, y]) => [x0 + (x - left) / a, y1 - (y - top) / b],
+  };
+}
+
+/** @type {(points: Point[], closed?: boolean) => string} */
+function pathText(points, closed = false) {
+  const text = points.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join("L");
+  return points.length ? `M${text}${closed ? "Z" : ""}` : "";
+}
+
+/** A clipped layer inside a picture's box.
+ * @type {(drawn: Picture, name: string, clipped?: boolean) => SVGGElement} */
+function layer(drawn, name, clipped = true) {
+  const group = make(
+    "g",
+    clipped ? { class: name, "clip-path": `url(#${drawn.svg.id}-clip)` } : { class: name },
+  );
+  drawn.svg.append(group);
+  return group;
+}
+
+/** @type {(drawn: Picture) => void} */
+function clear(drawn) {
+  drawn.svg.replaceChildren();
+  const { left, top, right, bottom } = drawn.box;
+  const clip = make("clipPath", { id: `${drawn.svg.id}-clip` });
+  clip.append(make("rect", { x: left, y: top, width: right - left, height: bottom - top }));
+  drawn.svg.append(clip);
+}
+
+/** Random poses: round dots where safe, crosses where not.
+ * @type {(group: SVGGElement, sample: SamplePose[], place: (one: SamplePose) => Point) => void} */
+function drawMarks(group, sample, place) {
+  const d = { dots: "", crosses: "" };
+  for (const one of sample) {
+    const [x, y] = place(one).map((value) => Number(value.toFixed(1)));
+    if (one.safe) d.dots += `M${x} ${y}h0`;
+    else d.crosses += `M${x - 2} ${y - 2}l4 4m0 -4l-4 4`;
+  }
+  for (const [name, text] of Object.entries(d))
+    group.append(make("path", { class: name, d: text }));
+}
+
+/** A handle to drag, with room around it for a finger.
+ * @type {(svg: SVGSVGElement, mark: SVGElement) => Handle} */
+function handle(svg, mark) {
+  const group = make("g", { class: "handle-group" });
+  const room = make("circle", { class: "reach-me", r: 24 });
+  group.append(mark, room);
+  svg.append(group);
+  return { group, mark, room };
+}
+
+/** Keep names inside the picture, and leave out one that would cover another.
+ * @type {(names: Iterable<SVGTextElement>, width: number) => void} */
+function thin(names, width) {
+  /** @type {DOMRect[]} */
+  const kept = [];
+  for (const name of names) {
+    const { x, width: size } = name.getBBox();
+    const shift = Math.max(0, 4 - x) - Math.max(0, x + size + 4 - width);
+    name.setAttribute("x", String(Number(name.getAttribute("x")) + shift));
+    const box = name.getBBox();
+    /** @type {(other: DOMRect) => boolean} */
+    const covers = (other) =>
+      Math.abs(box.x + box.width / 2 - other.x - other.width / 2) < (box.width + other.width) / 2 &&
+      Math.abs(box.y - other.y) < box.height - 2;
+    if (kept.some(covers)) name.remove();
+    else kept.push(box);
+  }
+}
+
+/** @type {(value: number, low: number, high: number) => number} */
+function between(value, low, high) {
+  return Math.min(high, Math.max(low, value));
+}

@@ -1,0 +1,281 @@
+/* What Python tells the page (the JSON of qbound.explorer.data, schema qbound/explorer/1) and what
+   the page's scripts hand each other. For the type checker only: no page carries this file.
+   Angles are in rad, lengths in the robot's unit. */
+
+type Kind = "revolute" | "prismatic";
+type Pose = number[]; // a value for every joint
+type Pair = number[]; // values of the two free joints
+type Place = number[]; // x, y, z
+type Point = number[]; // two coordinates in the plane of motion, or pixels of a picture
+type Matrix = number[][];
+type Term = number[]; // a coefficient, then for each joint the index of its factor
+
+/* --- what Python tells ------------------------------------------------------------------------ */
+
+interface Robot {
+  schema: "qbound/explorer/1";
+  version: string;
+  name: string;
+  rule: "clearance" | "paper";
+  length_unit: string;
+  free: number[];
+  q: Pose;
+  joints: Joint[];
+  points: RobotPoint[];
+  bodies: { frame: number; outline: Place[] }[];
+  boundaries: Wall[];
+  limits: Limit[];
+  tool: number;
+  tool_forms: Term[][];
+  reach: number;
+  plane: { frame: number; u: Place; v: Place; n: Place };
+  views: View[];
+  components: Component[];
+  polygon: VertexPolygon | null;
+  workspace: { area: number; covered_twice: number } | null;
+  sample: Pair[];
+}
+
+interface Joint {
+  name: string;
+  kind: Kind;
+  origin: Place;
+  mount: Matrix;
+  axis: Place;
+  limits: [number, number] | null;
+  wraps: boolean;
+}
+
+interface RobotPoint {
+  name: string;
+  frame: number;
+  at: Place;
+  radius: number;
+}
+
+interface WallOfAnyKind {
+  name: string;
+  used: boolean;
+  points: number[];
+  form: Term[];
+}
+
+interface PairWall extends WallOfAnyKind {
+  kind: "pair";
+  required: number;
+}
+
+interface HalfSpaceWall extends WallOfAnyKind {
+  kind: "half-space";
+  normal: Place;
+  offset: number;
+}
+
+type Wall = PairWall | HalfSpaceWall;
+
+interface Limit {
+  name: string;
+  joint: number;
+  side: -1 | 1;
+  value: number;
+  middle: number;
+}
+
+interface View {
+  low: number;
+  high: number;
+  wraps: boolean;
+}
+
+interface Component {
+  home: boolean;
+  area: number;
+  centroid: Pair | null;
+  wraps: boolean[];
+  loops: { boundary: string; branch: -1 | 1 | null; points: Pair[] }[][];
+  vertices: { q: Pair; boundaries: string[] }[];
+}
+
+interface VertexPolygon {
+  vertices: Pair[];
+  centroid: Pair;
+  largest: number;
+  binds: string | null;
+  walks: number[][];
+}
+
+/* --- kinematics and margins ------------------------------------------------------------------- */
+
+interface Frame {
+  turn: Matrix;
+  place: Place;
+}
+
+interface Margin {
+  name: string;
+  value: number;
+  used: boolean;
+  unit: "length" | "angle";
+}
+
+interface ToolMap {
+  x: Matrix;
+  y: Matrix;
+  kinds: Kind[];
+  planar: boolean;
+}
+
+interface Arm {
+  kind: "rr" | "rp" | "pr" | "pp";
+  c: Point;
+  d: Point;
+  e: Point;
+  s1: number;
+  s2: number;
+}
+
+/* --- slices ----------------------------------------------------------------------------------- */
+
+interface NamedView extends View {
+  names: string[];
+}
+
+interface SliceProblem {
+  kinds: Kind[];
+  forms: Matrix[];
+  names: string[];
+  ranges: NamedView[];
+}
+
+interface Span {
+  low: { at: number };
+  high: { at: number };
+}
+
+interface Interval extends Span {
+  low: { at: number; by: number };
+  high: { at: number; by: number };
+}
+
+interface Fibre {
+  t: number;
+  intervals: Interval[];
+}
+
+type Row = number[]; // of a cell: value of the first joint, lowest and highest of the second
+
+interface Cell {
+  low: number;
+  high: number;
+  rows: Row[];
+  piece: number;
+  before: Interval[];
+  after: Interval[];
+}
+
+interface Edge {
+  boundary: string;
+  piece: number;
+  points: Pair[];
+}
+
+interface Images {
+  positive: Point[][];
+  negative: Point[][];
+}
+
+interface DrawnArc {
+  boundary: string;
+  branch: number | null;
+  home: boolean;
+  points: Pair[];
+}
+
+interface Slice {
+  cells: Cell[];
+  home: number | null;
+  exact: boolean;
+  map: ToolMap;
+  arm: Arm;
+  regular: boolean;
+  arcs: DrawnArc[];
+  images: Images;
+  lines: number[];
+  largest: number;
+}
+
+/* --- state and pictures ----------------------------------------------------------------------- */
+
+interface Least {
+  value: number;
+  name: string | null;
+  q: Pair;
+}
+
+interface SamplePose {
+  pair: Pair;
+  safe: boolean;
+  tool: Point;
+}
+
+interface State {
+  q: Pose;
+  scale: number;
+  walk: number;
+  progress: number;
+  speed: number;
+  show: { workspace: boolean; polygon: boolean; sample: boolean; names: boolean };
+  sample: SamplePose[];
+  path: Pair[] | null; // stops of the path that is drawn
+  mirror: Pair | null; // the pose that the task asks for
+  side: number; // the sign of det J where the task began
+  crossed: boolean; // whether det J has changed its sign since
+  hover: string | null; // a boundary pointed at in the table
+}
+
+interface Lit {
+  violated: Set<string>;
+  bold: Set<string>;
+  boundaries: Set<string>;
+  points: Set<number>;
+}
+
+interface Picture {
+  svg: SVGSVGElement;
+  width: number;
+  height: number;
+  box: { left: number; top: number; right: number; bottom: number };
+  at: (values: number[]) => Point;
+  from: (pixel: Point) => number[];
+}
+
+type Side = (point: Point) => number; // of a line: its sign says on which side a point lies
+
+interface Handle {
+  group: SVGGElement;
+  mark: SVGElement;
+  room: SVGCircleElement;
+}
+
+interface PathLayers {
+  path: SVGPathElement;
+  ghost: SVGElement;
+}
+
+interface JointPicture extends Picture, Handle, PathLayers {
+  arcs: (SVGPathElement | SVGTextElement)[];
+  singular: SVGLineElement[];
+}
+
+interface ArmParts {
+  bodies: SVGPolygonElement[];
+  spine: SVGPathElement;
+  axles: SVGCircleElement[];
+  gaps: SVGLineElement[];
+  points: SVGCircleElement[];
+  names: SVGTextElement[];
+}
+
+interface PlanePicture extends Picture, Handle, PathLayers, ArmParts {
+  walls: SVGPathElement[];
+}

@@ -1,0 +1,190 @@
+/* The picture of joint space. Like the arm's it is handed the state and changes nothing else. */
+
+/** @type {(robot: Robot, state: State, slice: Slice) => JointPicture} */
+function drawJointSpace(robot, state, slice) {
+  const svg = partOf("joints", SVGSVGElement);
+  const ranges = robot.views.map((view) => [view.low, view.high]);
+  const drawn = picture(svg, ranges, { left: 46, right: 12, top: 12, bottom: 40 }, false);
+  clear(drawn);
+  drawJointAxes(robot, drawn);
+  drawCells(drawn, slice);
+  if (state.show.sample)
+    drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
+  const singular = drawSingular(drawn, slice);
+  const arcs = drawArcs(drawn, robot, slice);
+  if (state.show.polygon && slice.exact && robot.polygon)
+    drawPolygon(drawn, robot.polygon, state.scale);
+  const path = layer(drawn, "joint-path").appendChild(make("path", { class: "path" }));
+  const ghost = layer(drawn, "joint-ghost").appendChild(make("circle", { class: "ghost", r: 8 }));
+  const hand = handle(svg, make("circle", { class: "handle", r: 8 }));
+  return { ...drawn, ...hand, singular, arcs, path, ghost };
+}
+
+/** @type {(robot: Robot, drawn: Picture) => void} */
+function drawJointAxes(robot, drawn) {
+  const group = layer(drawn, "axes", false);
+  const { left, top, right, bottom } = drawn.box;
+  robot.views.forEach((view, k) => {
+    const joint = robot.joints[robot.free[k]];
+    const turn = joint.kind === "revolute";
+    for (const value of ticks(view, turn)) {
+      const [x, y] = drawn.at(k === 0 ? [value, 0] : [0, value]);
+      const ends =
+        k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
+      group.append(make("line", { class: "grid", ...ends }));
+      const place =
+        k === 0
+          ? { x, y: bottom + 16, "text-anchor": "middle" }
+          : { x: left - 6, y: y + 4, "text-anchor": "end" };
+      group.append(make("text", place, shown(joint, value)));
+    }
+    const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
+    group.append(
+      k === 0
+        ? make("text", { x: right, y: bottom + 33, "text-anchor": "end" }, title)
+        : make("text", { x: 4, y: bottom + 33 }, `↑ ${title}`),
+    );
+  });
+}
+
+/** Round values to label an axis with.
+ * @type {(view: View, turn: boolean) => number[]} */
+function ticks(view, turn) {
+  const span = view.high - view.low;
+  const unit = 10 ** Math.floor(Math.log10(span / 3));
+  const step =
+    turn && span > 1
+      ? Math.PI / (span > 4 ? 3 : 6)
+      : [1, 2, 5].map((k) => k * unit).find((size) => span / size <= 8) || 10 * unit;
+  const found = [];
+  for (let k = Math.ceil(view.low / step - 1e-9); k * step <= view.high + 1e-9; k += 1)
+    found.push(k * step);
+  return found;
+}
+
+/** A joint value as the page writes it: whole degrees, or a length.
+ * @type {(joint: Joint, value: number) => string} */
+function shown(joint, value) {
+  const number = joint.kind === "revolute" ? (value * 180) / Math.PI : value;
+  return String(Number(number.toFixed(joint.kind === "revolute" ? 0 : 2))).replace("-", "−");
+}
+
+/** @type {(drawn: Picture, slice: Slice) => void} */
+function drawCells(drawn, slice) {
+  const group = layer(drawn, "cells");
+  const outlines = { home: "", away: "" };
+  for (const cell of slice.cells) {
+    outlines[cell.piece === slice.home ? "home" : "away"] += pathText(
+      outline(cell.rows).map(drawn.at),
+      true,
+    );
+  }
+  for (const [name, d] of Object.entries(outlines)) group.append(make("path", { class: name, d }));
+}
+
+/** @type {(drawn: Picture, slice: Slice) => SVGLineElement[]} */
+function drawSingular(drawn, slice) {
+  const group = layer(drawn, "singular-lines");
+  const { left, right } = drawn.box;
+  const heights = slice.lines.map((value) => drawn.at([0, value])[1]);
+  const lines = heights.map((y) =>
+    make("line", { class: "singular", x1: left, x2: right, y1: y, y2: y }),
+  );
+  group.append(...lines);
+  if (heights.length > 0) {
+    const at = { x: right - 6, y: heights[0] - 6, "text-anchor": "end" };
+    group.append(make("text", { class: "line-name", ...at }, "det J = 0"));
+  }
+  return lines;
+}
+
+/** All arcs, again one turn further where a joint turns all the way round.
+ * @type {(drawn: Picture, robot: Robot, slice: Slice) => (SVGPathElement | SVGTextElement)[]} */
+function drawArcs(drawn, robot, slice) {
+  const group = layer(drawn, "arcs");
+  const shifts = robot.views.map((view) => (view.wraps && slice.exact ? [-TURN, 0, TURN] : [0]));
+  const arcs = slice.arcs.map((arc) => {
+    const copies = shifts[0].flatMap((a) =>
+      shifts[1].map((b) => pathText(arc.points.map(([x, y]) => drawn.at([x + a, y + b])))),
+    );
+    const path = make("path", { class: arc.home ? "arc" : "arc of-away", d: copies.join("") });
+    path.dataset.boundary = arc.boundary;
+    return path;
+  });
+  group.append(...arcs);
+  return [...arcs, ...nameArcs(drawn, slice)];
+}
+
+/** Write a boundary's name beside the longest of its arcs, outside the home component.
+ * @type {(drawn: Picture, slice: Slice) => SVGTextElement[]} */
+function nameArcs(drawn, slice) {
+  const arcs = slice.arcs
+    .filter((arc) => arc.home)
+    .map((arc) => ({ key: `${arc.boundary} ${arc.branch}`, arc, points: arc.points.map(drawn.at) }))
+    .map((one) => ({ ...one, size: sum(stepLengths(one.points)) }))
+    .filter((one) => one.size > 26)
+    .sort((a, b) => b.size - a.size);
+  const longest = arcs.filter((one, i) => arcs.findIndex(({ key }) => key === one.key) === i);
+  const group = layer(drawn, "arc-names", false);
+  const names = longest.map(({ arc, points }) => nameBeside(drawn, arc.boundary, points));
+  group.append(...names);
+  thin(names, drawn.width);
+  return names;
+}
+
+/** @type {(drawn: Picture, name: string, points: Point[]) => SVGTextElement} */
+function nameBeside(drawn, name, points) {
+  const [[x, y], [nx, ny]] = middleOf(points);
+  const half = 4 * name.length; // of the word's width, about
+  const { left, top, right, bottom } = drawn.box;
+  const at = {
+    x: between(x + (half + 7) * nx, left + half, right - half),
+    y: between(y + 15 * ny + 4, top + 14, bottom - 5),
+  };
+  const text = make("text", { class: "arc-name", ...at, "text-anchor": "middle" }, name);
+  text.dataset.boundary = name;
+  return text;
+}
+
+/** @type {(points: Point[]) => number[]} */
+function stepLengths(points) {
+  return points.slice(1).map((p, i) => Math.hypot(p[0] - points[i][0], p[1] - points[i][1]));
+}
+
+/** The middle of a polyline by length, and the unit normal to the right of its direction.
+ * @type {(points: Point[]) => Point[]} */
+function middleOf(points) {
+  const steps = stepLengths(points);
+  let rest = sum(steps) / 2;
+  let i = 0;
+  while (i < steps.length - 1 && rest > steps[i]) {
+    rest -= steps[i];
+    i += 1;
+  }
+  const [a, b] = [points[i], points[i + 1]];
+  const share = steps[i] === 0 ? 0 : rest / steps[i];
+  const [dx, dy] = [(b[0] - a[0]) / (steps[i] || 1), (b[1] - a[1]) / (steps[i] || 1)];
+  return [
+    [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])],
+    [-dy, dx],
+  ];
+}
+
+/** @type {(drawn: Picture, polygon: VertexPolygon, scale: number) => void} */
+function drawPolygon(drawn, { vertices, centroid, largest }, scale) {
+  const group = layer(drawn, "scaled");
+  const corners = scaledPolygon(vertices, scale, centroid);
+  const name = scale > largest ? "polygon unsafe" : "polygon";
+  group.append(make("path", { class: name, d: pathText(corners.map(drawn.at), true) }));
+  const [gx, gy] = drawn.at(centroid);
+  group.append(
+    make("path", { class: "centroid", d: `M${gx - 6} ${gy}H${gx + 6}M${gx} ${gy - 6}V${gy + 6}` }),
+  );
+  corners.forEach((corner, i) => {
+    const [x, y] = drawn.at(corner);
+    const [dx, dy] = [gx - x, gy - y];
+    const size = Math.hypot(dx, dy) || 1;
+    const at = { x: x + (16 * dx) / size, y: y + (16 * dy) / size + 4, "text-anchor": "middle" };
+    group.append(make("text", { class: "vertex-name", ...at }, String(i + 1)));
+  });
+}

@@ -1,0 +1,250 @@
+"use strict";
+/* The explorer's arithmetic, from here to polygons.js: it repeats the library's and knows no page,
+   and tests/test_explorer.py runs it beside Python. This file: harmonic forms, frames, margins. */
+
+const TURN = 2 * Math.PI;
+
+/* --- harmonic forms: sums over products of (1, cos q, sin q) or (1, q, q^2) ------------------- */
+
+/** @type {(kind: Kind, q: number) => number[]} */
+function basis(kind, q) {
+  return kind === "revolute" ? [1, Math.cos(q), Math.sin(q)] : [1, q, q * q];
+}
+
+/** @type {(kind: Kind, q: number) => number[]} */
+function basisSlope(kind, q) {
+  return kind === "revolute" ? [0, -Math.sin(q), Math.cos(q)] : [0, 1, 2 * q];
+}
+
+/** Hold all joints but the two free ones: the 3 by 3 coefficients that are left.
+    A form is a list of terms [coefficient, index of joint 1's factor, of joint 2's, ...].
+ * @type {(form: Term[], robot: Robot, q: Pose) => Matrix} */
+function restrict(form, robot, q) {
+  const [first, second] = robot.free;
+  const factors = robot.joints.map((joint, j) => basis(joint.kind, q[j]));
+  const left = [
+    [0, 0, 0],
+    [0, 0, 0],
+    [0, 0, 0],
+  ];
+  for (const [coefficient, ...index] of form) {
+    let value = coefficient;
+    index.forEach((k, j) => {
+      if (j !== first && j !== second) value *= factors[j][k];
+    });
+    left[index[first]][index[second]] += value;
+  }
+  return left;
+}
+
+/** x' M y for two factors of three.
+ * @type {(matrix: Matrix, x: number[], y: number[]) => number} */
+function evaluate(matrix, x, y) {
+  let sum = 0;
+  for (let i = 0; i < 3; i += 1) {
+    sum += x[i] * (matrix[i][0] * y[0] + matrix[i][1] * y[1] + matrix[i][2] * y[2]);
+  }
+  return sum;
+}
+
+/** The one-joint form (constant, a, b) along the second joint at a value of the first.
+ * @type {(matrix: Matrix, x: number[]) => number[]} */
+function alongSecond(matrix, x) {
+  return [0, 1, 2].map((k) => x[0] * matrix[0][k] + x[1] * matrix[1][k] + x[2] * matrix[2][k]);
+}
+
+/** @type {(robot: Robot) => Kind[]} */
+function freeKinds(robot) {
+  return robot.free.map((j) => robot.joints[j].kind);
+}
+
+/* --- vectors, turns, frames: qbound.robot (Table 2) ------------------------------------------- */
+
+const IDENTITY = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+
+/** @type {(a: Place, b: Place) => number} */
+function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** @type {(matrix: Matrix, v: Place) => Place} */
+function apply(matrix, v) {
+  return matrix.map((row) => dot(row, v));
+}
+
+/** @type {(a: Place, b: Place) => Place} */
+function add(a, b) {
+  return a.map((value, i) => value + b[i]);
+}
+
+/** @type {(a: Matrix, b: Matrix) => Matrix} */
+function product(a, b) {
+  return a.map((row) =>
+    [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k]),
+  );
+}
+
+/** Rodrigues' formula about a unit axis.
+ * @type {(axis: Place, q: number) => Matrix} */
+function axisTurn([x, y, z], q) {
+  const [c, s, t] = [Math.cos(q), Math.sin(q), 1 - Math.cos(q)];
+  return [
+    [t * x * x + c, t * x * y - s * z, t * x * z + s * y],
+    [t * x * y + s * z, t * y * y + c, t * y * z - s * x],
+    [t * x * z - s * y, t * y * z + s * x, t * z * z + c],
+  ];
+}
+
+/** The base and the frame after each joint: turn and place, seen from the base.
+ * @type {(robot: Robot, q: Pose) => Frame[]} */
+function framesOf(robot, q) {
+  const found = [{ turn: IDENTITY, place: [0, 0, 0] }];
+  robot.joints.forEach((joint, j) => {
+    const { turn, place } = found[j];
+    const mounted = product(turn, joint.mount);
+    const turns = joint.kind === "revolute";
+    const slide = turns ? [0, 0, 0] : joint.axis.map((value) => value * q[j]);
+    found.push({
+      turn: turns ? product(mounted, axisTurn(joint.axis, q[j])) : mounted,
+      place: add(add(place, apply(turn, joint.origin)), apply(mounted, slide)),
+    });
+  });
+  return found;
+}
+
+/** A place fixed in one of the frames, seen from the base.
+ * @type {(frame: Frame, at: Place) => Place} */
+function placeIn(frame, at) {
+  return add(frame.place, apply(frame.turn, at));
+}
+
+/** @type {(robot: Robot, q: Pose) => Place[]} */
+function pointPlaces(robot, q) {
+  const found = framesOf(robot, q);
+  return robot.points.map((point) => placeIn(found[point.frame], point.at));
+}
+
+/* --- margins: qbound.region.violated (eqs. 10-12) --------------------------------------------- */
+
+/** One margin a wall, negative where it is violated; a length, or for a limit a joint value.
+ * @type {(robot: Robot, q: Pose) => Margin[]} */
+function margins(robot, q) {
+  const places = pointPlaces(robot, q);
+  /** @type {(wall: Wall) => Margin} */
+  const marginOf = (wall) => ({
+    name: wall.name,
+    value: wall.kind === "pair" ? pairMargin(wall, places) : halfSpaceMargin(wall, places),
+    used: wall.used,
+    unit: "length",
+  });
+  return [...robot.boundaries.map(marginOf), ...limitMargins(robot, q)];
+}
+
+/** @type {(wall: PairWall, places: Place[]) => number} */
+function pairMargin(wall, places) {
+  const [a, b] = wall.points.map((i) => places[i]);
+  return Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) - wall.required;
+}
+
+/** @type {(wall: HalfSpaceWall, places: Place[]) => number} */
+function halfSpaceMargin(wall, places) {
+  return dot(wall.normal, places[wall.points[0]]) - wall.offset;
+}
+
+/** @type {(robot: Robot, q: Pose) => Margin[]} */
+function limitMargins(robot, q) {
+  return robot.limits.map((limit) => {
+    const joint = robot.joints[limit.joint];
+    return {
+      name: limit.name,
+      value: limit.side * (limit.value - around(joint, q[limit.joint], limit.middle)),
+      used: true,
+      unit: joint.kind === "revolute" ? "angle" : "length",
+    };
+  });
+}
+
+/** A joint that turns all the way round has no beginning: its value nearest to `middle`.
+ * @type {(joint: Joint, q: number, middle: number) => number} */
+function around(joint, q, middle) {
+  return joint.wraps ? q - TURN * Math.round((q - middle) / TURN) : q;
+}
+
+/** The margin that is smallest for its size: lengths by the robot's reach, angles by a turn.
+ * @type {(robot: Robot, found: Margin[]) => Margin | null} */
+function tightest(robot, found) {
+  const used = found.filter((one) => one.used);
+  return leastBy(used, (one) => one.value / (one.unit === "angle" ? 1 : robot.reach));
+}
+
+/** @type {(found: Margin[]) => boolean} */
+function isSafe(found) {
+  return found.every((one) => !one.used || one.value >= 0);
+}
+
+/** @type {(values: number[]) => number} */
+function sum(values) {
+  return values.reduce((total, value) => total + value, 0);
+}
+
+/** The entry whose size is least, the first of equals; null where there is none.
+ * @template T
+ * @param {T[]} all
+ * @param {(one: T) => number} size
+ * @returns {T | null} */
+function leastBy(all, size) {
+  const sizes = all.map(size);
+  return all[sizes.indexOf(Math.min(...sizes))] ?? null;
+}
+
+/* --- the plane of motion ---------------------------------------------------------------------- */
+
+/** Two unit vectors of the plane that is drawn, turned with the frame that carries it.
+ * @type {(robot: Robot, q: Pose) => Place[]} */
+function viewAxes(robot, q) {
+  const { turn } = framesOf(robot, q)[robot.plane.frame];
+  return [apply(turn, robot.plane.u), apply(turn, robot.plane.v), apply(turn, robot.plane.n)];
+}
+
+/** @type {(axes: Place[], place: Place) => Point} */
+function project(axes, place) {
+  return [dot(axes[0], place), dot(axes[1], place)];
+}
+
+/** The tool's place in the plane as two forms of the free joints, and whether it stays there.
+ * @type {(robot: Robot, q: Pose) => ToolMap} */
+function toolMap(robot, q) {
+  const seen = robot.tool_forms.map((form) => restrict(form, robot, q));
+  /** @type {(axis: Place) => Matrix} */
+  const along = (axis) =>
+    [0, 1, 2].map((i) =>
+      [0, 1, 2].map((k) => dot(axis, [seen[0][i][k], seen[1][i][k], seen[2][i][k]])),
+    );
+  const [x, y, out] = viewAxes(robot, q).map(along);
+  const depth = out
+    .flat()
+    .slice(1)
+    .reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  return { x, y, kinds: freeKinds(robot), planar: depth <= 1e-9 * robot.reach };
+}
+
+/** @type {(map: ToolMap, pair: Pair) => Point} */
+function toolAt(map, pair) {
+  const [a, b] = [basis(map.kinds[0], pair[0]), basis(map.kinds[1], pair[1])];
+  return [evaluate(map.x, a, b), evaluate(map.y, a, b)];
+}
+
+/** det J of the tool in the plane: its sign is the posture, 0 the singular curve.
+ * @type {(map: ToolMap, pair: Pair) => number} */
+function determinant(map, pair) {
+  const [a, b] = [basis(map.kinds[0], pair[0]), basis(map.kinds[1], pair[1])];
+  const [da, db] = [basisSlope(map.kinds[0], pair[0]), basisSlope(map.kinds[1], pair[1])];
+  return (
+    evaluate(map.x, da, b) * evaluate(map.y, a, db) -
+    evaluate(map.x, a, db) * evaluate(map.y, da, b)
+  );
+}

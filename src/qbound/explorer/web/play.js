@@ -1,0 +1,154 @@
+/* Paths that play, and the task that asks for one: why the arm must stretch. */
+
+const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+let playing = 0; // the animation frame that is asked for, or
+let waiting = 0; // with reduced motion the timer
+
+/* --- the task ---------------------------------------------------------------------------------- */
+
+function hasTask() {
+  return slice.regular && slice.arm.kind === "rr";
+}
+
+/** Ask for the mirror image of the present pose.
+ * @type {() => Pair} */
+function setMirror() {
+  const now = pairOf(state.q);
+  state.mirror = inView(mirroredPose(slice.arm, now));
+  state.side = Math.sign(determinant(slice.map, now));
+  state.crossed = false;
+  return state.mirror;
+}
+
+function showTask() {
+  byId("task").hidden = !hasTask();
+  if (!hasTask()) return;
+  const mirror = state.mirror ?? setMirror();
+  const now = pairOf(state.q);
+  const det = determinant(slice.map, now);
+  const singular = Math.abs(det) <= NEAR_SINGULAR * slice.largest;
+  if (Math.sign(det) !== state.side) state.crossed = true;
+  for (const [i, line] of joints.singular.entries()) {
+    const near = Math.abs(shortWay(1, now[1] - slice.lines[i])) <= 45 * DEGREE;
+    line.classList.toggle("lit", singular && near);
+  }
+  const gap = Math.max(...now.map((value, k) => Math.abs(shortWay(k, mirror[k] - value))));
+  const text = taskText(singular, gap < 6 * DEGREE);
+  if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
+}
+
+/** @type {(singular: boolean, there: boolean) => string} */
+function taskText(singular, there) {
+  if (there) {
+    return (
+      "There. On the way you crossed the dashed line, where the arm is stretched or folded. A " +
+      "mirrored pose bends the other way, it is the other posture; so every way to it crosses " +
+      "that line."
+    );
+  }
+  if (singular)
+    return "Now both links lie in one line: det J = 0. The arm can go on and bend to either side.";
+  if (state.crossed)
+    return "You are on the other side of the dashed line: the arm bends the other way. Go on to the dotted pose.";
+  return "Bring the arm to its mirror image, the dotted arm. Can you get there without crossing the dashed line?";
+}
+
+/* --- paths ------------------------------------------------------------------------------------- */
+
+/** The corners of the scaled polygon in the order of the chosen walk.
+ * @type {() => Pair[]} */
+function walkStops() {
+  if (!robot.polygon) return [];
+  const { vertices, centroid, walks } = robot.polygon;
+  const corners = scaledPolygon(vertices, state.scale, centroid);
+  return walks[state.walk].map((i) => corners[i]);
+}
+
+/** Move along straight pieces from a fraction of their length on; `each` hears how far it is.
+ * @type {(stops: Pair[], from: number, each: (done: number) => void) => void} */
+function play(stops, from, each) {
+  stopPlaying();
+  const behavior = calm.matches ? "auto" : "smooth";
+  partOf("plane", SVGSVGElement).scrollIntoView({ block: "nearest", behavior });
+  state.path = stops;
+  byId("play").setAttribute("aria-pressed", "true");
+  byId("play").textContent = "Pause";
+  /** @type {(done: number) => boolean} */
+  const reach = (done) => {
+    setPair(alongPath(robot, stops, done));
+    each(done);
+    refresh();
+    return done < 1;
+  };
+  if (calm.matches) playCalmly(stops, from, reach);
+  else playSmoothly(stops, from, reach);
+}
+
+/** @type {(stops: Pair[], from: number, reach: (done: number) => boolean) => void} */
+function playSmoothly(stops, from, reach) {
+  const duration = 14000 * sum(pieceLengths(robot, stops));
+  let done = from;
+  /** @type {(time: number, last: number) => void} */
+  const step = (time, last) => {
+    done = Math.min(1, done + (Math.min(100, time - last) * state.speed) / duration);
+    if (reach(done)) playing = window.requestAnimationFrame((next) => step(next, time));
+    else stopPlaying();
+  };
+  playing = window.requestAnimationFrame((time) => step(time, time));
+}
+
+/** With reduced motion: from stop to stop, without anything in between.
+ * @type {(stops: Pair[], from: number, reach: (done: number) => boolean) => void} */
+function playCalmly(stops, from, reach) {
+  const lengths = pieceLengths(robot, stops);
+  const places = lengths
+    .map((_, i) => sum(lengths.slice(0, i + 1)) / sum(lengths))
+    .filter((place) => place > from + 1e-6);
+  const step = () => {
+    if (reach(Math.min(1, places.shift() ?? 1)) && places.length > 0)
+      waiting = window.setTimeout(step, 1200 / state.speed);
+    else stopPlaying();
+  };
+  step();
+}
+
+function stopPlaying() {
+  window.cancelAnimationFrame(playing);
+  window.clearTimeout(waiting);
+  byId("play").setAttribute("aria-pressed", "false");
+  byId("play").textContent = "Play";
+}
+
+function isPlaying() {
+  return byId("play").getAttribute("aria-pressed") === "true";
+}
+
+function playWalk() {
+  if (isPlaying()) {
+    stopPlaying();
+    return;
+  }
+  play(walkStops(), state.progress >= 1 ? 0 : state.progress, (done) => {
+    state.progress = done;
+    inputOf("progress").value = String(done);
+  });
+}
+
+function showProgress() {
+  stopPlaying();
+  state.path = walkStops();
+  inputOf("progress").value = String(state.progress);
+  setPair(alongPath(robot, state.path, state.progress));
+  refresh();
+}
+
+/** A straight way in joint space to the mirrored pose. */
+function playTask() {
+  if (isPlaying()) stopPlaying();
+  else if (state.mirror) play([inView(pairOf(state.q)), state.mirror], 0, () => {});
+}
+
+function playFlip() {
+  const other = otherPosture();
+  if (other) play([inView(pairOf(state.q)), other], 0, () => {});
+}

@@ -1,0 +1,66 @@
+/* Scaled polygons and paths of straight pieces: qbound.measures.scaling, qbound.paths.traversal. */
+
+const RINGS = 12; // scales of a polygon, and
+const STEPS = 48; // places on an edge, at which the clearance is computed
+
+/** @type {(vertices: Pair[], factor: number, centre: Pair) => Pair[]} */
+function scaledPolygon(vertices, factor, centre) {
+  return vertices.map((p) => p.map((value, k) => centre[k] + factor * (value - centre[k])));
+}
+
+/** Smallest length margin over the scaled polygon: its edges at this and at smaller scales.
+ * @type {(robot: Robot, q: Pose, vertices: Pair[], factor: number, centre: Pair) => Least} */
+function smallestClearance(robot, q, vertices, factor, centre) {
+  const [kindA, kindB] = freeKinds(robot);
+  const walls = robot.boundaries
+    .filter((wall) => wall.used)
+    .map((wall) => ({ wall, form: restrict(wall.form, robot, q) }));
+  /** @type {Least} */
+  let best = { value: Infinity, name: null, q: centre };
+  for (let ring = 0; ring <= RINGS; ring += 1) {
+    const corners = scaledPolygon(vertices, (factor * ring) / RINGS, centre);
+    corners.forEach((start, i) => {
+      const end = corners[(i + 1) % corners.length];
+      for (let k = 0; k < STEPS; k += 1) {
+        const at = start.map((value, j) => value + (k / STEPS) * (end[j] - value));
+        const [x, y] = [basis(kindA, at[0]), basis(kindB, at[1])];
+        for (const { wall, form } of walls) {
+          const value = lengthOf(wall, evaluate(form, x, y));
+          if (value < best.value) best = { value, name: wall.name, q: at };
+        }
+      }
+    });
+  }
+  return best;
+}
+
+/** A form's value as a length: |B| - d_min for a pair, whose form is |B|^2 - d_min^2.
+ * @type {(wall: Wall, value: number) => number} */
+function lengthOf(wall, value) {
+  if (wall.kind !== "pair") return value;
+  return Math.sqrt(Math.max(0, value + wall.required * wall.required)) - wall.required;
+}
+
+/** Length of each straight piece of a path: the largest change of a joint, in views' widths.
+ * @type {(robot: Robot, stops: Pair[]) => number[]} */
+function pieceLengths(robot, stops) {
+  const size = robot.views.map((view) => view.high - view.low);
+  return stops
+    .slice(1)
+    .map((b, i) => Math.max(...b.map((value, k) => Math.abs(value - stops[i][k]) / size[k])));
+}
+
+/** The place on a path of straight pieces after a fraction of its length.
+ * @type {(robot: Robot, stops: Pair[], fraction: number) => Pair} */
+function alongPath(robot, stops, fraction) {
+  const lengths = pieceLengths(robot, stops);
+  let rest = Math.min(1, Math.max(0, fraction)) * sum(lengths);
+  for (let i = 0; i < lengths.length; i += 1) {
+    if (rest <= lengths[i] || i === lengths.length - 1) {
+      const share = lengths[i] === 0 ? 1 : Math.min(1, rest / lengths[i]);
+      return stops[i].map((value, k) => value + share * (stops[i + 1][k] - value));
+    }
+    rest -= lengths[i];
+  }
+  return stops[0];
+}

@@ -1,0 +1,178 @@
+/* Showing the state: both pictures, and every number and word beside them. */
+
+/** What depends on the held joints alone. @type {Slice} */
+let slice;
+/** @type {JointPicture} */
+let joints;
+/** @type {PlanePicture} */
+let plane;
+const timers = { say: 0, remember: 0 };
+let scaleShown = -1; // the scale whose clearance stands on the page
+
+/** Everything anew: the window or a held joint has changed. */
+function rebuild() {
+  slice = findSlice();
+  redraw();
+}
+
+/** Both pictures anew, from the slice there is. */
+function redraw() {
+  state.sample = state.show.sample ? judgeSample() : [];
+  joints = drawJointSpace(robot, state, slice);
+  plane = drawPlane(robot, state, slice, reachable);
+  showLegends();
+  byId("area").textContent = areaText();
+  if (robot.polygon) inputOf("show-polygon").disabled = !slice.exact;
+  refresh();
+}
+
+function showLegends() {
+  const { workspace, polygon, sample } = state.show;
+  const curve = slice.arm.kind === "rr" ? "arm stretched or folded" : "singular curve";
+  const cutOff = slice.cells.some((cell) => cell.piece !== slice.home);
+  const walls = robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used);
+  byId("joints-legend").replaceChildren(
+    ...legend("home", "safe, with home", true),
+    ...legend("away", "safe, cut off", cutOff),
+    ...legend("singular", `${curve}: det J = 0`, slice.lines.length > 0),
+    ...legend(
+      "polygon",
+      `polygon of the vertices, at scale ${number(state.scale, 4)}`,
+      polygon && slice.exact,
+    ),
+    ...legend("dots", "random, safe", sample),
+    ...legend("crosses", "random, not safe", sample),
+  );
+  byId("plane-legend").replaceChildren(
+    ...legend("workspace", "one safe posture", workspace && slice.regular),
+    ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
+    ...legend("beyond", "behind a wall", walls),
+  );
+}
+
+/** @type {Record<string, string>} */
+const LEGEND_SHAPES = {
+  singular: "M0 7H22",
+  polygon: "M1 12L11 2L21 12Z",
+  dots: "M5 7h0M15 7h0",
+  crosses: "M9 5l4 4m0 -4l-4 4",
+};
+
+/** One line of a legend, or none.
+ * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
+function legend(name, text, shows) {
+  if (!shows) return [];
+  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
+  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
+  for (const part of name === "workspace twice" ? [0, 1] : [0])
+    key.append(make("path", { class: name, d, "data-part": part }));
+  return [element("li", {}, key, text)];
+}
+
+/** What moves with the pose. */
+function refresh() {
+  const found = margins(robot, state.q);
+  const lit = litParts(found);
+  const [x, y] = joints.at(inView(pairOf(state.q)));
+  joints.group.setAttribute("transform", `translate(${x} ${y})`);
+  for (const line of [...joints.arcs, ...plane.walls])
+    line.classList.toggle("lit", lit.bold.has(line.dataset.boundary ?? ""));
+  for (const mark of [joints.mark, plane.mark])
+    mark.classList.toggle("violated", lit.violated.size > 0);
+  placeArm(robot, plane, state, lit);
+  plane.room.toggleAttribute("hidden", !slice.regular);
+  drawPaths();
+  showStatus(found);
+  showMargins(found, lit);
+  showPose();
+  showScale();
+  showTask();
+  remember();
+}
+
+/** The boundaries that stand out: violated ones, the one pointed at, and those that are near.
+ * @type {(found: Margin[]) => Lit} */
+function litParts(found) {
+  const used = found.filter((one) => one.used);
+  const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
+  const bold = new Set([...violated, ...(state.hover ? [state.hover] : [])]);
+  const near = used.filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach);
+  const boundaries = new Set([...bold, ...near.map((one) => one.name)]);
+  const walls = robot.boundaries.filter((wall) => bold.has(wall.name));
+  return { violated, bold, boundaries, points: new Set(walls.flatMap((wall) => wall.points)) };
+}
+
+function drawPaths() {
+  const stops = state.path ?? [];
+  joints.path.setAttribute("d", pathText(stops.map(joints.at)));
+  const count = stops.length > 1 && slice.map.planar ? 30 * (stops.length - 1) : 0;
+  const steps = Array.from({ length: count }, (_, i) => alongPath(robot, stops, (i + 1) / count));
+  const tool = count > 0 ? [stops[0], ...steps].map((pair) => toolAt(slice.map, pair)) : [];
+  plane.path.setAttribute("d", pathText(tool.map(plane.at)));
+  for (const ghost of [joints.ghost, plane.ghost])
+    ghost.toggleAttribute("hidden", state.mirror === null);
+  if (state.mirror === null) return;
+  placeAt(joints.ghost, joints.at(inView(state.mirror)), "c");
+  plane.ghost.setAttribute("d", skeleton(robot, plane, withPair(robot, state.q, state.mirror)));
+}
+
+/** @type {(found: Margin[]) => void} */
+function showStatus(found) {
+  const [verdict, reason] = statusText(found);
+  byId("status").replaceChildren(element("strong", {}, verdict), reason);
+  byId("status").classList.toggle("violated", !isSafe(found));
+  byId("posture").textContent = postureText();
+  partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
+  say(`${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`);
+}
+
+/** Tell a screen reader, once the arm rests.
+ * @type {(text: string) => void} */
+function say(text) {
+  window.clearTimeout(timers.say);
+  timers.say = window.setTimeout(() => {
+    byId("live").textContent = text;
+  }, 600);
+}
+
+/** @type {(found: Margin[], lit: Lit) => void} */
+function showMargins(found, lit) {
+  const { rows } = partOf("margins", HTMLTableSectionElement);
+  for (const [i, { name, value, unit }] of found.entries()) {
+    rows[i].cells[2].textContent = valueText(value, unit);
+    rows[i].classList.toggle("lit", lit.violated.has(name));
+  }
+}
+
+function showPose() {
+  for (const [j, { kind }] of robot.joints.entries()) {
+    const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
+    const value = String(Number((state.q[j] / unit).toFixed(digits)));
+    const [field, slide] = [inputOf(`value-${j}`), inputOf(`slide-${j}`)];
+    if (document.activeElement !== field) field.value = value; // not while one types
+    slide.value = value;
+    slide.setAttribute("aria-valuetext", jointText(j, state.q[j]));
+  }
+}
+
+function showScale() {
+  if (!robot.polygon) return;
+  byId("scaling").hidden = !slice.exact;
+  inputOf("scale").value = String(state.scale);
+  byId("scale-value").textContent = number(state.scale, 4);
+  if (scaleShown !== state.scale) showClearance(robot.polygon);
+  scaleShown = state.scale;
+}
+
+/** @type {(polygon: VertexPolygon) => void} */
+function showClearance({ vertices, centroid, largest }) {
+  const least = smallestClearance(robot, robot.q, vertices, state.scale, centroid);
+  const safe = state.scale <= largest;
+  const verdict = safe ? "Safe everywhere inside" : "Not safe everywhere";
+  byId("clearance").textContent =
+    least.name === null
+      ? "No boundary has a length."
+      : `${verdict}. Smallest clearance ${lengthText(least.value)} (${least.name}).`;
+  byId("clearance").classList.toggle("lit", !safe);
+}

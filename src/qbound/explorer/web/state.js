@@ -1,0 +1,168 @@
+/* The explorer's state, and what it means: the slice that the held joints leave, the poses in it.
+   One way round: an action changes the state, `refresh` shows it. */
+
+/** @type {(id: string) => HTMLElement} */
+const byId = (id) => partOf(id, HTMLElement);
+/** @type {(id: string) => HTMLInputElement} */
+const inputOf = (id) => partOf(id, HTMLInputElement);
+
+/** @type {Robot} */
+const robot = JSON.parse(byId("robot-data").textContent);
+const DEGREE = Math.PI / 180;
+const COLUMNS = 240; // fibres of a slice: one every pixel and a half
+const NEAR_SINGULAR = 0.02; // of the largest |det J|: here the arm looks stretched
+const reachable = planeBox(robot);
+
+/** @type {State} */
+const state = {
+  q: [...robot.q],
+  scale: robot.polygon ? robot.polygon.largest : 0,
+  walk: 0,
+  progress: 0,
+  speed: 1,
+  show: { workspace: true, polygon: Boolean(robot.polygon), sample: false, names: false },
+  sample: [],
+  path: null,
+  mirror: null,
+  side: 0,
+  crossed: false,
+  hover: null,
+};
+
+/* --- what depends on the held joints ----------------------------------------------------------- */
+
+/** The slice's cells, arcs, images and singular lines; the library's exact arcs where it has them.
+ * @type {() => Slice} */
+function findSlice() {
+  const problem = sliceProblem(robot, state.q);
+  const cells = sliceCells(problem, COLUMNS);
+  const home = pieceAt(cells, inView(pairOf(robot.q)));
+  const exact = robot.joints.every((_, j) => robot.free.includes(j) || state.q[j] === robot.q[j]);
+  const map = toolMap(robot, state.q);
+  const arm = armOf(map);
+  const regular = map.planar && sweepsAnArea(arm, robot.reach);
+  const inside = cells.filter((cell) => cell.piece === home);
+  const [, view] = robot.views;
+  const lines = singularValues(arm).flatMap((value) => turnsWithin(map.kinds[1], value, view));
+  return {
+    cells,
+    home,
+    exact,
+    map,
+    arm,
+    regular,
+    arcs: exact ? exactArcs() : slicedArcs(problem, cells, home),
+    images: postureImages(map, arm, regular ? inside : [], problem.ranges[1]),
+    lines: regular ? lines : [],
+    largest: largestDeterminant(map),
+  };
+}
+
+/** @type {() => DrawnArc[]} */
+function exactArcs() {
+  return robot.components.flatMap(({ home, loops }) =>
+    loops.flat().map((arc) => ({ ...arc, home })),
+  );
+}
+
+/** @type {(problem: SliceProblem, cells: Cell[], home: number | null) => DrawnArc[]} */
+function slicedArcs(problem, cells, home) {
+  const edges = cellEdges(problem, cells);
+  return edges.map((edge) => ({ ...edge, branch: null, home: edge.piece === home }));
+}
+
+/** @type {(map: ToolMap) => number} */
+function largestDeterminant(map) {
+  const steps = Array.from({ length: 37 }, (_, i) => i / 36);
+  const [firsts, seconds] = robot.views.map(({ low, high }) =>
+    steps.map((s) => low + s * (high - low)),
+  );
+  const sizes = firsts.flatMap((a) => seconds.map((b) => Math.abs(determinant(map, [a, b]))));
+  return Math.max(...sizes);
+}
+
+/** @type {() => SamplePose[]} */
+function judgeSample() {
+  return robot.sample.map((pair) => {
+    const q = withPair(robot, state.q, pair);
+    return { pair, safe: isSafe(margins(robot, q)), tool: toolAt(slice.map, pair) };
+  });
+}
+
+/* --- poses ------------------------------------------------------------------------------------- */
+
+/** Bring both free joints into what is drawn: turn whole turns, stop at limits.
+ * @type {(pair: Pair) => Pair} */
+function inView(pair) {
+  return pair.map((value, k) => {
+    const { low, high, wraps } = robot.views[k];
+    return wraps ? value - TURN * Math.floor((value - low) / TURN) : between(value, low, high);
+  });
+}
+
+/** @type {(q: Pose) => Pair} */
+function pairOf(q) {
+  return robot.free.map((j) => q[j]);
+}
+
+/** A held joint's value, within its limits.
+ * @type {(value: number, j: number) => number} */
+function heldValue(value, j) {
+  const { limits } = robot.joints[j];
+  return limits ? between(value, limits[0], limits[1]) : value;
+}
+
+/** @type {(pair: Pair) => void} */
+function setPair(pair) {
+  state.q = withPair(robot, state.q, inView(pair));
+}
+
+/** The reader moved the arm: a running path stops.
+ * @type {(pair: Pair) => void} */
+function movePose(pair) {
+  stopPlaying();
+  setPair(pair);
+  refresh();
+}
+
+/** Bring the tool to a place of the plane, in the posture that it has.
+ * @type {(target: Point) => void} */
+function moveTool(target) {
+  if (!slice.regular) return;
+  const now = pairOf(state.q);
+  const found = possible(robot, slice.arm, target);
+  const same = found.filter((pair) => isLikePosture(pair, now));
+  const best = nearest(same.length > 0 ? same : found, now);
+  if (best) movePose(best);
+}
+
+/** Whether det J has the same sign at two poses; 0 counts as positive.
+ * @type {(a: Pair, b: Pair) => boolean} */
+function isLikePosture(a, b) {
+  const [positive, alsoPositive] = [a, b].map((pair) => determinant(slice.map, pair) >= 0);
+  return positive === alsoPositive;
+}
+
+/** @type {(pairs: Pair[], now: Pair) => Pair | null} */
+function nearest(pairs, now) {
+  return leastBy(pairs, (pair) =>
+    sum(pair.map((value, k) => Math.abs(shortWay(k, value - now[k])))),
+  );
+}
+
+/** @type {(k: number, difference: number) => number} */
+function shortWay(k, difference) {
+  return robot.views[k].wraps ? difference - TURN * Math.round(difference / TURN) : difference;
+}
+
+/** The same place of the tool in the other posture, if the joints' limits allow it.
+ * @type {() => Pair | null} */
+function otherPosture() {
+  if (!slice.regular) return null;
+  const now = pairOf(state.q);
+  const found = possible(robot, slice.arm, toolAt(slice.map, now));
+  return nearest(
+    found.filter((pair) => !isLikePosture(pair, now)),
+    now,
+  );
+}

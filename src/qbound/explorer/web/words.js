@@ -1,0 +1,84 @@
+/* What the explorer says: numbers with units, the verdict on a pose, its posture. */
+
+/** @type {(value: number, digits: number) => string} */
+function number(value, digits) {
+  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+  return text.replace("-", "−");
+}
+
+/** @type {(value: number) => string} */
+function lengthText(value) {
+  return `${number(value, robot.reach < 10 ? 4 : 2)} ${robot.length_unit}`;
+}
+
+/** @type {(value: number) => string} */
+function angleText(value) {
+  return `${number(value / DEGREE, 1)}°`;
+}
+
+/** @type {(value: number, unit: "length" | "angle") => string} */
+function valueText(value, unit) {
+  return unit === "angle" ? angleText(value) : lengthText(value);
+}
+
+/** @type {(j: number, value: number) => string} */
+function jointText(j, value) {
+  return valueText(value, robot.joints[j].kind === "revolute" ? "angle" : "length");
+}
+
+/** @type {(row: number) => string} */
+function betweenText(row) {
+  const limit = robot.limits[row - robot.boundaries.length]; // they follow the boundaries
+  if (limit)
+    return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
+  const wall = robot.boundaries[row];
+  const points = wall.points.map((i) => robot.points[i].name);
+  const words =
+    wall.kind === "pair" ? `points ${points[0]} and ${points[1]}` : `point ${points[0]} and a wall`;
+  return wall.used ? words : `${words}, not used`;
+}
+
+/** Whether the pose is safe, and whether the home pose can be reached from it.
+ * @type {(found: Margin[]) => string[]} */
+function statusText(found) {
+  const bad = found.filter((one) => one.used && one.value < 0);
+  if (bad.length > 0) {
+    const all = bad.map((one) => `${one.name} is violated by ${valueText(-one.value, one.unit)}`);
+    return ["Not safe.", `${all.join(", ")}.`];
+  }
+  const close = tightest(robot, found);
+  const nearby = close
+    ? `Closest: ${close.name}, ${valueText(close.value, close.unit)} to spare.`
+    : "Nothing bounds this arm.";
+  const away = slice.home !== null && pieceAt(slice.cells, inView(pairOf(state.q))) !== slice.home;
+  return [away ? "Safe, but cut off from home." : "Safe.", nearby];
+}
+
+/** @type {() => string} */
+function postureText() {
+  if (!slice.regular) return "The tool leaves the plane: move the arm in joint space.";
+  const det = determinant(slice.map, pairOf(state.q));
+  if (slice.lines.length === 0) return "One posture only: det J is never 0.";
+  if (Math.abs(det) <= NEAR_SINGULAR * slice.largest)
+    return "Singular: det J = 0. Here one posture turns into the other.";
+  const posture = det > 0 ? "A (det J > 0)" : "B (det J < 0)";
+  return `Posture ${posture}. The other one at this place is ${otherPostureText()}.`;
+}
+
+/** @type {() => string} */
+function otherPostureText() {
+  const other = otherPosture();
+  if (other === null) return "beyond a limit";
+  return isSafe(margins(robot, withPair(robot, state.q, other))) ? "safe" : "not safe";
+}
+
+/** The exact areas of the workspace, as the library found them for the slice it was given.
+ * @type {() => string} */
+function areaText() {
+  if (!robot.workspace || !slice.exact || !state.show.workspace) return "";
+  const [whole, twice] = [robot.workspace.area, robot.workspace.covered_twice].map(
+    (value) => `${Number(value.toPrecision(6))} ${robot.length_unit}²`,
+  );
+  const again = robot.workspace.covered_twice > 0 ? `, of it ${twice} in both postures` : "";
+  return `Reached from home: ${whole}${again}.`;
+}

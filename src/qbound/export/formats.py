@@ -1,0 +1,56 @@
+"""Texts and bytes of files: JSON, comma-separated values, NumPy arrays; the same on every run."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qbound.model.robot import Robot
+from qbound.model.units import joint_units
+from qbound.version import __version__
+
+
+def heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
+    """Return what a JSON of paths or poses begins with: what, of which robot, in which units."""
+    return {
+        "schema": schema,
+        "robot": robot.name,
+        "version": __version__,
+        "rule": rule,
+        "joints": [joint.name for joint in robot.joints],
+        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+    }
+
+
+def json_text(content: Mapping[str, object], indent: int | None = 1) -> str:
+    """Return JSON, a line an entry; on one line where `indent` is None."""
+    return json.dumps(content, indent=indent) + "\n"
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return comma-separated values with a header; numbers with all their digits."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return buffer.getvalue()
+
+
+def pose_columns(robot: Robot) -> list[str]:
+    """Return the heads of the columns of joint values and tool places, each with its unit."""
+    joints = zip(robot.joints, joint_units(robot), strict=True)
+    names = [f"{joint.name}_{unit}" for joint, unit in joints]
+    return names + [f"{axis}_{robot.length_unit}" for axis in "xyz"]
+
+
+def npz_bytes(arrays: Mapping[str, ArrayLike]) -> bytes:
+    """Return arrays as a NumPy .npz file, the same bytes on every run."""
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=False, **{k: np.asarray(v) for k, v in arrays.items()})
+    return buffer.getvalue()

@@ -1,0 +1,114 @@
+"""Routes as others read them: a table, a report as JSON (qbound/traverse/1), the same in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.export.formats import csv_text, heading, pose_columns
+from qbound.model.units import joint_text
+from qbound.paths.encounters import Crossing, Margin, Place
+from qbound.paths.report import PathReport
+from qbound.paths.route import Route
+from qbound.paths.trajectory import Trajectory, row_times
+
+Floats = NDArray[np.float64]
+
+
+def route_csv(route: Route, times: Trajectory | None = None) -> str:
+    """Return a row for each row of the path; the time is empty where there is none."""
+    path = route.path
+    t = [""] * len(path.q) if times is None else row_times(path, times).tolist()
+    rows = zip(t, path.q.tolist(), path.tool.tolist(), strict=True)
+    header = ["t_s", *pose_columns(route.region.robot)]
+    return csv_text(header, ([time, *q, *tool] for time, q, tool in rows))
+
+
+def route_document(found: PathReport, times: Trajectory | None = None) -> dict[str, Any]:
+    """Return the JSON form of a report, with the duration where the path is timed."""
+    route, path = found.route, found.route.path
+    stops = zip(
+        route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
+    )
+    return {
+        **heading("qbound/traverse/1", route.region.robot, route.region.problem.rule),
+        "component": route.component,
+        "order": list(route.order),
+        "along": route.along,
+        "scale": route.scale,
+        "feasible": found.feasible,
+        "stops": [{"name": name, "q": q, "tool": tool} for name, q, tool in stops],
+        "rows": len(path.q),
+        "deviation": {"value": path.deviation, "proved": path.proved},
+        "plane": found.plane and ["xyz"[i] for i in found.plane],
+        "self_crossings": None
+        if found.crossings is None
+        else [_crossing(route, crossing) for crossing in found.crossings],
+        "singular_crossings": None
+        if found.singular is None
+        else [_place(route, place) for place in found.singular],
+        "margins": [_margin(route, margin) for margin in found.margins],
+        "final": {
+            "q": path.final_pose.tolist(),
+            "tool": path.tool[-1].tolist(),
+            "reach": float(path.reach[-1]),
+        },
+        "largest_reach": {"reach": found.largest_reach, "at": _place(route, found.farthest)},
+        "duration": None if times is None else float(times.t[-1]),
+    }
+
+
+def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[str]:
+    """Say in sentences what a route meets, in the units of the robot file."""
+    route, path = found.route, found.route.path
+    robot, unit = route.region.robot, route.region.robot.length_unit
+    known = "at most" if path.proved else "measured"
+    yield f"{len(path.legs)} legs: {', '.join(route.legs)}"
+    yield f"{len(path.q)} rows; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
+    if times is not None:
+        yield f"{times.t[-1]:.6g} s"
+    yield f"final pose: {joint_text(robot, path.final_pose)}"
+    yield f"final tool: {_triple(path.tool[-1])} {unit}; reach {path.reach[-1]:.6g} {unit}"
+    yield f"largest reach: {found.largest_reach:.6g} {unit}, {_where(route, found.farthest)}"
+    for crossing in found.crossings or ():
+        legs = f"{_where(route, crossing.first)} and {_where(route, crossing.second)}"
+        yield f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}"
+    for place in found.singular or ():
+        yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
+    for least in found.margins:
+        margin = f"{least.value:.6g} {least.boundary.unit}"
+        yield f"smallest margin of {least.boundary.name}: {margin}, {_where(route, least.place)}"
+    for least in found.margins:
+        if least.leaves is not None:
+            pose, where = joint_text(robot, least.leaves.q), _where(route, least.leaves)
+            yield f"outside: {least.boundary.name} from {pose}, {where}"
+
+
+def _crossing(route: Route, crossing: Crossing) -> dict[str, Any]:
+    passes = [_place(route, place) for place in (crossing.first, crossing.second)]
+    return {"point": crossing.point.tolist(), "passes": passes}
+
+
+def _margin(route: Route, least: Margin) -> dict[str, Any]:
+    return {
+        "boundary": least.boundary.name,
+        "margin": least.value,
+        "unit": least.boundary.unit,
+        "at": _place(route, least.place),
+        "leaves": least.leaves and _place(route, least.leaves),
+    }
+
+
+def _place(route: Route, place: Place) -> dict[str, Any]:
+    return {"leg": route.leg_of(place.s), "q": place.q.tolist()}
+
+
+def _where(route: Route, place: Place) -> str:
+    return f"on {route.leg_of(place.s)}"
+
+
+def _triple(place: Floats) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in place) + ")"

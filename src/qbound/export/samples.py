@@ -1,0 +1,45 @@
+"""Random configurations as files: CSV, NumPy arrays, JSON (schema qbound/sample/1)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from qbound.export.formats import csv_text, heading, npz_bytes, pose_columns
+from qbound.model.robot import Robot
+from qbound.model.units import joint_units
+from qbound.sampling import Sample, joint_ranges
+
+
+def sample_csv(robot: Robot, drawn: Sample) -> str:
+    """Return one row a configuration: joint values, tool place, and 1 where it is free."""
+    rows = zip(drawn.q.tolist(), drawn.tool.tolist(), drawn.free.tolist(), strict=True)
+    header = [*pose_columns(robot), "free"]
+    return csv_text(header, ([*q, *tool, int(free)] for q, tool, free in rows))
+
+
+def sample_npz(robot: Robot, drawn: Sample) -> bytes:
+    """Return the arrays q, tool and free, with the names of the joints and the units."""
+    names = np.array([joint.name for joint in robot.joints])
+    units = np.array([*joint_units(robot), robot.length_unit])
+    arrays = {"q": drawn.q, "tool": drawn.tool, "free": drawn.free}
+    return npz_bytes({**arrays, "joints": names, "units": units})
+
+
+def sample_document(robot: Robot, drawn: Sample, rule: str, seed: int) -> dict[str, Any]:
+    """Return the JSON form of a sample drawn within the joints' ranges from a seed."""
+    return {
+        **heading("qbound/sample/1", robot, rule),
+        "ranges": joint_ranges(robot).tolist(),
+        "n": len(drawn.free),
+        "seed": seed,
+        "free": int(drawn.free.sum()),
+        "fraction_free": drawn.fraction_free,
+        "standard_error": drawn.standard_error,
+        "configurations": {
+            "q": drawn.q.tolist(),
+            "tool": drawn.tool.tolist(),
+            "free": drawn.free.tolist(),
+        },
+    }

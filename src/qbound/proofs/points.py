@@ -1,0 +1,62 @@
+"""Points of statements as people write them: decimals are kept as they are written."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from qbound.check import number
+from qbound.model.robot import Robot
+from qbound.model.units import file_units, parse_joint_value
+from qbound.proofs.statements import Point, decimal, units
+
+
+def read_points(robot: Robot, file: str) -> list[Point]:
+    """Read a line of joint values a point, in the robot file's units; a first line may name joints.
+
+    Raises
+    ------
+    ValueError
+        If the file is not UTF-8, or a line has not one decimal number for each joint.
+    """
+    try:
+        with Path(file).open(newline="", encoding="utf-8-sig") as lines:
+            rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
+    except UnicodeDecodeError:
+        raise ValueError(f"{file}: not UTF-8 text") from None
+    names = [joint.name for joint in robot.joints]
+    if rows and [cell.strip() for cell in rows[0][1]] == names:
+        del rows[0]
+    for i, row in rows:
+        if len(row) != len(names):
+            raise ValueError(f"{file}, line {i}: {len(row)} values for {', '.join(names)}")
+    return [[as_decimal(f"{file}, line {i}", cell) for cell in row] for i, row in rows]
+
+
+def as_decimal(where: str, text: str) -> str:
+    """Return a decimal as it is written; `where` begins the sentence of the error."""
+    try:
+        number(text.strip())
+    except ValueError:
+        raise ValueError(f"{where}: {text!r} is no decimal number") from None
+    return text.strip()
+
+
+def joint_decimal(robot: Robot, j: int, text: str) -> str:
+    """Return a joint value, such as ``20deg``, as a decimal of the robot file's unit.
+
+    As it is written if it is in that unit, else converted and rounded.
+    """
+    value = parse_joint_value(robot, j, text)
+    plain = text.strip().removesuffix(file_units(robot)[j])
+    converted = plain.endswith(("deg", "rad"))
+    return decimal(value / units(robot)[j]) if converted else plain
+
+
+def limits_as_decimals(robot: Robot, j: int) -> tuple[str, str] | None:
+    """Return the limits of a joint as decimals of the robot file's unit; None without limits."""
+    limits = robot.joints[j].limits
+    if limits is None:
+        return None
+    low, high = (decimal(end / units(robot)[j]) for end in limits)
+    return low, high

@@ -1,0 +1,111 @@
+"""What was proved, as others read it: pavings and connections as JSON, certificates in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from qbound.model.robot import Robot
+from qbound.model.units import file_units
+from qbound.proofs.balls import above, below
+from qbound.proofs.certify import Certificate, Witness
+from qbound.proofs.connection import Connection, wall
+from qbound.proofs.paving import Paving
+from qbound.version import __version__
+
+
+def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
+    """Return the JSON form of a paving, schema qbound/paving/1: cells by level and index.
+
+    A cell of level L has halved joint j (counted from 0) ``(L + n - 1 - j) // n`` times; its index
+    counts cells of that width from the lower end of the range.
+    """
+    inner, outer = paving.bracket
+    return {
+        "schema": "qbound/paving/1",
+        "robot": robot.name,
+        "version": __version__,
+        "volume": {"inner": below(inner), "outer": above(outer)},
+        "undecided": float(paving.undecided_fraction),
+        "range": [[float(low), float(high)] for low, high in paving.room.ends],
+        "cells": {
+            word: [{"level": c.level, "index": c.index.tolist()} for c in groups]
+            for word, groups in _groups(paving).items()
+        },
+    }
+
+
+def paving_lines(paving: Paving) -> Iterator[str]:
+    """Say in sentences what a paving encloses."""
+    inner, outer = paving.bracket
+    yield f"volume between {below(inner):.9g} and {above(outer):.9g}"
+    yield f"{100 * float(paving.undecided_fraction):.3g} % of the range is undecided"
+    yield ", ".join(f"{sum(map(len, cells))} cells {w}" for w, cells in _groups(paving).items())
+
+
+def _groups(paving: Paving) -> dict[str, tuple[Any, ...]]:
+    return {
+        "feasible": paving.feasible,
+        "infeasible": paving.infeasible,
+        "undecided": (paving.undecided,),
+    }
+
+
+def connection_document(
+    robot: Robot, poses: list[list[float]], found: Connection
+) -> dict[str, Any]:
+    """Return the JSON form of an answer about two poses, schema qbound/connection/1."""
+    return {
+        "schema": "qbound/connection/1",
+        "robot": robot.name,
+        "version": __version__,
+        "joints": [joint.name for joint in robot.joints],
+        "poses": poses,
+        "answer": found.answer,
+        "infeasible_poses": list(found.infeasible),
+        "wall": _wall(found, poses[0]) if found.answer == "separated" else None,
+        "path": None if found.path is None else found.path.tolist(),
+        "cells": found.paving.cells,
+        "level": found.paving.level,
+    }
+
+
+def connection_line(found: Connection) -> str:
+    """Say in a sentence what is proved about two poses."""
+    cells = f"{found.paving.cells} cells"
+    if found.path is not None:
+        return f"connected: a path of {len(found.path) - 1} legs, each in a cell proved feasible"
+    if found.answer == "separated":
+        return f"separated: every path meets a cell proved infeasible ({cells})"
+    if found.answer == "infeasible":
+        which = " and ".join(("first", "second")[k] for k in found.infeasible)
+        return f"infeasible: the {which} pose violates a boundary, proved"
+    return f"undecided after {cells}: the poses, or a passage between them, are too tight"
+
+
+def _wall(found: Connection, pose: list[float]) -> list[dict[str, Any]]:
+    """Return the infeasible cells around the first pose, as boxes of joint values."""
+    places = [found.paving.room.places(cells) for cells in wall(found.paving, pose)]
+    return [
+        {"from": low.tolist(), "to": high.tolist()}
+        for lows, highs in places
+        for low, high in zip(lows, highs, strict=True)
+    ]
+
+
+def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
+    """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
+    if answer.witness is not None:
+        yield _depth(robot, answer.witness)
+    elif answer.verdict == "proved":
+        cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
+        yield f"cells: {answer.leaves} ({cells})"
+
+
+def _depth(robot: Robot, found: Witness) -> str:
+    """Write the depth with its unit, a length or that of a joint limit, and the configuration."""
+    joints = list(zip(robot.joints, found.q, file_units(robot), strict=True))
+    units = {f"{j.name}.{end}": unit for j, _, unit in joints for end in ("lower", "upper")}
+    unit = units.get(found.boundary, robot.length_unit)
+    place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
+    return f"depth {found.depth:.9g} {unit} at {place}"
