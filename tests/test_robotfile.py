@@ -214,6 +214,22 @@ def test_a_unit_vector_is_kept_to_the_last_place() -> None:
         assert_array_equal(parse_robot(table).joints[0].axis, axis)
 
 
+def test_numbers_and_arrays_of_numpy_are_numbers_and_lists() -> None:
+    table = packaged_table()
+    table["joint"][0]["origin"] = np.array([0, 0, 22.5])
+    table["home"]["q1"] = np.float64(0.5)
+    table["point"][0]["radius"] = np.int64(2)
+    robot = parse_robot(table)
+    assert (robot.home[0], robot.point("3").radius) == (math.radians(0.5), 2)
+    assert_array_equal(robot.joints[0].origin, [0, 0, 22.5])
+    table["home"]["q1"] = np.nan
+    with pytest.raises(RobotFileError, match=r"^home\.q1: nan is not a finite number"):
+        parse_robot(table)
+    table["home"]["q1"] = pi + 1j
+    with pytest.raises(RobotFileError, match=r"^home\.q1: .* is not a number"):
+        parse_robot(table)
+
+
 # --- bad files -----------------------------------------------------------------------------------
 
 Change = Callable[[Table], Any]
@@ -373,6 +389,13 @@ BAD: dict[str, tuple[Change, str, str]] = {
     "infinite radius": (put("point[0].radius", math.inf), "point[0].radius (3)", "inf is not a f"),
     "NaN as a limit": (
         put("joint[0].limits", [math.nan, 1]), "joint[0].limits[0] (q1)", "nan is not a finite num",
+    ),
+    "NaN in an axis": (
+        put("joint[1].axis", [0, math.nan, 1]), "joint[1].axis[1] (q2)", "nan is not a finite num",
+    ),
+    "infinite normal": (
+        put("boundary[6].normal", [0, 0, math.inf]), "boundary[6].normal[2] (B7)",
+        "inf is not a finite number",
     ),
     "too large an offset": (
         put("boundary[6].offset", 1e200), "boundary[6].offset (B7)",

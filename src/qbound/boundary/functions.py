@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot
 from qbound.tolerances import ZERO_AMPLITUDE
@@ -125,8 +126,7 @@ def moving_joints(robot: Robot, boundary: Boundary) -> tuple[int, ...]:
     axis leaves 1e-16 where exact numbers leave nothing.
     """
     form, reach = clearance(robot, boundary), robot.reach
-    slide = np.array([1.0, reach, reach**2])
-    powers = [np.ones(3) if joint.turns else slide for joint in robot.joints]
+    powers = [np.array(FACTORS[kind].largest(reach), dtype=float) for kind in robot.kinds]
     sizes = np.abs(form.coefficients) * reduce(_outer, powers)
     squared = robot.least_distance(boundary) is not None
     rounding = ZERO_AMPLITUDE * (reach**2 if squared else reach)
@@ -245,21 +245,19 @@ def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicF
 
 def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
-    still = np.take(u, 0, axis=j + 1)
-    if joint.kind == "revolute":
-        moved = np.stack(_rodrigues(joint.axis, still), axis=j + 1)
-    else:
-        moved, squared = _slide(joint.axis, j, u, squared)
+    moved, squared = MOTIONS[joint.kind](joint.axis, j, u, squared)
     moved = np.tensordot(joint.mount, moved, axes=1)
     squared = squared + 2 * np.tensordot(joint.origin, moved, axes=1)
     squared = add_constant(squared, joint.origin @ joint.origin)
     return add_constant(moved, joint.origin), squared
 
 
-def _rodrigues(axis: Array, u: Array) -> tuple[Array, Array, Array]:
-    """Return constant, cosine and sine part of `u` turned about a unit axis."""
+def _turn(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+    """Turn u about a unit axis by Rodrigues' formula: constant, cosine and sine part."""
+    u = np.take(u, 0, axis=j + 1)
     along = np.multiply.outer(axis, np.tensordot(axis, u, axes=1))
-    return along, u - along, np.cross(axis, u, axisb=0, axisc=0)
+    across = np.cross(axis, u, axisb=0, axisc=0)
+    return np.stack([along, u - along, across], axis=j + 1), squared
 
 
 def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
@@ -271,3 +269,7 @@ def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]
     still = np.take(u, 0, axis=j + 1)
     slope = add_constant(np.zeros_like(still), axis)
     return np.stack([still, slope, np.zeros_like(still)], axis=j + 1), squared
+
+
+MOTIONS = {"revolute": _turn, "prismatic": _slide}
+"""How a joint of each kind moves what it carries."""

@@ -175,7 +175,7 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         room = 0.03 * np.ptp(values)
         if joint.turns:
             getattr(ax, f"{axis}axis").set_major_locator(figures.every(np.ptp(values)))
-        unit = joint.shown_unit(robot.length_unit)
+        unit = joint.unit(robot.length_unit, "°")
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
@@ -211,7 +211,7 @@ def _written(robot: Robot, q: Floats) -> str:
     return ", ".join(
         f"{figures.symbol(joint.name)} = {value * joint.shown_scale:.4g}"
         + ("" if joint.turns else " ")
-        + joint.shown_unit(robot.length_unit)
+        + joint.unit(robot.length_unit, "°")
         for joint, value in zip(robot.joints, q, strict=True)
     )
 

@@ -200,8 +200,11 @@ def _check_home(table: Table) -> None:
 def _check_directions(table: Table) -> None:
     for kind, key in (("joint", "axis"), ("boundary", "normal")):
         for i, row in enumerate(_rows(table, kind)):
-            if key in row and not any(row[key]):
-                text = f"{shown(row[key])} has no direction; one number must not be 0"
+            vector = row.get(key, (1.0,))
+            if not all(map(math.isfinite, vector)):
+                _check_finite(table)
+            if not any(vector):
+                text = f"{shown(vector)} has no direction; one number must not be 0"
                 raise _fault(table, (kind, i, key), text)
 
 

@@ -131,7 +131,7 @@ def ros_trajectory(robot: Robot, trajectory: Trajectory) -> dict[str, Any]:
 
     Times are rounded up to nanoseconds and rise strictly.
     """
-    unit = [1.0 if kind == "revolute" else METRES[robot.length_unit] for kind in robot.kinds]
+    unit = [1.0 if joint.turns else METRES[robot.length_unit] for joint in robot.joints]
     steps = np.ceil(np.diff(trajectory.t) * 1e9).astype(np.int64)
     times = [0, *np.cumsum(np.maximum(steps, 1)).tolist()]
     rows = zip(times, trajectory.q * unit, trajectory.velocity * unit, strict=True)

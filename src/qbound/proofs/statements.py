@@ -31,7 +31,7 @@ DIGITS = 12
 def units(robot: Robot) -> Floats:
     """Return the library's units (rad, length) in one unit of the file, for each joint."""
     angle = np.radians(1.0) if robot.angle_unit == "deg" else 1.0
-    return np.array([angle if kind == "revolute" else 1.0 for kind in robot.kinds])
+    return np.array([joint.scale(angle) for joint in robot.joints])
 
 
 def decimal(value: float) -> str:
