@@ -271,7 +271,7 @@ def unconfirmed(text, statement):
     """The file that the search alone would write; None if even the search does not believe it."""
     robot, cells = robot_of(text), check.read_cells(statement)
     searches = prover.search_all(robot, statement, cells, 20_000)
-    if any(found.left or found.q is not None for found in searches.values()):
+    if any(found.left or found.violation is not None for found in searches.values()):
         return None
     proof = {name: list(found.trees) for name, found in searches.items()}
     return json.dumps(

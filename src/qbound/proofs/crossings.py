@@ -248,7 +248,7 @@ def _may_vanish(bounds: BoxBounds, cells: Cells, ij: Ints, watched: int) -> NDAr
     found: Any = np.unique(cells.index, axis=0, return_inverse=True)
     different, back = found
     low, high = bounds.bounds(Cells(cells.level, different))
-    may = (low <= 0) & (high >= 0)
+    may = ~((low > 0) | (high < 0))
     outside = np.asarray((high[:, :watched] < 0).any(axis=1))[back]
     return np.asarray(may[back[:, None], ij].all(axis=1) & ~outside)
 

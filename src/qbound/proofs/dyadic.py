@@ -89,6 +89,11 @@ class BoxBounds:
         Coefficients exact or balls.
     ends : sequence of (arb, arb)
         Lower and upper end of each joint's range.
+
+    Raises
+    ------
+    ValueError
+        If a coefficient is beyond the range of a double: its bounds would be no numbers.
     """
 
     forms: HarmonicForm
@@ -107,6 +112,8 @@ class BoxBounds:
             )
             table = exact.astype(float)
             lost = np.vectorize(above, otypes=[float])(abs(exact - table))
+        if not (np.isfinite(table).all() and np.isfinite(self.curvature).all()):
+            raise ValueError("a boundary has coefficients beyond the range of a double")
         self.table = HarmonicForm(table, kinds)
         # Rounded factors, products and sums: each errs by 2^-53 of its size; 2^-51 leaves room for
         # other rounding modes and for the sizes' own rounding.

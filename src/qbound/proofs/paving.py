@@ -2,7 +2,7 @@
 
 A cell is feasible where every form is positive all over it, infeasible where one form is negative
 all over it. The region lies between the inner paving (feasible cells) and the outer one (feasible
-and undecided cells); the undecided volume is a number, not a hope. Any number of joints.
+and undecided cells); the undecided volume is measured. Any number of joints.
 """
 
 from __future__ import annotations

@@ -8,9 +8,11 @@ from typing import Any
 from qbound.model.robot import Robot
 from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
-from qbound.proofs.certify import Certificate, Witness
+from qbound.proofs.certify import Certificate
 from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
+from qbound.proofs.verdict import Verdict
+from qbound.proofs.witness import Witness
 from qbound.version import __version__
 
 
@@ -97,7 +99,7 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
     """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
     if answer.witness is not None:
         yield _depth(robot, answer.witness)
-    elif answer.verdict == "proved":
+    elif answer.verdict is Verdict.PROVED:
         cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
         yield f"cells: {answer.leaves} ({cells})"
 
