@@ -196,15 +196,3 @@ def test_printed_intervals_are_longer_than_the_arc() -> None:
     assert 2 * arc.half_width < length_39 < length_31
     opposite = arc.centre - pi  # in both printed intervals
     assert a * cos(opposite) + b * sin(opposite) < c
-
-
-@given(st.floats(-100, 100), st.floats(-100, 100))
-def test_nearest_turn_moves_by_whole_turns(q, centre) -> None:
-    moved = nearest_turn(q, centre)
-    turns = (moved - q) / (2 * pi)
-    assert abs(turns - round(float(turns))) < 1e-13
-    assert -pi - 1e-12 < moved - centre <= pi + 1e-12
-
-
-def test_nearest_turn_keeps_the_upper_end() -> None:
-    assert_array_equal(nearest_turn([-pi, pi, 0.0], 0.0), [pi, pi, 0.0])

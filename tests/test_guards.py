@@ -169,6 +169,19 @@ def test_a_vertex_is_on_both_its_boundaries_to_rounding(make) -> None:
     assert seen > 50
 
 
+@pytest.mark.parametrize("make", [random_robot, drawn_robot])
+def test_an_arc_starts_where_the_one_before_it_ends_at_a_fold_too(make) -> None:
+    """The two roots at a fold stop a square root of rounding short of each other."""
+    for robot in map(make, range(60)):
+        for base in (0, 1):
+            for component in solve(clearance_problem(robot), robot.home, base).components:
+                for loop in component.loops:
+                    starts = np.array([arc.points[0] for arc in loop])
+                    ends = np.array([arc.points[-1] for arc in loop])
+                    gaps = starts - np.roll(ends, 1, axis=0)
+                    assert_allclose(gaps - TURN * np.round(gaps / TURN), 0, atol=1e-13)
+
+
 @pytest.mark.parametrize("height", [0.3, 0.7, 0.9, 1.5])
 def test_the_nearest_point_may_lie_beyond_the_box_of_the_drawn_points(height) -> None:
     """Straight above the top of an ellipse, which is no drawn point; a disc is 1e-4 farther."""
