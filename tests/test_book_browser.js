@@ -17,6 +17,13 @@ function* textsOf(root) {
     if (text.data.trim()) yield text;
 }
 
+// The families of all text that is no code, as the browser writes them.
+function familiesOfText() {
+  const texts = [...textsOf(document.body)].map((text) => text.parentElement);
+  const read = texts.filter((e) => e.checkVisibility() && !e.closest("pre, code, kbd, mjx-container"));
+  return [...new Set(read.map((element) => getComputedStyle(element).fontFamily))];
+}
+
 function unshownFormulas() {
   const all = [...document.querySelectorAll(".math")];
   const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
@@ -150,13 +157,19 @@ function groundOf(element) {
   return own[3] === 1 ? own.slice(0, 3) : over(own, groundOf(element.parentElement));
 }
 
-// A canvas reads every notation of a colour.
+// A canvas reads every notation of a colour; each is read once.
 function rgba(colour) {
-  rgba.pen ??= document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-  rgba.pen.clearRect(0, 0, 1, 1);
-  rgba.pen.fillStyle = colour;
-  rgba.pen.fillRect(0, 0, 1, 1);
-  const [red, green, blue, alpha] = rgba.pen.getImageData(0, 0, 1, 1).data;
+  rgba.known ??= new Map();
+  if (!rgba.known.has(colour)) rgba.known.set(colour, readColour(colour));
+  return rgba.known.get(colour);
+}
+
+function readColour(colour) {
+  readColour.pen ??= document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  readColour.pen.clearRect(0, 0, 1, 1);
+  readColour.pen.fillStyle = colour;
+  readColour.pen.fillRect(0, 0, 1, 1);
+  const [red, green, blue, alpha] = readColour.pen.getImageData(0, 0, 1, 1).data;
   return [red, green, blue, alpha / 255];
 }
 

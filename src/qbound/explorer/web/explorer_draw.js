@@ -56,9 +56,10 @@ function clear(drawn) {
 function drawJointSpace(robot, state, slice) {
   const svg = document.getElementById("joints");
   const ranges = robot.views.map((view) => [view.low, view.high]);
-  const drawn = picture(svg, ranges, { left: 46, right: 12, top: 12, bottom: 40 }, false);
+  const line = lineHeight(svg);
+  const drawn = picture(svg, ranges, { left: 46, right: 12, top: 12, bottom: 12 + 2 * line }, false);
   clear(drawn);
-  drawJointAxes(robot, drawn);
+  drawJointAxes(robot, drawn, line);
   drawCells(drawn, robot, slice);
   if (state.show.sample) drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
   drawSingular(drawn, slice);
@@ -70,9 +71,19 @@ function drawJointSpace(robot, state, slice) {
   return drawn;
 }
 
-function drawJointAxes(robot, drawn) {
+/** The height of a line of text: it differs from font to font. */
+function lineHeight(svg) {
+  const probe = svg.appendChild(make("text", {}, "0"));
+  const { height } = probe.getBBox();
+  probe.remove();
+  return height;
+}
+
+/** Below the box are two rows, beneath the label that stands at its lowest corner. */
+function drawJointAxes(robot, drawn, line) {
   const group = layer(drawn, "axes", false);
   const { left, top, right, bottom } = drawn.box;
+  const rows = [bottom + 4 + line, bottom + 4 + 2 * line];
   robot.views.forEach((view, k) => {
     const joint = robot.joints[robot.free[k]];
     const turn = joint.kind === "revolute";
@@ -80,14 +91,14 @@ function drawJointAxes(robot, drawn) {
       const [x, y] = drawn.at(k === 0 ? [value, 0] : [0, value]);
       const ends = k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
       group.append(make("line", { class: "grid", ...ends }));
-      const place = k === 0 ? { x, y: bottom + 16, "text-anchor": "middle" }
+      const place = k === 0 ? { x, y: rows[0], "text-anchor": "middle" }
         : { x: left - 6, y: y + 4, "text-anchor": "end" };
       group.append(make("text", place, shown(joint, value, robot)));
     }
     const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
     group.append(k === 0
-      ? make("text", { x: right, y: bottom + 33, "text-anchor": "end" }, title)
-      : make("text", { x: 4, y: bottom + 33 }, `↑ ${title}`));
+      ? make("text", { x: right, y: rows[1], "text-anchor": "end" }, title)
+      : make("text", { x: 4, y: rows[1] }, `↑ ${title}`));
   });
 }
 
