@@ -18,8 +18,8 @@ from qbound.model.robot import Body, Prismatic
 from qbound.region import paper_rule, solve, state
 from support.oracles import PACKAGED, frame_matrix
 
-PRINTED, MENDED, SYMMETRIC = (
-    load_robot(f"minervabot-v2{name}") for name in ("", "-mended", "-symmetric")
+PRINTED, CORRECTED, SYMMETRIC = (
+    load_robot(f"minervabot-v2{name}") for name in ("", "-corrected", "-symmetric")
 )
 SQUARE = np.random.default_rng(17).uniform(-np.pi, np.pi, (4000, 2))
 
@@ -115,9 +115,9 @@ def test_a_collision_library_finds_the_same_overlaps(name) -> None:
 
 
 @pytest.mark.parametrize("joint", [0, 1])
-@pytest.mark.parametrize("robot", [PRINTED, MENDED, SYMMETRIC], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", [PRINTED, CORRECTED, SYMMETRIC], ids=lambda robot: robot.name)
 def test_room_ends_where_two_bodies_touch_and_no_sooner(robot, joint) -> None:
-    low, high = bodies.room(robot, joint)
+    low, high = bodies.contact_free_interval(robot, joint)
     pair = (robot.joints[joint].parent, robot.joints[joint].frame)
 
     def apart(values):
@@ -139,18 +139,18 @@ def test_room_of_a_slide_is_the_distance_between_the_bodies() -> None:
         PRINTED, joints=(slide,), home=np.zeros(1), points=(),
         bodies=(Body("0", box), Body("1", box + np.array([2.0, 0.5]))),
     )  # fmt: skip
-    assert bodies.room(robot, 0) == pytest.approx((-1.0, 5.0), abs=1e-12)
+    assert bodies.contact_free_interval(robot, 0) == pytest.approx((-1.0, 5.0), abs=1e-12)
 
 
 def test_room_is_a_full_turn_to_either_side_where_nothing_is_in_the_way() -> None:
     far = replace(PRINTED.bodies[0], polygon=PRINTED.bodies[0].polygon - [0, 500])
-    low, high = bodies.room(replace(PRINTED, bodies=(far, *PRINTED.bodies[1:])), 0)
+    low, high = bodies.contact_free_interval(replace(PRINTED, bodies=(far, *PRINTED.bodies[1:])), 0)
     assert (low, high) == pytest.approx((-2 * np.pi, 2 * np.pi))
 
 
 def test_room_needs_both_bodies() -> None:
     with pytest.raises(ValueError, match="no body in frame '2'"):
-        bodies.room(replace(PRINTED, bodies=PRINTED.bodies[:2]), 1)
+        bodies.contact_free_interval(replace(PRINTED, bodies=PRINTED.bodies[:2]), 1)
 
 
 # --- points against bodies ------------------------------------------------------------------------
@@ -158,14 +158,14 @@ def test_room_needs_both_bodies() -> None:
 
 def region_of_bodies(robot):
     """Joint values at which neighbouring bodies stay apart and the tool above its limit."""
-    rooms = [bodies.room(robot, joint) for joint in (0, 1)]
+    rooms = [bodies.contact_free_interval(robot, joint) for joint in (0, 1)]
     return solve(state(robot, [robot.boundary("B7")], rooms, [("-", "+")] * 2), robot.home)
 
 
 def test_on_the_symmetric_robot_points_and_bodies_leave_the_same_region() -> None:
     """Departure: the paper never compares its points with bodies."""
     box = paper_rule.box(SYMMETRIC)
-    rooms = np.array([bodies.room(SYMMETRIC, joint) for joint in (0, 1)])
+    rooms = np.array([bodies.contact_free_interval(SYMMETRIC, joint) for joint in (0, 1)])
     assert rooms == pytest.approx(np.stack([box.lower, box.upper], -1), abs=1e-12)
     points = solve(paper_rule.problem(SYMMETRIC), SYMMETRIC.home)
     assert region_of_bodies(SYMMETRIC).area == pytest.approx(points.area, abs=1e-12)
@@ -173,7 +173,7 @@ def test_on_the_symmetric_robot_points_and_bodies_leave_the_same_region() -> Non
 
 def test_with_the_printed_offsets_the_points_only_lose_a_strip() -> None:
     box = paper_rule.box(PRINTED)
-    rooms = np.array([bodies.room(PRINTED, joint) for joint in (0, 1)])
+    rooms = np.array([bodies.contact_free_interval(PRINTED, joint) for joint in (0, 1)])
     assert (rooms[:, 0] <= box.lower + 1e-12).all()
     assert (rooms[:, 1] >= box.upper).all()
     lost = region_of_bodies(PRINTED).area - solve(paper_rule.problem(PRINTED), PRINTED.home).area

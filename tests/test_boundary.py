@@ -293,7 +293,7 @@ def test_joint_values_of_closest_approach() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("minervabot-v2-mended", 0.0044), ("minervabot-v2-symmetric", 1e-14)]
+    ("name", "largest"), [("minervabot-v2-corrected", 0.0044), ("minervabot-v2-symmetric", 1e-14)]
 )
 def test_points_of_the_siblings_come_as_close_as_their_digits(name, largest) -> None:
     """Without the misprint every pair closes to the print's rounding; unrounded, all the way."""

@@ -271,7 +271,7 @@ def unconfirmed(text, statement):
     """The file that the search alone would write; None if even the search does not believe it."""
     robot, cells = robot_of(text), check.read_cells(statement)
     searches = prover.search_all(robot, statement, cells, 20_000)
-    if any(found.left or found.q is not None for found in searches.values()):
+    if any(found.left or found.violation is not None for found in searches.values()):
         return None
     proof = {name: list(found.trees) for name, found in searches.items()}
     return json.dumps(
@@ -344,7 +344,7 @@ def third(cells, edges):
     return halves
 
 
-HALVED, UNITS, FORMS, MORE = prover.halved, prover.units, prover._forms, prover.asked_for_more
+HALVED, UNITS, FORMS, MORE = prover.halved, prover.units, prover._forms, prover.with_extra_clearance
 CUT, CLOSE, TREE = FOREST.cut, FOREST.close, FOREST._tree
 
 FAULTS = {
@@ -373,7 +373,7 @@ FAULTS = {
         forest_with(_tree=lambda self, root: TREE(self, (root + 1) % self.size)),
     ),
     "degrees off": ("units", lambda robot: UNITS(robot) * 0.97),
-    "the margin ignored": ("asked_for_more", lambda robot, length: MORE(robot, 0)),
+    "the margin ignored": ("with_extra_clearance", lambda robot, length: MORE(robot, 0)),
     "a boundary forgotten": (
         "_forms",
         lambda *x: {name: w for name, w in FORMS(*x).items() if name != "B7"},
@@ -487,7 +487,7 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     file = str(tmp_path / "cert.json")
     assert cli.main(["certify", "minervabot-v2", "--scale", "0.96", "-o", file]) == 0
     assert cli.main(["check", file, "minervabot-v2", "--arb"]) == 0
-    assert cli.main(["check", file, "minervabot-v2-mended"]) == 2
+    assert cli.main(["check", file, "minervabot-v2-corrected"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--scale", "0.97", "-o", file]) == 1
     assert "cm" in capsys.readouterr().out
     assert cli.main(["check", file]) == 1

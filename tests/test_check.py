@@ -151,7 +151,7 @@ def test_the_boundary_functions_of_a_robot_are_those_of_the_library_and_of_arb(s
     values = np.array(q, dtype=float) * statements.units(robot)
     for wall in table["boundary"]:
         [ball] = ours.bounds(ours.waves(ours.walls[wall["name"]], Fraction("0.25"))[1], [q])
-        wider = statements.asked_for_more(robot, 0.25)
+        wider = statements.with_extra_clearance(robot, 0.25)
         wanted = float(clearance(wider, wider.boundary(wall["name"]))(values))
         assert ball.x / ONE == pytest.approx(wanted, abs=1e-9)
         assert ball.r < 2**80

@@ -11,7 +11,7 @@ from scipy.ndimage import label
 
 from qbound import find_region, load_robot
 from qbound.cli import main
-from qbound.proofs.connection import connection, outer_groups, separated, wall
+from qbound.proofs.connection import connection, outer_groups, separated, separating_cells
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
 from qbound.region import solve
@@ -27,7 +27,7 @@ CENTRES = [c.centroid for c in REGION.components]
 def test_all_five_components_of_the_paper_robot_are_separated():
     paving = connection(PAPER, CENTRES[0], CENTRES[1]).paving
     groups = outer_groups(paving)
-    held = [groups.holding(paving, q) for q in CENTRES]
+    held = [groups.containing(paving, q) for q in CENTRES]
     assert all(held)
     assert not any(one & other for one, other in combinations(held, 2))
     assert separated(paving, CENTRES[0], CENTRES[4])
@@ -127,10 +127,10 @@ def test_the_wall_alone_separates_by_an_independent_flood_fill():
     found = connection(PAPER, CENTRES[0], CENTRES[1])
     n = 1024
     blocked = np.zeros((n, n), dtype=bool)
-    for cells in wall(found.paving, CENTRES[0]):
+    for cells in separating_cells(found.paving, CENTRES[0]):
         low, high = (
             np.rint((p + np.pi) / (2 * np.pi) * n).astype(int)
-            for p in found.paving.room.places(cells)
+            for p in found.paving.bounds.places(cells)
         )
         for (a, b), (c, d) in zip(low, high, strict=True):
             blocked[a:c, b:d] = True

@@ -1,10 +1,12 @@
 """Crossings of curves: each is a zero, none is missing, and what is not proved is named."""
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
 import sympy
-from flint import arb
+from flint import arb, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -48,6 +50,15 @@ def test_closed_forms_are_hit_to_60_digits():
                 if all(abs(a - b) < arb("1e-58") for a, b in zip(c.q, decimals, strict=True))
             ]
             assert len(hits) == 1
+
+
+def test_numbers_beyond_doubles_are_refused_and_hide_no_crossing():
+    """As doubles they are infinite and the bounds NaN: pieces with crossings were dropped."""
+    disc = stated(PP, [{"00": 1, "20": -1, "02": -1}, {"10": 1, "01": 2}], SQUARE)
+    assert len([c for c in crossings(disc).found if c.names == ("f0", "f1")]) == 2
+    huge = disc.forms.coefficients * fmpq(10) ** 320
+    with pytest.raises(ValueError, match="beyond the range of a double"):
+        crossings(replace(disc, forms=HarmonicForm(huge, PP)))
 
 
 def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():

@@ -12,40 +12,40 @@ from hypothesis import strategies as st
 
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import precision
-from qbound.proofs.dyadic import Cells, Room
+from qbound.proofs.dyadic import BoxBounds, Cells
 from support.forms import random_form
 
 
-def random_room(seed: int, joints: int) -> Room:
+def random_bounds(seed: int, joints: int) -> BoxBounds:
     form = random_form(seed, joints)
     rng = np.random.default_rng(seed)
     ends = [tuple(map(arb, np.sort(rng.uniform(-3, 3, 2)))) for _ in range(joints)]
-    return Room(form, ends)
+    return BoxBounds(form, ends)
 
 
-def random_cells(room: Room, level: int, count: int, seed: int) -> Cells:
-    bits = Cells(level, np.zeros((1, len(room.ends)), dtype=np.int64)).bits
+def random_cells(box: BoxBounds, level: int, count: int, seed: int) -> Cells:
+    bits = Cells(level, np.zeros((1, len(box.ends)), dtype=np.int64)).bits
     rng = np.random.default_rng(seed)
     return Cells(level, rng.integers(0, 2**bits, (count, len(bits))))
 
 
 @given(st.integers(0, 10**6), st.integers(1, 3), st.integers(0, 40))
 def test_bounds_hold_at_corners_and_inside(seed, joints, level):
-    room = random_room(seed, joints)
-    cells = random_cells(room, level, 6, seed)
-    below, above = room.bounds(cells)
+    box = random_bounds(seed, joints)
+    cells = random_cells(box, level, 6, seed)
+    below, above = box.bounds(cells)
     rng = np.random.default_rng(seed)
     with precision(100):
         for k in range(len(cells)):
             sides = zip(cells.bits, cells.index[k], strict=True)
-            edges = [room.edge(j, b, i) for j, (b, i) in enumerate(sides)]
+            edges = [box.edge(j, b, i) for j, (b, i) in enumerate(sides)]
             ends = [(low, (low + high) / 2, high) for low, high in edges]
             weights = rng.uniform(0, 1, (10, joints))
             for weights in rng.uniform(0, 1, (10, joints)):
                 point = [a + (c - a) * w for (a, _, c), w in zip(ends, weights, strict=True)]
-                assert within(below[k], room.forms(point), above[k])
+                assert within(below[k], box.forms(point), above[k])
             for point in product(*ends):
-                assert within(below[k], room.forms(point), above[k])
+                assert within(below[k], box.forms(point), above[k])
 
 
 def within(low, balls, high) -> bool:
@@ -54,9 +54,9 @@ def within(low, balls, high) -> bool:
 
 @given(st.integers(0, 10**6), st.integers(1, 3))
 def test_bounds_close_in_on_the_value(seed, joints):
-    room = random_room(seed, joints)
-    low, high = room.bounds(random_cells(room, 20 * joints, 5, seed))
-    size = np.abs(room.forms.coefficients).sum() * 10.0**joints
+    box = random_bounds(seed, joints)
+    low, high = box.bounds(random_cells(box, 20 * joints, 5, seed))
+    size = np.abs(box.forms.coefficients).sum() * 10.0**joints
     assert (high - low <= 2e-5 * size).all()
 
 
@@ -72,15 +72,15 @@ def test_halves_fill_the_cell_and_nothing_else():
 def test_a_coefficient_that_is_a_wide_ball_counts_from_end_to_end():
     """Its middle alone would prove a cell feasible on which the form may be negative."""
     wide = HarmonicForm(np.array([[arb(0.05, 0.1), arb(0), arb(0.5, 0.25)]]), ("revolute",))
-    room = Room(wide, [(arb(1), arb(1.5))])
-    [[low]], [[high]] = room.bounds(room.whole())
+    box = BoxBounds(wide, [(arb(1), arb(1.5))])
+    [[low]], [[high]] = box.bounds(box.whole())
     assert low <= -0.05 + 0.25 * np.sin(1)
     assert high >= 0.15 + 0.75 * np.sin(1.5)
 
 
-def test_a_room_without_forms_bounds_nothing():
-    room = Room(random_form(0, 2)[np.zeros(0, dtype=int)], [(arb(0), arb(1))] * 2)
-    low, high = room.bounds(room.whole())
+def test_bounds_without_forms_bounds_nothing():
+    box = BoxBounds(random_form(0, 2)[np.zeros(0, dtype=int)], [(arb(0), arb(1))] * 2)
+    low, high = box.bounds(box.whole())
     assert low.shape == high.shape == (1, 0)
 
 

@@ -61,7 +61,7 @@ def test_cells_are_what_they_are_called_at_their_corners_in_balls(seed):
 
 def corners(paving: Paving, cells, k: int):
     one, other = (
-        paving.room.edge(j, b, i)
+        paving.bounds.edge(j, b, i)
         for j, (b, i) in enumerate(zip(cells.bits, cells.index[k], strict=True))
     )
     return [(x, y) for x in one for y in other]

@@ -91,7 +91,7 @@ def test_points_6_to_13_are_corners_of_the_bodies() -> None:
 def test_siblings_of_the_packaged_robot_differ_where_they_say() -> None:
     """One digit mended; exact lengths that round to the printed ones, but for that digit."""
     offsets = {}
-    for name in ("minervabot-v2", "minervabot-v2-mended", "minervabot-v2-symmetric"):
+    for name in ("minervabot-v2", "minervabot-v2-corrected", "minervabot-v2-symmetric"):
         _, labelled = with_symbols(load_robot(name))
         offsets[name] = {symbol.name: value for symbol, value in labelled.items()}
     printed, mended, symmetric = offsets.values()
@@ -212,6 +212,22 @@ def test_a_unit_vector_is_kept_to_the_last_place() -> None:
         assert_allclose(np.linalg.norm(axis), 1, rtol=1e-15)
         table["joint"][0]["axis"] = axis.tolist()
         assert_array_equal(parse_robot(table).joints[0].axis, axis)
+
+
+def test_numbers_and_arrays_of_numpy_are_numbers_and_lists() -> None:
+    table = packaged_table()
+    table["joint"][0]["origin"] = np.array([0, 0, 22.5])
+    table["home"]["q1"] = np.float64(0.5)
+    table["point"][0]["radius"] = np.int64(2)
+    robot = parse_robot(table)
+    assert (robot.home[0], robot.point("3").radius) == (math.radians(0.5), 2)
+    assert_array_equal(robot.joints[0].origin, [0, 0, 22.5])
+    table["home"]["q1"] = np.nan
+    with pytest.raises(RobotFileError, match=r"^home\.q1: nan is not a finite number"):
+        parse_robot(table)
+    table["home"]["q1"] = pi + 1j
+    with pytest.raises(RobotFileError, match=r"^home\.q1: .* is not a number"):
+        parse_robot(table)
 
 
 # --- bad files -----------------------------------------------------------------------------------
@@ -373,6 +389,13 @@ BAD: dict[str, tuple[Change, str, str]] = {
     "infinite radius": (put("point[0].radius", math.inf), "point[0].radius (3)", "inf is not a f"),
     "NaN as a limit": (
         put("joint[0].limits", [math.nan, 1]), "joint[0].limits[0] (q1)", "nan is not a finite num",
+    ),
+    "NaN in an axis": (
+        put("joint[1].axis", [0, math.nan, 1]), "joint[1].axis[1] (q2)", "nan is not a finite num",
+    ),
+    "infinite normal": (
+        put("boundary[6].normal", [0, 0, math.inf]), "boundary[6].normal[2] (B7)",
+        "inf is not a finite number",
     ),
     "too large an offset": (
         put("boundary[6].offset", 1e200), "boundary[6].offset (B7)",

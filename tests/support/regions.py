@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
-from qbound.region.cells import Complex
+from qbound.region.cells import CellComplex
 from qbound.region.decomposition import Plane, decompose
 from support.forms import Piece, Ranges
 
@@ -184,7 +184,7 @@ def check_moments(region: Region, sure: np.ndarray, doubt: float, h, q) -> None:
 
 def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     """Area, wraps (in the order of the joints) and number of loops, largest area first."""
-    cells = Complex(decompose(Plane(stack, ranges, base)))
+    cells = CellComplex(decompose(Plane(stack, ranges, base)))
     found = []
     for sheets, wraps in cells.components():
         area = sum(area_of(cells, k) for k in sheets)
@@ -193,7 +193,7 @@ def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     return sorted(found, reverse=True)
 
 
-def area_of(cells: Complex, k: int, n: int = 60, panels: int = 12) -> float:
+def area_of(cells: CellComplex, k: int, n: int = 60, panels: int = 12) -> float:
     """Gauss-Legendre, in panels of the angle of t = middle + half sin(angle): no fold spoils it."""
     nodes, weights = np.polynomial.legendre.leggauss(n)
     start, end = cells.spans([k])[0]

@@ -214,7 +214,7 @@ def contact_on_the_boundary() -> Finding:
     worst = {}
     for name, arm in _robots().items():
         box = paper_rule.box(arm)
-        rooms = np.array([bodies.room(arm, joint) for joint in (0, 1)])
+        rooms = np.array([bodies.contact_free_interval(arm, joint) for joint in (0, 1)])
         worst[name] = float(np.degrees(np.abs(rooms - np.stack([box.lower, box.upper], -1)).max()))
     return Finding(
         judge(holds=worst["printed"] < 1e-6, under=worst["symmetric"] < 1e-6),

@@ -25,7 +25,7 @@ def robot() -> Robot:
 @cache
 def corrected() -> Robot:
     """Return the robot with the one digit corrected: x_{2,13} = 9.09 cm."""
-    return load_robot("minervabot-v2-mended")
+    return load_robot("minervabot-v2-corrected")
 
 
 @cache

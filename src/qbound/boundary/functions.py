@@ -1,7 +1,7 @@
 """Boundary functions: robot + points -> harmonic forms (Theorem 1, eqs. 9-29, Tables 3-5).
 
-A chain is walked from a point towards an observer; each joint multiplies what is carried so far by
-(1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
+A point is propagated along the chain towards an observer; each joint multiplies what is carried so
+far by (1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
 symbols: the formulas of the paper are derived here, never typed.
 """
 
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot
 from qbound.tolerances import ZERO_AMPLITUDE
@@ -39,7 +40,7 @@ def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicF
     ValueError
         If the observer is no frame between the base and the point.
     """
-    return _walk(robot, point, observer)[0]
+    return _propagate(robot, point, observer)[0]
 
 
 def squared_distance(
@@ -50,7 +51,7 @@ def squared_distance(
     It has no products such as :math:`\cos^2 q`: a rotation keeps lengths, so a joint only adds
     twice a dot product. Arguments and errors as in `position`.
     """
-    coordinates, squared = _walk(robot, point, observer)
+    coordinates, squared = _propagate(robot, point, observer)
     centre = np.asarray(centre)
     cross = coordinates.dot(-2 * centre).coefficients
     return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.asarray(centre @ centre)
@@ -125,8 +126,7 @@ def moving_joints(robot: Robot, boundary: Boundary) -> tuple[int, ...]:
     axis leaves 1e-16 where exact numbers leave nothing.
     """
     form, reach = clearance(robot, boundary), robot.reach
-    slide = np.array([1.0, reach, reach**2])
-    powers = [np.ones(3) if joint.turns else slide for joint in robot.joints]
+    powers = [np.array(FACTORS[kind].largest(reach), dtype=float) for kind in robot.kinds]
     sizes = np.abs(form.coefficients) * reduce(_outer, powers)
     squared = robot.least_distance(boundary) is not None
     rounding = ZERO_AMPLITUDE * (reach**2 if squared else reach)
@@ -228,7 +228,7 @@ def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     return -1, second, first
 
 
-def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
+def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
     """Carry the position u of a point, and |u|^2, from its frame to the observer's."""
     point = robot.point(name)
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
@@ -245,21 +245,19 @@ def _walk(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, 
 
 def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
-    still = np.take(u, 0, axis=j + 1)
-    if joint.kind == "revolute":
-        moved = np.stack(_rodrigues(joint.axis, still), axis=j + 1)
-    else:
-        moved, squared = _slide(joint.axis, j, u, squared)
+    moved, squared = MOTIONS[joint.kind](joint.axis, j, u, squared)
     moved = np.tensordot(joint.mount, moved, axes=1)
     squared = squared + 2 * np.tensordot(joint.origin, moved, axes=1)
     squared = add_constant(squared, joint.origin @ joint.origin)
     return add_constant(moved, joint.origin), squared
 
 
-def _rodrigues(axis: Array, u: Array) -> tuple[Array, Array, Array]:
-    """Return constant, cosine and sine part of `u` turned about a unit axis."""
+def _turn(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+    """Turn u about a unit axis by Rodrigues' formula: constant, cosine and sine part."""
+    u = np.take(u, 0, axis=j + 1)
     along = np.multiply.outer(axis, np.tensordot(axis, u, axes=1))
-    return along, u - along, np.cross(axis, u, axisb=0, axisc=0)
+    across = np.cross(axis, u, axisb=0, axisc=0)
+    return np.stack([along, u - along, across], axis=j + 1), squared
 
 
 def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
@@ -271,3 +269,7 @@ def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]
     still = np.take(u, 0, axis=j + 1)
     slope = add_constant(np.zeros_like(still), axis)
     return np.stack([still, slope, np.zeros_like(still)], axis=j + 1), squared
+
+
+MOTIONS = {"revolute": _turn, "prismatic": _slide}
+"""How a joint of each kind moves what it carries."""

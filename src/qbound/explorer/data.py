@@ -135,7 +135,7 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
 def _reach(robot: Robot) -> float:
     """Bound the tool's distance from the base; the robot's size."""
     lengths = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
-    slides = [max(map(abs, j.limits)) for j in robot.joints if j.kind == "prismatic" and j.limits]
+    slides = [joint.farthest for joint in robot.joints]
     return sum(lengths) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 

@@ -81,7 +81,7 @@ def area(pieces: Sequence[Piece]) -> float:
 
 
 def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) -> list[Piece]:
-    """Cut closed walks at a window and join what is left along its edge (the left is inside)."""
+    """Cut closed loops at a window and join what is left along its edge (the left is inside)."""
     closed, chains = [], []
     for ring in rings:
         parts = list(_cut(ring, wraps, window[:, 0]))
@@ -102,7 +102,7 @@ def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) ->
 
 
 def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats]:
-    """Cut a walk wherever a joint passes the window's edge, and bring all parts into the window."""
+    """Cut a loop wherever a joint passes the window's edge, and bring all parts into the window."""
     shape = np.array(wraps, dtype=float)
     points = _with_cuts(ring, wraps, low)
     tiles = np.floor(((points[:-1] + points[1:]) / 2 - low) / TURN) * shape
@@ -118,7 +118,7 @@ def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats
 
 
 def _with_cuts(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Floats:
-    """Insert the points at which a walk passes the window's edge, there exactly."""
+    """Insert the points at which a loop passes the window's edge, there exactly."""
     result = [ring[0]]
     for a, b in pairwise(ring):
         cuts = []

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from qbound.export.formats import csv_text, heading, pose_columns
 from qbound.model.units import joint_text
-from qbound.paths.encounters import Crossing, Margin, Place
+from qbound.paths.encounters import Crossing, Margin, ParameterPoint
 from qbound.paths.report import PathReport
 from qbound.paths.route import Route
 from qbound.paths.trajectory import Trajectory, row_times
@@ -102,11 +102,11 @@ def _margin(route: Route, least: Margin) -> dict[str, Any]:
     }
 
 
-def _place(route: Route, place: Place) -> dict[str, Any]:
+def _place(route: Route, place: ParameterPoint) -> dict[str, Any]:
     return {"leg": route.leg_of(place.s), "q": place.q.tolist()}
 
 
-def _where(route: Route, place: Place) -> str:
+def _where(route: Route, place: ParameterPoint) -> str:
     return f"on {route.leg_of(place.s)}"
 
 

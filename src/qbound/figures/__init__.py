@@ -237,7 +237,7 @@ def draw_traversal(
     axes: Sequence[Axes],
     robot: Robot,
     region: ArrayLike,
-    walk: Traversal,
+    path: Traversal,
     *,
     ranges: ArrayLike,
     window: ArrayLike,
@@ -258,11 +258,11 @@ def draw_traversal(
     joints, space = axes
     joint_axes(joints, robot, ranges)
     artists = draw_region(joints, region, lw=0)
-    artists += draw_path(joints, np.degrees(walk.q), walk.stops, labels=labels, distance=-13)
+    artists += draw_path(joints, np.degrees(path.q), path.stops, labels=labels, distance=-13)
     plane_axes(space, robot, window)
     artists.append(space.axhline(0, color=INK, lw=1))
-    artists += draw_robot(space, robot, walk.final_pose, alpha=0.6)
-    return artists + draw_path(space, walk.tool[:, [0, 2]], walk.stops, labels=labels)
+    artists += draw_robot(space, robot, path.final_pose, alpha=0.6)
+    return artists + draw_path(space, path.tool[:, [0, 2]], path.stops, labels=labels)
 
 
 def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
@@ -368,14 +368,14 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
         pieces, _ = polygons(component, DRAWN)
         rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
         rings = [ring - _turns_off(rings[0], rounds) for ring in rings]
-        walks = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
-        walks = [walk - _turns_off(walk, rounds) for walk in walks]
+        lines = [np.concatenate([arc.points for arc in loop]) for loop in component.loops]
+        lines = [path - _turns_off(path, rounds) for path in lines]
         for shift in (np.array(s) for s in product(*turns)):
             closed = ((np.append(ring, ring[:1], axis=0) + shift) * scale for ring in rings)
             inside = Path.make_compound_path(*(Path(ring, closed=True) for ring in closed))
             artists.append(ax.add_patch(PathPatch(inside, fc=colour, alpha=0.25, lw=0)))
-            for walk in walks:
-                artists += ax.plot(*((walk + shift) * scale).T, color=colour, lw=1.5)
+            for path in lines:
+                artists += ax.plot(*((path + shift) * scale).T, color=colour, lw=1.5)
     return artists
 
 

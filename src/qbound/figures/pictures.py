@@ -85,7 +85,7 @@ def pose_picture(
 def traversal_picture(
     robot: Robot,
     chart: Chart,
-    walk: Traversal,
+    path: Traversal,
     labels: Sequence[str],
     plane: tuple[int, int] = (0, 2),
     kind: str = "svg",
@@ -100,11 +100,11 @@ def traversal_picture(
 
     def draw(axes: Sequence[Axes]) -> None:
         joints, space = axes
-        path = walk.q[:, list(chart.joints)] * figures.joint_scales(chart.region)
-        _joint_panel(joints, robot, chart, walk.q)
-        figures.draw_path(joints, path, walk.stops, labels=labels, distance=-13, color=INK)
-        figures.draw_robot(space, robot, walk.final_pose, alpha=0.6, plane=plane)
-        figures.draw_path(space, walk.tool[:, list(plane)], walk.stops, labels=labels, color=INK)
+        drawn = path.q[:, list(chart.joints)] * figures.joint_scales(chart.region)
+        _joint_panel(joints, robot, chart, path.q)
+        figures.draw_path(joints, drawn, path.stops, labels=labels, distance=-13, color=INK)
+        figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
+        figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
         _space_panel(space, robot, plane)
 
     return _picture(2, draw, kind)
@@ -175,7 +175,7 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
         room = 0.03 * np.ptp(values)
         if joint.turns:
             getattr(ax, f"{axis}axis").set_major_locator(figures.every(np.ptp(values)))
-        unit = joint.shown_unit(robot.length_unit)
+        unit = joint.unit(robot.length_unit, "°")
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
@@ -195,14 +195,14 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
 
 
 def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
-    """Label the plane of motion and draw the walls that stand on it, over what is drawn already."""
+    """Label the plane of motion and draw the half-spaces that stand on it, over all else."""
     figures.plane_axes(ax, robot, plane=plane)
     ax.margins(0.12)
     ax.autoscale_view()
     window = ax.get_xlim(), ax.get_ylim()
-    for wall in robot.boundaries:
-        if isinstance(wall, HalfSpace) and wall.used:
-            _wall(ax, wall, np.asarray(wall.normal, dtype=float)[list(plane)])
+    for half_space in robot.boundaries:
+        if isinstance(half_space, HalfSpace) and half_space.used:
+            _half_space(ax, half_space, np.asarray(half_space.normal, dtype=float)[list(plane)])
     ax.set(xlim=window[0], ylim=window[1])
 
 
@@ -211,20 +211,20 @@ def _written(robot: Robot, q: Floats) -> str:
     return ", ".join(
         f"{figures.symbol(joint.name)} = {value * joint.shown_scale:.4g}"
         + ("" if joint.turns else " ")
-        + joint.shown_unit(robot.length_unit)
+        + joint.unit(robot.length_unit, "°")
         for joint, value in zip(robot.joints, q, strict=True)
     )
 
 
-def _wall(ax: Axes, wall: HalfSpace, normal: Floats) -> None:
-    """Draw the line at which a wall cuts the plane, if it stands upright on it."""
+def _half_space(ax: Axes, half_space: HalfSpace, normal: Floats) -> None:
+    """Draw the line at which a half_space cuts the plane, if it stands upright on it."""
     if np.hypot(*normal) > 1 - 1e-9:
-        foot = wall.offset * normal
+        foot = half_space.offset * normal
         along = np.array([-normal[1], normal[0]])
         ax.axline(tuple(foot), tuple(foot + along), color=figures.COLLIDING, lw=1.2)
         if abs(along[0]) > 0.5:  # its name at the right edge
             height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
             ax.annotate(
-                figures.as_text(wall.name), (ax.get_xlim()[1], height), (-3, 3),
+                figures.as_text(half_space.name), (ax.get_xlim()[1], height), (-3, 3),
                 textcoords="offset points", ha="right", color=figures.COLLIDING,
             )  # fmt: skip

@@ -59,7 +59,7 @@ def draw_patches(ax: Axes, workspace: Workspace) -> list[Artist]:
 
 
 def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
-    """Draw where the tool goes as the joints walk round every aspect, named by boundary."""
+    """Draw where the tool goes as the joints path round every aspect, named by boundary."""
     return _draw_arcs(ax, workspace, workspace.arm.tool)
 
 

@@ -72,7 +72,7 @@ def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
     }
 
 
-def room(robot: Robot, joint: int) -> tuple[float, float]:
+def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     """Return the joint values around home between which two neighbouring bodies stay apart.
 
     Both ends come from conservative advancement: no corner of either body moves faster about the
@@ -106,7 +106,7 @@ def room(robot: Robot, joint: int) -> tuple[float, float]:
 def _advance(robot: Robot, near: Body, far: Body, joint: int, sense: int, most: float) -> float:
     """Go from home until the bodies touch or `most` is passed; return the joint value."""
     q = np.array(robot.home, dtype=float)
-    speed = _largest_speed(robot, near, far, joint)
+    speed = _largest_motion(robot, near, far, joint)
     start = q[joint]
     while abs(q[joint] - start) < most:
         apart = float(gap(outline(robot, near, q), outline(robot, far, q)))
@@ -116,7 +116,7 @@ def _advance(robot: Robot, near: Body, far: Body, joint: int, sense: int, most: 
     return float(q[joint])
 
 
-def _largest_speed(robot: Robot, near: Body, far: Body, joint: int) -> float:
+def _largest_motion(robot: Robot, near: Body, far: Body, joint: int) -> float:
     """Return the most that a corner of either body moves, seen from the other, a unit of joint."""
     if not robot.joints[joint].turns:
         return 1.0

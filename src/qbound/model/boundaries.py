@@ -19,11 +19,14 @@ from qbound.model.rows import Direction, Label, Number, Row, Size, floats, unit_
 from qbound.model.shapes import Point
 
 Array = NDArray[Any]
+Source = Mapping[str, Any]
+Convert = Callable[[Any], Any]
+Find = Callable[[str], Point]
 
 
 @dataclass(frozen=True, eq=False)
 class Boundary(ABC):
-    """What every boundary has: a name, its points, whether it is in use, and a clearance form."""
+    """What every boundary has: a name, whether it is in use, and a clearance form."""
 
     name: str
 
@@ -32,13 +35,8 @@ class Boundary(ABC):
     def used(self) -> bool:
         """Whether it is part of the region; else it is only drawn."""
 
-    @property
     @abstractmethod
-    def point_names(self) -> tuple[str, ...]:
-        """Names of the points that it is about."""
-
-    @abstractmethod
-    def least_distance(self, point: Callable[[str], Point]) -> float | None:
+    def least_distance(self, point: Find) -> float | None:
         r"""Return :math:`d_{\min}` where its form is :math:`|B|^2 - d_{\min}^2`; else None.
 
         Without one its form is the margin itself, a length. `point` finds a point by its name.
@@ -49,12 +47,7 @@ class Boundary(ABC):
         """Return it asking for some more distance."""
 
     @abstractmethod
-    def with_numbers(
-        self,
-        source: Mapping[str, Any],
-        number: Callable[[Any], Any],
-        direction: Callable[[Any], Array],
-    ) -> Boundary:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Boundary:
         """Return it with the numbers of a table, or of its own attributes, of another kind."""
 
     def with_labels(self, label: Callable[[str, float], Any]) -> Boundary:
@@ -74,12 +67,7 @@ class Pair(Boundary):
     clearance: float = 0.0
     used: bool = True
 
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        """Names of both points."""
-        return self.points
-
-    def least_distance(self, point: Callable[[str], Point]) -> float:
+    def least_distance(self, point: Find) -> float:
         """Return both radii plus the clearance."""
         return sum(point(name).radius for name in self.points) + self.clearance
 
@@ -87,12 +75,7 @@ class Pair(Boundary):
         """Ask for more between the spheres."""
         return replace(self, clearance=self.clearance + length)
 
-    def with_numbers(
-        self,
-        source: Mapping[str, Any],
-        number: Callable[[Any], Any],
-        direction: Callable[[Any], Array],
-    ) -> Pair:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Pair:
         """Convert the clearance."""
         return replace(self, clearance=number(source.get("clearance", 0)))
 
@@ -115,24 +98,14 @@ class HalfSpace(Boundary):
     offset: float
     used: bool = True
 
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        """Name of the one point."""
-        return (self.point,)
-
-    def least_distance(self, point: Callable[[str], Point]) -> None:
+    def least_distance(self, point: Find) -> None:
         """Return None: its form is the height over the wall."""
 
     def with_extra_clearance(self, length: float) -> HalfSpace:
         """Move the wall inwards."""
         return replace(self, offset=self.offset + length)
 
-    def with_numbers(
-        self,
-        source: Mapping[str, Any],
-        number: Callable[[Any], Any],
-        direction: Callable[[Any], Array],
-    ) -> HalfSpace:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> HalfSpace:
         """Convert normal and offset."""
         return replace(self, normal=direction(source["normal"]), offset=number(source["offset"]))
 

@@ -80,13 +80,14 @@ class Joint(ABC):
     def frame_at(self, q: Any) -> Frame:
         """Return its frame at joint values of shape (...) or a symbol, seen from the parent."""
 
-    def unit(self, length_unit: str) -> str:
-        """Return the unit of its values in the library."""
-        return "rad" if self.turns else length_unit
+    @property
+    def farthest(self) -> float:
+        """How far it carries its frame at most: a slide's farther limit, 0 of a turn."""
+        return 0.0 if self.turns or self.limits is None else max(map(abs, self.limits))
 
-    def shown_unit(self, length_unit: str) -> str:
-        """Return the unit in which people are shown its values: degrees for an angle."""
-        return "°" if self.turns else length_unit
+    def unit(self, length_unit: str, angle_unit: str = "rad") -> str:
+        """Return the unit of its values, in the library or where another unit of angle is used."""
+        return angle_unit if self.turns else length_unit
 
     @property
     def shown_scale(self) -> float:

@@ -79,10 +79,9 @@ class Robot:
     @property
     def reach(self) -> float:
         """Length that no place of the robot's points exceeds, seen from the base."""
-        slides = (max(map(abs, j.limits)) for j in self.joints if j.limits and not j.turns)
-        links = (float(np.linalg.norm(joint.origin)) for joint in self.joints)
+        links = (float(np.linalg.norm(joint.origin)) + joint.farthest for joint in self.joints)
         tips = (float(np.linalg.norm(point.at)) for point in self.points)
-        return sum(links) + sum(slides) + max(tips, default=0.0)
+        return sum(links) + max(tips, default=0.0)
 
     def point(self, name: str) -> Point:
         """Return the point of that name."""

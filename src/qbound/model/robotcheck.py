@@ -17,7 +17,7 @@ from msgspec import Meta, field
 from qbound.model.boundaries import TWO_POINTS, BoundaryRow
 from qbound.model.joints import JOINT_TYPES, JointRow
 from qbound.model.rows import LARGEST, Label, Number, Row
-from qbound.model.schema import Place, explained, one_line, place, shown
+from qbound.model.schema import JsonPath, explained, one_line, place, shown
 from qbound.model.shapes import BodyRow, PointRow
 
 Table = Mapping[str, Any]
@@ -103,7 +103,7 @@ def json_schema() -> dict[str, Any]:
     return {"$schema": draft, **top, "$defs": rows}
 
 
-def _fault(table: Table, path: Place, text: str) -> RobotFileError:
+def _fault(table: Table, path: JsonPath, text: str) -> RobotFileError:
     where = place(table, path)
     return RobotFileError(f"{where}: {text}" if where else text)
 
@@ -177,7 +177,7 @@ def _check_pairs(table: Table) -> None:
             raise _fault(table, ("boundary", i, "points"), text)
 
 
-def _check_known(table: Table, path: Place, what: str, names: Sequence[str]) -> None:
+def _check_known(table: Table, path: JsonPath, what: str, names: Sequence[str]) -> None:
     name: Any = table
     for step in path:
         name = name[step]
@@ -200,8 +200,11 @@ def _check_home(table: Table) -> None:
 def _check_directions(table: Table) -> None:
     for kind, key in (("joint", "axis"), ("boundary", "normal")):
         for i, row in enumerate(_rows(table, kind)):
-            if key in row and not any(row[key]):
-                text = f"{shown(row[key])} has no direction; one number must not be 0"
+            vector = row.get(key, (1.0,))
+            if not all(map(math.isfinite, vector)):
+                _check_finite(table)
+            if not any(vector):
+                text = f"{shown(vector)} has no direction; one number must not be 0"
                 raise _fault(table, (kind, i, key), text)
 
 
@@ -225,7 +228,7 @@ def _rows(table: Table, key: str) -> Sequence[Table]:
     return rows
 
 
-def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, Any]]:
+def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[JsonPath, Any]]:
     """Yield every number and text of a file, with its place."""
     if isinstance(value, Mapping | list):
         items = value.items() if isinstance(value, Mapping) else enumerate(value)

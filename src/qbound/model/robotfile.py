@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import tomllib
 import warnings
+from datetime import date, datetime, time
 from importlib import resources
 from pathlib import Path
 
@@ -94,7 +95,16 @@ def packaged_robots() -> tuple[str, ...]:
 
 def parse_robot(table: Table) -> Robot:
     """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit."""
-    return _robot(table, "")
+    return _robot(_plain(table), "")
+
+
+def _plain(table: Table) -> Table:
+    """Replace NumPy's numbers and arrays by Python's: msgspec knows no others."""
+    days = (date, datetime, time)  # TOML has them; a robot has not, and the refusal shows them
+    plain: Table = msgspec.to_builtins(
+        table, enc_hook=lambda x: x.tolist() if hasattr(x, "tolist") else str(x), builtin_types=days
+    )
+    return plain
 
 
 def _robot(table: Table, label: str) -> Robot:

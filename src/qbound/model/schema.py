@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-Place = Sequence[str | int]
+JsonPath = Sequence[str | int]
 Node = Mapping[str, Any]
 """What a JSON Schema has to say of one place."""
 
@@ -20,7 +20,7 @@ LONGEST = 60
 """Characters of a value that a message shows."""
 
 
-def explained(message: str, table: Any, schema: Node) -> tuple[Place, str]:
+def explained(message: str, table: Any, schema: Node) -> tuple[JsonPath, str]:
     """Return the place and the sentence of a fault that msgspec found.
 
     Parameters
@@ -41,7 +41,7 @@ def explained(message: str, table: Any, schema: Node) -> tuple[Place, str]:
     return path, f"{shown(found)}: {one_line(sort)}"
 
 
-def place(value: Any, path: Place) -> str:
+def place(value: Any, path: JsonPath) -> str:
     """Write a place as a reader looks for it: ``joint[0].axis (q1)``, by index and by name."""
     steps = (f"[{step}]" if isinstance(step, int) else f".{_key(step)}" for step in path)
     dotted = "".join(steps).lstrip(".")
@@ -72,7 +72,7 @@ def one_line(text: str) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."
 
 
-def _follow(where: str, value: Any, schema: Node) -> tuple[Place, Any, Node]:
+def _follow(where: str, value: Any, schema: Node) -> tuple[JsonPath, Any, Node]:
     """Walk to a place: its path, what is found there, and what the schema has to say of it."""
     path: list[str | int] = []
     node = _resolved(schema, schema, value)

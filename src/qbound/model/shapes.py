@@ -1,6 +1,6 @@
 """What has a place in a frame? Points (with a radius, spheres), and outlines of bodies.
 
-A new shape needs its class here with an `outline`: pictures and checks of bodies read no more.
+A new shape of a body is a class here that has a `polygon`: pictures and checks read no more.
 """
 
 from __future__ import annotations

@@ -13,12 +13,12 @@ from qbound.model.robot import Robot
 
 def joint_units(robot: Robot) -> list[str]:
     """Return the library's unit of each joint's values: ``rad``, or the robot's length unit."""
-    return ["rad" if kind == "revolute" else robot.length_unit for kind in robot.kinds]
+    return [joint.unit(robot.length_unit) for joint in robot.joints]
 
 
 def file_units(robot: Robot) -> list[str]:
     """Return the robot file's unit of each joint's values."""
-    return [robot.angle_unit if kind == "revolute" else robot.length_unit for kind in robot.kinds]
+    return [joint.unit(robot.length_unit, robot.angle_unit) for joint in robot.joints]
 
 
 def parse_joint_value(robot: Robot, j: int, text: str) -> float:
@@ -31,7 +31,7 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     """
     number, unit = text.strip(), file_units(robot)[j]
     for suffix in ("deg", "rad"):
-        if robot.kinds[j] == "revolute" and number.endswith(suffix):
+        if robot.joints[j].turns and number.endswith(suffix):
             number, unit = number.removesuffix(suffix), suffix
             break
     try:

@@ -30,7 +30,7 @@ ROWS_OF_A_LEG = 65
 
 
 @dataclass(frozen=True)
-class Boundary:
+class MarginFunction:
     """A margin that must not be negative, as a function of joint values.
 
     Attributes
@@ -51,7 +51,7 @@ class Boundary:
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class ParameterPoint:
     """A place of a path: `s` as in `Traversal.s`, and the joint values there."""
 
     s: float
@@ -63,8 +63,8 @@ class Crossing:
     """A point of the plane of motion that a path passes twice, in two directions."""
 
     point: Floats
-    first: Place
-    second: Place
+    first: ParameterPoint
+    second: ParameterPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,19 +73,19 @@ class Margin:
 
     Attributes
     ----------
-    boundary : Boundary
+    boundary : MarginFunction
     value : float
         Negative where the path is outside.
-    place : Place
+    place : ParameterPoint
         Where it is smallest.
-    leaves : Place or None
+    leaves : ParameterPoint or None
         Where the path is outside first; None if it keeps the boundary.
     """
 
-    boundary: Boundary
+    boundary: MarginFunction
     value: float
-    place: Place
-    leaves: Place | None
+    place: ParameterPoint
+    leaves: ParameterPoint | None
 
 
 def plane_of_motion(robot: Robot) -> tuple[int, int] | None:
@@ -95,30 +95,30 @@ def plane_of_motion(robot: Robot) -> tuple[int, int] | None:
     return (moving[0], moving[1]) if len(moving) == 2 else None
 
 
-def tool_crossings(robot: Robot, walk: Traversal, plane: tuple[int, int]) -> list[Crossing]:
+def tool_crossings(robot: Robot, path: Traversal, plane: tuple[int, int]) -> list[Crossing]:
     """Find where the tool's path crosses itself, by Newton from the crossings of a polyline.
 
     A stop that is visited twice is no crossing, nor is a piece that is run twice.
     """
-    tool = position(robot, robot.tool)[list(plane)]
+    place = position(robot, robot.tool)[list(plane)]
 
-    def path(s: Floats) -> Floats:
-        return np.asarray(tool(walk.at(s)))
+    def tool(s: Floats) -> Floats:
+        return np.asarray(place(path.at(s)))
 
     found: list[Crossing] = []
-    for s, t in _candidates(path, len(walk.legs)):
-        pair = _newton(path, np.array([s, t]), len(walk.legs))
-        if pair is None or any(_stops_at(walk, x) for x in pair):
+    for s, t in _candidates(tool, len(path.legs)):
+        pair = _newton(tool, np.array([s, t]), len(path.legs))
+        if pair is None or any(_stops_at(path, x) for x in pair):
             continue
         if all(abs(pair - (c.first.s, c.second.s)).max() >= SAME_PLACE for c in found):
-            first, second = (_place(walk, x) for x in pair)
-            found.append(Crossing(path(pair[:1])[0], first, second))
+            first, second = (_place(path, x) for x in pair)
+            found.append(Crossing(tool(pair[:1])[0], first, second))
     return sorted(found, key=lambda c: (c.first.s, c.second.s))
 
 
 def singular_crossings(
-    robot: Robot, walk: Traversal, held: Mapping[int, float] | None = None
-) -> list[Place] | None:
+    robot: Robot, path: Traversal, held: Mapping[int, float] | None = None
+) -> list[ParameterPoint] | None:
     """Find where a path crosses the singular curve: det J of two joints changes its sign there.
 
     None where the tool keeps to no plane, or to a curve of it. Signs are compared at the rows; two
@@ -139,24 +139,24 @@ def singular_crossings(
     def det(q: Floats) -> Floats:
         return np.asarray(form(q[..., free]))
 
-    grid = _grid(walk)
+    grid = _grid(path)
     rounding = ON_BOUNDARY * np.abs(form.coefficients).max()
-    return _sign_changes(walk, det, grid[np.abs(det(walk.at(grid))) > rounding])
+    return _sign_changes(path, det, grid[np.abs(det(path.at(grid))) > rounding])
 
 
-def _sign_changes(walk: Traversal, form: Form, grid: Floats) -> list[Place]:
+def _sign_changes(path: Traversal, form: Form, grid: Floats) -> list[ParameterPoint]:
     """Places between rows of different sign, by bisection."""
-    signs = np.sign(form(walk.at(grid)))
+    signs = np.sign(form(path.at(grid)))
     changes = np.nonzero(signs[1:] != signs[:-1])[0]
 
     def as_before(s: Floats) -> NDArray[np.bool_]:
-        return np.asarray(np.sign(form(walk.at(s))) == signs[changes])
+        return np.asarray(np.sign(form(path.at(s))) == signs[changes])
 
     low, _ = last_before(as_before, grid[changes], grid[changes + 1])
-    return [_place(walk, s) for s in low]
+    return [_place(path, s) for s in low]
 
 
-def boundaries(region: Region) -> list[Boundary]:
+def boundaries(region: Region) -> list[MarginFunction]:
     """Return all that a region keeps, as margins of every joint's values (eqs. 9-12).
 
     By the clearance rule every boundary in use and every joint limit; by the paper's the
@@ -173,70 +173,72 @@ def boundaries(region: Region) -> list[Boundary]:
     sizes = compiled.rounding / ROUNDING  # of a pair's form, whose value is a length squared
     sizes = np.where(np.isnan(compiled.distance), sizes, np.sqrt(sizes))
     columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes.tolist(), strict=True))
-    return [Boundary(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns]
+    return [
+        MarginFunction(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns
+    ]
 
 
-def least_margin(walk: Traversal, boundary: Boundary) -> Margin:
+def least_margin(path: Traversal, boundary: MarginFunction) -> Margin:
     """Find the smallest margin along a path, and where the path leaves if it does."""
-    value, place = lowest(walk, boundary.margin)
-    return Margin(boundary, value, place, _leaves(walk, boundary, place.s))
+    value, place = lowest(path, boundary.margin)
+    return Margin(boundary, value, place, _leaves(path, boundary, place.s))
 
 
-def lowest(walk: Traversal, function: Form) -> tuple[float, Place]:
+def lowest(path: Traversal, function: Form) -> tuple[float, ParameterPoint]:
     """Return the smallest value of a function of the joint values along a path, and its place.
 
     The smallest row is the start; the interval around it is divided again until it is a point.
     """
-    s, found = _grid(walk), list[tuple[float, float]]()
+    s, found = _grid(path), list[tuple[float, float]]()
     for _ in range(13):
-        values = function(walk.at(s))
+        values = function(path.at(s))
         i = int(values.argmin())
         found.append((float(values[i]), float(s[i])))
         s = np.linspace(s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 33)
     value, at = min(found[0], found[-1])
-    return value, _place(walk, at)
+    return value, _place(path, at)
 
 
-def _leaves(walk: Traversal, boundary: Boundary, least: float) -> Place | None:
+def _leaves(path: Traversal, boundary: MarginFunction, least: float) -> ParameterPoint | None:
     """First place at which the margin is negative beyond rounding; `least`: where it is least."""
 
     def inside(s: Floats) -> NDArray[np.bool_]:
-        return np.asarray(boundary.margin(walk.at(s)) >= -ON_BOUNDARY * boundary.scale)
+        return np.asarray(boundary.margin(path.at(s)) >= -ON_BOUNDARY * boundary.scale)
 
-    grid = np.sort(np.append(_grid(walk), least))
+    grid = np.sort(np.append(_grid(path), least))
     kept = inside(grid)
     if kept.all():
         return None
     i = int(kept.argmin())
     _, high = last_before(inside, grid[[max(i - 1, 0)]], grid[[i]])
-    return _place(walk, high[0])
+    return _place(path, high[0])
 
 
 def _column(compiled: Evaluator, k: int) -> Form:
     return lambda q: np.asarray(compiled.margins(q)[..., k])
 
 
-def _place(walk: Traversal, s: float) -> Place:
-    return Place(float(s), walk.at(s)[0])
+def _place(path: Traversal, s: float) -> ParameterPoint:
+    return ParameterPoint(float(s), path.at(s)[0])
 
 
-def _grid(walk: Traversal) -> Floats:
+def _grid(path: Traversal) -> Floats:
     """Rows of the path, and at least so many a leg that no turn hides between two of them."""
-    even = np.arange(len(walk.legs) * (ROWS_OF_A_LEG - 1) + 1) / (ROWS_OF_A_LEG - 1)
-    return np.asarray(np.unique(np.concatenate([walk.s, even])))
+    even = np.arange(len(path.legs) * (ROWS_OF_A_LEG - 1) + 1) / (ROWS_OF_A_LEG - 1)
+    return np.asarray(np.unique(np.concatenate([path.s, even])))
 
 
-def _stops_at(walk: Traversal, s: float) -> bool:
+def _stops_at(path: Traversal, s: float) -> bool:
     """Tell whether a place is a stop: in joint values, as an arc is slow in `s` near its ends."""
-    away = np.abs(walk.q[walk.stops] - walk.at(s)).max(axis=1)
+    away = np.abs(path.q[path.stops] - path.at(s)).max(axis=1)
     return bool(away.min() < TOUCH)
 
 
-def _candidates(path: Form, legs: int) -> list[tuple[float, float]]:
+def _candidates(curve: Form, legs: int) -> list[tuple[float, float]]:
     """Pairs of parameters near which a polyline of the path crosses itself, or nearly does."""
     n = ROWS_OF_A_LEG - 1
     s = np.arange(legs * n + 1) / n
-    p = path(s)
+    p = curve(s)
     start, step = p[:-1], np.diff(p, axis=0)
     t, u = meetings(start, step, start, step)
     later = np.triu(np.ones(t.shape, dtype=bool), k=2)
@@ -244,14 +246,14 @@ def _candidates(path: Form, legs: int) -> list[tuple[float, float]]:
     return [(s[a] + t[a, b] / n, s[b] + u[a, b] / n) for a, b in zip(i, j, strict=True)]
 
 
-def _newton(path: Form, pair: Floats, legs: int) -> Floats | None:
+def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:
     """Parameters of the crossing near a pair, or None: it leaves the legs, or is none."""
     leg = np.clip(np.floor(pair), 0, legs - 1)
     h = 1e-6
     for _ in range(20):
         inner = np.clip(pair, leg + h, leg + 1 - h)
-        ahead, behind = path(inner + h * (1 - 1e-9)), path(inner - h * (1 - 1e-9))
-        (u, v), (a, b) = (ahead - behind) / (2 * h), path(np.clip(pair, leg, leg + 1 - 1e-12))
+        ahead, behind = curve(inner + h * (1 - 1e-9)), curve(inner - h * (1 - 1e-9))
+        (u, v), (a, b) = (ahead - behind) / (2 * h), curve(np.clip(pair, leg, leg + 1 - 1e-12))
         matrix = np.stack([u, -v], axis=1)
         if abs(np.linalg.det(matrix)) <= SAME_PLACE * np.linalg.norm(u) * np.linalg.norm(v):
             return None  # along itself, or touching: no crossing

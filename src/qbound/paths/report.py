@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from qbound.paths.encounters import (
     Crossing,
     Margin,
-    Place,
+    ParameterPoint,
     boundaries,
     least_margin,
     lowest,
@@ -30,23 +30,23 @@ class PathReport:
         Coordinates that the tool moves in; None where it keeps to no plane.
     crossings : list of Crossing, or None
         Where the tool crosses its own path; None without a plane.
-    singular : list of Place, or None
+    singular : list of ParameterPoint, or None
         Where the path crosses the singular curve; None where there is none.
     margins : list of Margin
         The smallest of every boundary.
     largest_reach : float
         Largest distance of the tool from the first joint's frame; length.
-    farthest : Place
+    farthest : ParameterPoint
         Where it has that.
     """
 
     route: Route
     plane: tuple[int, int] | None
     crossings: list[Crossing] | None
-    singular: list[Place] | None
+    singular: list[ParameterPoint] | None
     margins: list[Margin]
     largest_reach: float
-    farthest: Place
+    farthest: ParameterPoint
 
     @property
     def feasible(self) -> bool:

@@ -135,7 +135,7 @@ def nth_component(region: Region, k: int) -> Component:
 def stretched_length(robot: Robot) -> float:
     """Return the length of the arm stretched out: all links, longest slides, and the tool."""
     links = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
-    slides = [max(map(abs, j.limits)) for j in robot.joints if j.kind == "prismatic" and j.limits]
+    slides = [joint.farthest for joint in robot.joints]
     return sum(links) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 

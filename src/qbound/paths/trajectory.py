@@ -58,7 +58,7 @@ def joint_speeds(robot: Robot) -> list[float]:
     return [float(joint.velocity) for joint in robot.joints if joint.velocity is not None]
 
 
-def timed(walk: Traversal, speeds: ArrayLike) -> Trajectory:
+def timed(path: Traversal, speeds: ArrayLike) -> Trajectory:
     """Run a path as fast as the joints' speeds allow, with a rest at every stop.
 
     Between two rows the joints move in proportion, so that the path stays where it is; one of
@@ -73,12 +73,12 @@ def timed(walk: Traversal, speeds: ArrayLike) -> Trajectory:
         Largest speed of each joint, above zero.
     """
     limit = np.asarray(speeds, dtype=float)
-    moved = np.abs(np.diff(walk.q, axis=0)).max(axis=1) > 0
+    moved = np.abs(np.diff(path.q, axis=0)).max(axis=1) > 0
     rows = np.concatenate([[0], np.nonzero(moved)[0] + 1])
-    q = walk.q[rows]
+    q = path.q[rows]
     step = np.diff(q, axis=0)
     shortest = (np.abs(step) / limit).max(axis=1)
-    rests = np.isin(walk.s[rows], np.arange(len(walk.legs) + 1))
+    rests = np.isin(path.s[rows], np.arange(len(path.legs) + 1))
     rests[[0, -1]] = True
     # From rest to rest the top speed is 1.5 of the mean, from rest to full speed twice the mean.
     factor = np.array([1.0, 2.0, 1.5])[rests[:-1].astype(int) + rests[1:]]
@@ -95,7 +95,7 @@ def stretched(trajectory: Trajectory, factor: float) -> Trajectory:
     return Trajectory(trajectory.t * factor, trajectory.q, velocity, trajectory.rows)
 
 
-def lasting(robot: Robot, walk: Traversal, duration: float) -> Trajectory:
+def lasting(robot: Robot, path: Traversal, duration: float) -> Trajectory:
     """Run a path in a given time, s; joints without a stated speed may run as fast as it takes.
 
     Raises
@@ -106,7 +106,7 @@ def lasting(robot: Robot, walk: Traversal, duration: float) -> Trajectory:
     if not (duration > 0 and math.isfinite(duration)):
         raise ValueError(f"a duration must be above 0 s, found {duration:g}")
     speeds = [joint.velocity or math.inf for joint in robot.joints]
-    fastest = timed(walk, [speed if math.isfinite(speed) else 1.0 for speed in speeds])
+    fastest = timed(path, [speed if math.isfinite(speed) else 1.0 for speed in speeds])
     if len(fastest.t) < 2:
         return fastest
     result = stretched(fastest, duration / fastest.t[-1])
@@ -131,7 +131,7 @@ def ros_trajectory(robot: Robot, trajectory: Trajectory) -> dict[str, Any]:
 
     Times are rounded up to nanoseconds and rise strictly.
     """
-    unit = [1.0 if kind == "revolute" else METRES[robot.length_unit] for kind in robot.kinds]
+    unit = [1.0 if joint.turns else METRES[robot.length_unit] for joint in robot.joints]
     steps = np.ceil(np.diff(trajectory.t) * 1e9).astype(np.int64)
     times = [0, *np.cumsum(np.maximum(steps, 1)).tolist()]
     rows = zip(times, trajectory.q * unit, trajectory.velocity * unit, strict=True)
@@ -172,7 +172,7 @@ def _top_speeds(means: Floats, velocity: Floats) -> Floats:
     return np.asarray(np.maximum(np.maximum(np.abs(a), np.abs(end)), np.abs(inner)))
 
 
-def row_times(walk: Traversal, trajectory: Trajectory) -> Floats:
+def row_times(path: Traversal, trajectory: Trajectory) -> Floats:
     """Return the time of every row of a traversal, s; a row without motion has that before it."""
-    index = np.searchsorted(trajectory.rows, np.arange(len(walk.q)), side="right")
+    index = np.searchsorted(trajectory.rows, np.arange(len(path.q)), side="right")
     return np.asarray(trajectory.t[index - 1])

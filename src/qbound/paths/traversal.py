@@ -63,7 +63,7 @@ class Traversal:
     reach : ndarray, shape (m,)
         Distance of the tool from the origin of the first joint's frame; length.
     s : ndarray, shape (m,)
-        Place of each row on the path: legs behind it, plus the parameter on its own.
+        ParameterPoint of each row on the path: legs behind it, plus the parameter on its own.
     legs : tuple of Leg
     deviation : float
         The tool's path is nowhere farther than this from the polyline through `tool`; length.
@@ -208,10 +208,10 @@ def _bend(robot: Robot, a: Floats, b: Floats) -> float:
     for joint, low, high in zip(robot.joints, a, b, strict=True):
         if carrier == point.frame:
             break
-        slide = joint.mount @ joint.axis if joint.kind == "prismatic" else np.zeros(3)
+        slide = np.zeros(3) if joint.turns else joint.mount @ joint.axis
         ends = (np.linalg.norm(joint.origin + q * slide) for q in (low, high))
         bend += turning**2 * float(max(ends))
-        if joint.kind == "revolute":
+        if joint.turns:
             turning += abs(high - low)
         else:
             bend += 2 * turning * abs(high - low)

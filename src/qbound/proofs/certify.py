@@ -1,7 +1,7 @@
 """Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
 
-The search here is floating point and is trusted by nobody: what it finds is written down, and the
-checkers (`check`, `check_arb`) decide. See `minorant` for the bound, `statements` for the sets.
+The search here is floating point and untrusted: what it finds is written down, and the checkers
+(`check`, `check_arb`) decide. See `forms.bending` for the bound, `statements` for the sets.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound import check
-from qbound.boundary.functions import clearance, margin_of
+from qbound.boundary.functions import clearance
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
@@ -27,13 +27,14 @@ from qbound.model.robotfile import parse_robot
 from qbound.proofs.minorant import Bound
 from qbound.proofs.statements import (
     Statement,
-    asked_for_more,
     decimal,
     home_vertices,
     scaled_polygon,
     units,
+    with_extra_clearance,
 )
 from qbound.proofs.verdict import Verdict
+from qbound.proofs.witness import Witness, beyond_limits, deepest, witness
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -62,28 +63,15 @@ class Search:
         Cells that are undecided.
     part_left : float
         Their part of the whole set.
-    cell, q : int, ndarray, or None
-        The cell and the configuration where the form is negative.
+    violation : (int, ndarray) or None
+        A cell, and a configuration in it where the form is negative; rad or length.
     """
 
     trees: tuple[str, ...]
     leaves: int
     left: int
     part_left: float
-    cell: int | None = None
-    q: Floats | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Witness:
-    """A configuration of the set, in the file's units, and what it violates by how much.
-
-    The depth is a length for a boundary, in the joint's unit of the file for a limit.
-    """
-
-    boundary: str
-    q: tuple[float, ...]
-    depth: float
+    violation: tuple[int, Floats] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +122,7 @@ def certify(
     robot = parse_robot(tomllib.loads(text))
     cells = check.read_cells(statement)
     _check_margin(statement["margin"])
-    beyond = _beyond_limits(text, cells)
+    beyond = beyond_limits(text, cells)
     if beyond is not None:
         return _refuted(text, robot, statement, cells, beyond, {})
     for few in (min(most, FIRST_LOOK), most):
@@ -143,8 +131,9 @@ def certify(
         if verdict is not Verdict.UNDECIDED:
             break
     if verdict is Verdict.REFUTED:
-        deepest = _deepest(robot, statement, cells, searches)
-        return _refuted(text, robot, statement, cells, deepest, searches)
+        violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
+        evidence = deepest(robot, statement, cells, violated)
+        return _refuted(text, robot, statement, cells, evidence, searches)
     if verdict is Verdict.UNDECIDED:
         return Certificate(verdict, "", _left(searches), searches)
     proof = {name: list(found.trees) for name, found in searches.items()}
@@ -153,7 +142,7 @@ def certify(
 
 def _verdict(searches: dict[str, Search]) -> Verdict:
     """Return the answer of searches, which nothing has confirmed."""
-    refuted = any(found.q is not None for found in searches.values())
+    refuted = any(found.violation is not None for found in searches.values())
     return Verdict.of(not any(found.left for found in searches.values()), refuted)
 
 
@@ -166,7 +155,7 @@ def _refuted(
     searches: dict[str, Search],
 ) -> Certificate:
     answer = _confirmed(_content(text, statement, Verdict.REFUTED, **evidence), searches)
-    return replace(answer, witness=_witness(robot, statement, cells, evidence))
+    return replace(answer, witness=witness(robot, statement, cells, evidence))
 
 
 def search_all(
@@ -194,8 +183,8 @@ def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_o
         centres = form(cells.mean(axis=1))
         if len(cells) and centres.min() < -slack:
             worst, left = int(centres.argmin()), float(parts.sum() / forest.size)
-            q = cells[worst].mean(axis=0)
-            return Search((), leaves, len(cells), left, int(roots[worst]), q)
+            violation = int(roots[worst]), cells[worst].mean(axis=0)
+            return Search((), leaves, len(cells), left, violation)
         proved = bound(form, cells) > slack
         forest.close(numbers[proved])
         leaves, opened = leaves + int(proved.sum()), opened + len(cells)
@@ -261,116 +250,17 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 
 def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     """Forms of the boundaries in use, by name; without those that nothing can violate."""
-    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
+    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
     return {
-        wall.name: clearance(wider, wall)
-        for wall in wider.boundaries
-        if wall.used and wider.least_distance(wall) != 0
-    }
-
-
-def _beyond_limits(text: str, cells: Sequence[Any]) -> dict[str, Any] | None:
-    """Return the corner that is farthest beyond a limit of a joint, if any, as a witness."""
-    joints = check.Robot(text).joints
-    worst = None
-    for j, joint in enumerate(joints):
-        for side, sign, end in zip(
-            ("lower", "upper"), (1, -1), joint.get("limits", ()), strict=False
-        ):
-            for i, cell in enumerate(cells):
-                for k, q in enumerate(cell):
-                    depth = sign * (check.number(end) - q[j])
-                    if depth > 0 and (worst is None or depth > worst[0]):
-                        worst = depth, f"{joint['name']}.{side}", i, k, len(cell)
-    if worst is None:
-        return None
-    _, name, i, k, corners = worst
-    return {
-        "boundary": name,
-        "cell": i,
-        "weights": ["1" if c == k else "0" for c in range(corners)],
+        boundary.name: clearance(wider, boundary)
+        for boundary in wider.boundaries
+        if boundary.used and wider.least_distance(boundary) != 0
     }
 
 
 def _check_margin(margin: str) -> None:
     if check.number(margin) < 0:
         raise ValueError(f"a margin of {margin}: wanted a length of 0 or more")
-
-
-# --- a witness ------------------------------------------------------------------------------------
-
-
-def _deepest(
-    robot: Robot, statement: Statement, cells: Sequence[Any], searches: dict[str, Search]
-) -> dict[str, Any]:
-    """Follow each violated boundary to where it is violated most: the deepest is the witness."""
-    corners = np.array(cells, dtype=float) * units(robot)
-    wider = asked_for_more(robot, float(Fraction(statement["margin"])))
-    found = []
-    for name, result in searches.items():
-        if result.cell is not None and result.q is not None:
-            form = clearance(wider, wider.boundary(name))
-            cell, weights = _lowest(form, corners, result.cell, result.q)
-            value = float(form(weights @ corners[cell]))
-            found.append((_depth(wider, name, value), name, cell, weights))
-    _, name, cell, weights = max(found, key=lambda item: item[0])
-    return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
-
-
-def _witness(
-    robot: Robot, statement: Statement, cells: Sequence[Any], evidence: dict[str, Any]
-) -> Witness:
-    """Read the configuration and its depth out of what the file says."""
-    corners = np.array(cells[evidence["cell"]], dtype=float)
-    q = np.array(evidence["weights"], dtype=float) @ corners
-    name, wider = evidence["boundary"], asked_for_more(robot, float(Fraction(statement["margin"])))
-    if any(wall.name == name for wall in wider.boundaries):
-        form = clearance(wider, wider.boundary(name))
-        return Witness(name, tuple(q), _depth(wider, name, float(form(q * units(robot)))))
-    joint, _, side = name.rpartition(".")
-    j = [other.name for other in robot.joints].index(joint)
-    limits = robot.joints[j].limits or (q[j], q[j])
-    end = limits[side == "upper"] / units(robot)[j]
-    return Witness(name, tuple(q), abs(float(q[j] - end)))
-
-
-def _depth(robot: Robot, name: str, value: float) -> float:
-    """How far a boundary is violated, length."""
-    return -float(margin_of(robot, robot.boundary(name), value))
-
-
-def _lowest(form: HarmonicForm, cells: Floats, cell: int, q: Floats) -> tuple[int, Floats]:
-    """Return the cell, and the weights of its corners, where a form is lowest, by a local search.
-
-    In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
-    the search starts at the centres and, in one cell, at a configuration that is known to be low.
-    """
-    count, k = cells.shape[:2]
-    i, j = np.triu_indices(k, 1)
-    tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
-    lowest, rows = np.full((count, k), 1 / k), np.arange(count)
-    lowest[cell] = _weights(cells[cell], q)
-    for size in 0.75 ** np.arange(80):
-        near = (1 - size) * lowest[:, None] + size * tries
-        around = np.concatenate([lowest[:, None], near], axis=1)
-        lowest = around[rows, form(around @ cells).argmin(axis=1)]
-    best = int(form(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
-    return best, lowest[best]
-
-
-def _weights(cell: Floats, q: Floats) -> Floats:
-    """Write a configuration of a cell as a mean of its corners."""
-    system = np.vstack([cell.T, np.ones(len(cell))])
-    weights = np.linalg.lstsq(system, np.append(q, 1), rcond=None)[0]
-    weights = np.maximum(weights, 0)
-    return np.asarray(weights / weights.sum())
-
-
-def _decimals(weights: Floats) -> list[str]:
-    """Round weights to decimals whose sum is 1."""
-    whole = [round(float(w) * 10**9) for w in weights]
-    whole[int(np.argmax(weights))] += 10**9 - sum(whole)
-    return [f"{w // 10**9}.{w % 10**9:09}" for w in whole]
 
 
 # --- the file -------------------------------------------------------------------------------------

@@ -81,10 +81,10 @@ class Groups:
     label: tuple[Ints, ...]
     edges: Ints
 
-    def holding(self, paving: Paving, q: ArrayLike) -> set[int]:
+    def containing(self, paving: Paving, q: ArrayLike) -> set[int]:
         """Return the labels of all groups in which a configuration may lie."""
         found = (
-            label[paving.holding(c, q)] for c, label in zip(self.cells, self.label, strict=True)
+            label[paving.containing(c, q)] for c, label in zip(self.cells, self.label, strict=True)
         )
         return {int(x) for labels in found for x in labels}
 
@@ -120,7 +120,7 @@ def connection(
         spent = 2 * len(paving.undecided) > most or paving.level >= DEEPEST
         last = spent or not len(paving.undecided)
         if last or paving.level % len(problem.kinds) == 0:
-            found = _judged(paving, one, other)
+            found = _classify(paving, one, other)
             if last or found.verdict is not Verdict.UNDECIDED:
                 return found
         paving = paving.refined()
@@ -139,16 +139,16 @@ def inner_groups(paving: Paving) -> Groups:
 def separated(paving: Paving, one: ArrayLike, other: ArrayLike) -> bool:
     """Tell whether a paving proves that no feasible path joins two configurations."""
     groups = outer_groups(paving)
-    return not groups.holding(paving, one) & groups.holding(paving, other)
+    return not groups.containing(paving, one) & groups.containing(paving, other)
 
 
-def wall(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
+def separating_cells(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
     """Return the infeasible cells that enclose the group of a configuration: what separates it.
 
     Every cell that touches the group and is not of it is among them.
     """
     groups = outer_groups(paving)
-    held = groups.holding(paving, q)
+    held = groups.containing(paving, q)
     own = np.concatenate([np.isin(label, list(held)) for label in groups.label])
     everything = (*groups.cells, *paving.infeasible)
     edges = _touching(everything, _circles(paving), corners=True)
@@ -169,7 +169,7 @@ def _verdicts(paving: Paving, q: ArrayLike) -> set[Verdict]:
     return words
 
 
-def _judged(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
+def _classify(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
     """Return what a paving proves of two configurations that it does not prove infeasible."""
     if separated(paving, one, other):
         return Connection(Verdict.REFUTED, paving)
@@ -259,7 +259,7 @@ def _path(paving: Paving, one: Floats, other: Floats) -> Floats | None:
     chain = _chain(groups, *(_numbers(paving, groups, q) for q in (one, other)))
     if not chain:
         return None
-    places = zip(*map(paving.room.places, groups.cells), strict=True)
+    places = zip(*map(paving.bounds.places, groups.cells), strict=True)
     low, high = (np.concatenate(ends)[chain] for ends in places)
     centres, circles = (low + high) / 2, _circles(paving)
     corners = [one]
@@ -274,7 +274,7 @@ def _path(paving: Paving, one: Floats, other: Floats) -> Floats | None:
 
 def _numbers(paving: Paving, groups: Groups, q: Floats) -> Ints:
     """Return the numbers of the feasible cells that may hold a configuration."""
-    return np.flatnonzero(np.concatenate([paving.holding(c, q) for c in groups.cells]))
+    return np.flatnonzero(np.concatenate([paving.containing(c, q) for c in groups.cells]))
 
 
 def _chain(groups: Groups, ones: Ints, others: Ints) -> list[int]:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import ball, balls, precision, turns
-from qbound.proofs.dyadic import Cells, Room
+from qbound.proofs.dyadic import BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
 
@@ -122,14 +122,16 @@ def crossings(problem: ExactProblem, *, within: bool = False) -> Crossings:
     with precision(BITS):
         zeros, undecided = pair_zeros(problem, problem.forms, pairs, within=within)
         names = [(problem.names[i], problem.names[j]) for i, j in pairs]
-        points = [judged(problem, q, names[p], pairs[p]) for p, q in zeros]
+        points = [classify(problem, q, names[p], pairs[p]) for p, q in zeros]
         open_names = [" and ".join(names[p]) for p in sorted(undecided)]
         for number, side in enumerate(sides(problem), start=len(problem.names)):
             for i, name in enumerate(problem.names):
                 roots = side_roots(problem, i, side)
                 if roots is None:
                     open_names.append(f"{name} and {side.name}")
-                points += [judged(problem, q, (name, side.name), (i, number)) for q in roots or ()]
+                points += [
+                    classify(problem, q, (name, side.name), (i, number)) for q in roots or ()
+                ]
         points += _corners(problem)
     return Crossings(tuple(points), tuple(open_names))
 
@@ -148,7 +150,7 @@ def folds(problem: ExactProblem, *, within: bool = False) -> Crossings:
         stacked = HarmonicForm(forms, problem.kinds)
         zeros, undecided = pair_zeros(problem, stacked, pairs, within=within)
         names = [(problem.names[i], f"d{problem.names[i]}/dq2") for i, _ in pairs]
-        points = [judged(problem, q, names[p], pairs[p][:1]) for p, q in zeros]
+        points = [classify(problem, q, names[p], pairs[p][:1]) for p, q in zeros]
     return Crossings(tuple(points), tuple(names[p][0] for p in sorted(undecided)))
 
 
@@ -213,20 +215,20 @@ def pair_zeros(
     undecided : set of int
         Pairs for which the list is not proved complete.
     """
-    room, work = Room(forms, problem.ends), [_Pair(forms, ij) for ij in pairs]
+    bounds, work = BoxBounds(forms, problem.ends), [_Pair(forms, ij) for ij in pairs]
     circles = [r is None for r in problem.ranges]
     ij = np.array(pairs, dtype=np.int64).reshape(-1, 2)
     watched = len(problem.names) if within else 0
-    which, cells = np.arange(len(pairs)), room.whole()[np.zeros(len(pairs), dtype=np.int64)]
+    which, cells = np.arange(len(pairs)), bounds.whole()[np.zeros(len(pairs), dtype=np.int64)]
     undecided: set[int] = set()
     while len(cells):
-        keep = _may_vanish(room, cells, ij[which], watched)
+        keep = _may_vanish(bounds, cells, ij[which], watched)
         which, cells = which[keep], cells[keep]
         if cells.level >= FIRST_TRY:
-            undecided |= _hopeless(work, which, cells.level)
+            undecided |= _abandoned(work, which, cells.level)
             keep = np.array(
                 [
-                    p not in undecided and not work[p].settle(room.box(cells, k), circles)
+                    p not in undecided and not work[p].settle(bounds.box(cells, k), circles)
                     for k, p in enumerate(which)
                 ],
                 dtype=bool,
@@ -241,17 +243,17 @@ def pair_zeros(
     return zeros, undecided
 
 
-def _may_vanish(room: Room, cells: Cells, ij: Ints, watched: int) -> NDArray[np.bool_]:
+def _may_vanish(bounds: BoxBounds, cells: Cells, ij: Ints, watched: int) -> NDArray[np.bool_]:
     """Tell on which cells both forms of a pair may vanish, and no watched form is negative."""
     found: Any = np.unique(cells.index, axis=0, return_inverse=True)
     different, back = found
-    low, high = room.bounds(Cells(cells.level, different))
-    may = (low <= 0) & (high >= 0)
+    low, high = bounds.bounds(Cells(cells.level, different))
+    may = ~((low > 0) | (high < 0))
     outside = np.asarray((high[:, :watched] < 0).any(axis=1))[back]
     return np.asarray(may[back[:, None], ij].all(axis=1) & ~outside)
 
 
-def _hopeless(work: Sequence[_Pair], which: Ints, level: int) -> set[int]:
+def _abandoned(work: Sequence[_Pair], which: Ints, level: int) -> set[int]:
     """Return the pairs to give up: proportional forms, too many pieces, or too small ones."""
     left, counts = np.unique(which, return_counts=True)
     return {
@@ -312,7 +314,7 @@ def _between(q: arb, low: arb, high: arb) -> bool | None:
     return False if q < low or q > high else None
 
 
-def judged(
+def classify(
     problem: ExactProblem, q: Balls, names: tuple[str, str], curves: Sequence[int]
 ) -> Crossing:
     """Attach the sign of the forms that do not vanish at a point by its making."""
@@ -398,7 +400,7 @@ def _corners(problem: ExactProblem) -> list[Crossing]:
     """Return the points where two limits meet."""
     ends = list(enumerate(sides(problem), start=len(problem.names)))
     return [
-        judged(problem, (one.value, other.value), (one.name, other.name), (i, j))
+        classify(problem, (one.value, other.value), (one.name, other.name), (i, j))
         for i, one in ends
         for j, other in ends
         if (one.joint, other.joint) == (0, 1)

@@ -10,8 +10,8 @@ At a cell's centre m, for any displacement d within it,
 with :math:`M_{jk}` a bound of the second derivative over the whole range. The sums are NumPy's
 doubles. Cosines and sines are not: NumPy promises nothing about their last digits, so each is
 computed as a ball, once for each of the few coordinates that the centres have, and rounded. What is
-left are products and sums of doubles; their rounding is bounded beforehand (`Room.slack`) and taken
-off.
+left are products and sums of doubles; their rounding is bounded beforehand (`BoxBounds.slack`) and
+taken off.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Cells:
 
 
 @dataclass(eq=False)
-class Room:
+class BoxBounds:
     """Ranges of joints, cut into dyadic cells, with forms to bound over these.
 
     Parameters
@@ -89,6 +89,11 @@ class Room:
         Coefficients exact or balls.
     ends : sequence of (arb, arb)
         Lower and upper end of each joint's range.
+
+    Raises
+    ------
+    ValueError
+        If a coefficient is beyond the range of a double: its bounds would be no numbers.
     """
 
     forms: HarmonicForm
@@ -107,6 +112,8 @@ class Room:
             )
             table = exact.astype(float)
             lost = np.vectorize(above, otypes=[float])(abs(exact - table))
+        if not (np.isfinite(table).all() and np.isfinite(self.curvature).all()):
+            raise ValueError("a boundary has coefficients beyond the range of a double")
         self.table = HarmonicForm(table, kinds)
         # Rounded factors, products and sums: each errs by 2^-53 of its size; 2^-51 leaves room for
         # other rounding modes and for the sizes' own rounding.

@@ -173,8 +173,8 @@ def _from_doubles(robot: Robot) -> Robot:
     points = tuple(
         replace(p, at=_rationals(p.at), radius=_rational(p.radius)) for p in robot.points
     )
-    walls = tuple(b.with_numbers(vars(b), _rational, _rationals) for b in robot.boundaries)
-    return replace(robot, joints=joints, points=points, boundaries=walls)
+    boundaries = tuple(b.with_numbers(vars(b), _rational, _rationals) for b in robot.boundaries)
+    return replace(robot, joints=joints, points=points, boundaries=boundaries)
 
 
 # --- from a file ----------------------------------------------------------------------------------
@@ -189,8 +189,8 @@ def _from_table(robot: Robot, table: Table) -> Robot:
         for p, row in zip(robot.points, table["point"], strict=True)
     )
     rows = zip(robot.boundaries, table.get("boundary", ()), strict=True)
-    walls = tuple(boundary.with_numbers(row, _rational, _unit) for boundary, row in rows)
-    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=walls)
+    boundaries = tuple(boundary.with_numbers(row, _rational, _unit) for boundary, row in rows)
+    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=boundaries)
 
 
 def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:

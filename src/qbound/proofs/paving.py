@@ -2,7 +2,7 @@
 
 A cell is feasible where every form is positive all over it, infeasible where one form is negative
 all over it. The region lies between the inner paving (feasible cells) and the outer one (feasible
-and undecided cells); the undecided volume is a number, not a hope. Any number of joints.
+and undecided cells); the undecided volume is measured. Any number of joints.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.proofs.balls import ball, below, precision
-from qbound.proofs.dyadic import BITS, DEEPEST, Cells, Room
+from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
 
@@ -34,7 +34,7 @@ class Paving:
     Attributes
     ----------
     problem : ExactProblem
-    room : Room
+    bounds : BoxBounds
     feasible, infeasible : tuple of Cells
         One entry a size. Every form is positive on every closed feasible cell; on every closed
         infeasible cell some form is negative throughout.
@@ -43,7 +43,7 @@ class Paving:
     """
 
     problem: ExactProblem
-    room: Room
+    bounds: BoxBounds
     feasible: tuple[Cells, ...]
     infeasible: tuple[Cells, ...]
     undecided: Cells
@@ -77,7 +77,7 @@ class Paving:
     def volume(self, part: Fraction) -> arb:
         """Return a part of the range in the product of the joints' units, as a ball."""
         with precision(BITS):
-            whole = prod(high - low for low, high in self.room.ends)
+            whole = prod(high - low for low, high in self.bounds.ends)
             return ball(whole * part.numerator) / part.denominator
 
     def refined(self) -> Paving:
@@ -108,9 +108,9 @@ class Paving:
             (Verdict.REFUTED, self.infeasible),
             (Verdict.UNDECIDED, (self.undecided,)),
         )
-        return {word for word, cells in groups if any(self.holding(c, q).any() for c in cells)}
+        return {word for word, cells in groups if any(self.containing(c, q).any() for c in cells)}
 
-    def holding(self, cells: Cells, q: ArrayLike) -> NDArray[np.bool_]:
+    def containing(self, cells: Cells, q: ArrayLike) -> NDArray[np.bool_]:
         """Tell which closed cells may hold a configuration; all that do are among them."""
         inside = np.ones(len(cells), dtype=bool)
         for j, value in enumerate(np.asarray(q, dtype=float).tolist()):
@@ -126,7 +126,7 @@ class Paving:
     def _places(self, joint: int, value: float, bits: int) -> tuple[int, int]:
         """Return the first and the last index of cells that may hold a joint value."""
         with precision(BITS):
-            low, high = self.room.ends[joint]
+            low, high = self.bounds.ends[joint]
             place = (ball(value) - low) / (high - low) * 2**bits
             ends = place.lower().ceil().unique_fmpz(), place.upper().floor().unique_fmpz()
         if None in ends:  # so large that rounding spans whole turns: it may lie anywhere
@@ -164,21 +164,21 @@ def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Pav
 def start(problem: ExactProblem) -> Paving:
     """Return the paving of one cell: the whole range."""
     with precision(BITS):
-        room = Room(problem.forms, problem.ends)
-        for (low, high), names in zip(room.ends, problem.limits, strict=True):
+        bounds = BoxBounds(problem.forms, problem.ends)
+        for (low, high), names in zip(bounds.ends, problem.limits, strict=True):
             if not below(high - low) > 0:
                 raise ValueError(f"{names[0]} and {names[1]}: the range is empty")
-    empty = Paving(problem, room, (), (), room.whole())
-    return _sorted(empty, room.whole())
+    empty = Paving(problem, bounds, (), (), bounds.whole())
+    return _sorted(empty, bounds.whole())
 
 
 def _sorted(paving: Paving, cells: Cells) -> Paving:
     """Sort new cells into a paving; they replace its undecided ones."""
-    low, high = paving.room.bounds(cells)
+    low, high = paving.bounds.bounds(cells)
     feasible, infeasible = (low > 0).all(axis=1), (high < 0).any(axis=1)
     return Paving(
         paving.problem,
-        paving.room,
+        paving.bounds,
         (*paving.feasible, *_some(cells[feasible])),
         (*paving.infeasible, *_some(cells[infeasible])),
         cells[~feasible & ~infeasible],

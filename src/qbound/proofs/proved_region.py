@@ -28,9 +28,9 @@ from qbound.proofs.crossings import (
     Crossing,
     Crossings,
     Side,
+    classify,
     crossings,
     folds,
-    judged,
     placed_at,
     side_roots,
     sides,
@@ -322,7 +322,7 @@ class _Prover:
         name, problem = self._name(run.curve), self.problem
         if run.sign and not Curve(problem, run).is_graph():
             raise Unproved(f"{name}: a run is not proved to be a graph")
-        if judged(problem, run.middle, (name, name), (run.curve,)).others is not Verdict.PROVED:
+        if classify(problem, run.middle, (name, name), (run.curve,)).others is not Verdict.PROVED:
             raise Unproved(f"{name}: a run is not proved to be feasible")
         if not on_the_left(problem, run):
             raise Unproved(f"{name}: the region is not on the left of a run")
@@ -340,7 +340,7 @@ class _Prover:
         """
         if not self.runs:
             middle = [sum(ends, start=ball(0)) / 2 + ball(LINE) for ends in self.problem.ends]
-            word = judged(self.problem, (middle[0], middle[1]), ("", ""), ()).others
+            word = classify(self.problem, (middle[0], middle[1]), ("", ""), ()).others
             if word is not (Verdict.PROVED if count else Verdict.REFUTED):
                 raise Unproved(f"{count} components without a boundary are proposed")
         for points in (self.points, self.folds):
@@ -370,7 +370,7 @@ class _Prover:
                 self._known_if_feasible(k, placed_at(side.joint, side.value, other.value))
 
     def _known_if_feasible(self, curve: int, q: Balls) -> None:
-        word = judged(self.problem, q, ("", ""), (curve,)).others
+        word = classify(self.problem, q, ("", ""), (curve,)).others
         if word is Verdict.UNDECIDED:
             raise Unproved(f"{self._name(curve)}: a point on a line is on two boundaries")
         if word is Verdict.PROVED:

@@ -8,9 +8,11 @@ from typing import Any
 from qbound.model.robot import Robot
 from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
-from qbound.proofs.certify import Certificate, Witness
-from qbound.proofs.connection import Connection, wall
+from qbound.proofs.certify import Certificate
+from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
+from qbound.proofs.verdict import Verdict
+from qbound.proofs.witness import Witness
 from qbound.version import __version__
 
 
@@ -27,7 +29,7 @@ def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
         "version": __version__,
         "volume": {"inner": below(inner), "outer": above(outer)},
         "undecided": float(paving.undecided_fraction),
-        "range": [[float(low), float(high)] for low, high in paving.room.ends],
+        "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
         "cells": {
             word: [{"level": c.level, "index": c.index.tolist()} for c in groups]
             for word, groups in _groups(paving).items()
@@ -63,7 +65,7 @@ def connection_document(
         "poses": poses,
         "answer": found.answer,
         "infeasible_poses": list(found.infeasible),
-        "wall": _wall(found, poses[0]) if found.answer == "separated" else None,
+        "wall": _separating_cells(found, poses[0]) if found.answer == "separated" else None,
         "path": None if found.path is None else found.path.tolist(),
         "cells": found.paving.cells,
         "level": found.paving.level,
@@ -83,9 +85,9 @@ def connection_line(found: Connection) -> str:
     return f"undecided after {cells}: the poses, or a passage between them, are too tight"
 
 
-def _wall(found: Connection, pose: list[float]) -> list[dict[str, Any]]:
+def _separating_cells(found: Connection, pose: list[float]) -> list[dict[str, Any]]:
     """Return the infeasible cells around the first pose, as boxes of joint values."""
-    places = [found.paving.room.places(cells) for cells in wall(found.paving, pose)]
+    places = [found.paving.bounds.places(cells) for cells in separating_cells(found.paving, pose)]
     return [
         {"from": low.tolist(), "to": high.tolist()}
         for lows, highs in places
@@ -97,7 +99,7 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
     """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
     if answer.witness is not None:
         yield _depth(robot, answer.witness)
-    elif answer.verdict == "proved":
+    elif answer.verdict is Verdict.PROVED:
         cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
         yield f"cells: {answer.leaves} ({cells})"
 

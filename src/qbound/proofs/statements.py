@@ -31,7 +31,7 @@ DIGITS = 12
 def units(robot: Robot) -> Floats:
     """Return the library's units (rad, length) in one unit of the file, for each joint."""
     angle = np.radians(1.0) if robot.angle_unit == "deg" else 1.0
-    return np.array([angle if kind == "revolute" else 1.0 for kind in robot.kinds])
+    return np.array([joint.scale(angle) for joint in robot.joints])
 
 
 def decimal(value: float) -> str:
@@ -180,7 +180,7 @@ def inner_polygon(
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
-    component = _home(asked_for_more(robot, inset), held)
+    component = _home(with_extra_clearance(robot, inset), held)
     loops = [_thinned(loop, per_arc) for loop in component.loops]
     return filled(
         [_distinct(_within_limits(robot, robot.with_held(loop, held or {}))) for loop in loops],
@@ -188,10 +188,10 @@ def inner_polygon(
     )
 
 
-def asked_for_more(robot: Robot, length: float) -> Robot:
+def with_extra_clearance(robot: Robot, length: float) -> Robot:
     """Return a robot whose every boundary asks for some more distance."""
-    walls = tuple(wall.with_extra_clearance(length) for wall in robot.boundaries)
-    return replace(robot, boundaries=walls)
+    boundaries = tuple(boundary.with_extra_clearance(length) for boundary in robot.boundaries)
+    return replace(robot, boundaries=boundaries)
 
 
 def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:

@@ -8,11 +8,11 @@ from fractions import Fraction
 
 from qbound.extras import require
 
-Place = tuple[Fraction, Fraction]
+Corner = tuple[Fraction, Fraction]
 Triangle = tuple[int, int, int]
 
 
-def triangulate(loops: Sequence[Sequence[Place]]) -> list[Triangle]:
+def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
     """Fill a polygon, convex or not, with or without holes, by triangles of its own corners.
 
     Parameters

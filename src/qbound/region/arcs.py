@@ -1,6 +1,6 @@
 """Arcs of a boundary, exact: places along them, and line integrals to machine precision.
 
-An arc is a walk along roots of one form (or one end of a joint's range), piece by piece between
+An arc runs along roots of one form (or one end of a joint's range), piece by piece between
 critical values. Along a piece the base is ``middle + half sin(angle)``: where a root folds back its
 square root is smooth in the angle.
 """
@@ -27,7 +27,7 @@ NODES: Final = (24, 48, 96, 192, 384, 768)
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Pieces of boundary, in the order in which they are walked.
+    """Pieces of boundary, in the order of the loop.
 
     Attributes
     ----------

@@ -1,9 +1,9 @@
-"""From cells to components and their boundaries: which cells hang together, and what encloses them.
+"""From cells to components: which cells are adjacent over an open interval, and what bounds them.
 
 Two neighbouring cells are joined across a critical line only over an open interval on which every
-form is positive on that line. The boundary of a component is walked with the component on the left:
-along the lower root of a cell, up or down a critical line where nothing is joined, back along the
-upper root.
+form is positive on that line. The boundary of a component is a set of loops of half-edges with the
+component on the left: along the lower root of a cell, up or down a critical line where nothing is
+joined, back along the upper root.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Line:
     joined: list[bool] = field(default_factory=list)
 
 
-class Complex:
+class CellComplex:
     """The cells of a decomposition and how they hang together."""
 
     def __init__(self, decomposition: Decomposition) -> None:
@@ -248,7 +248,7 @@ class Complex:
     # --- components -----------------------------------------------------------------------------
 
     def joins(self) -> Iterator[tuple[int, int, int, int]]:
-        """Yield left cell, right cell, and the base and lift turns between their sheets."""
+        """Yield left cell, right cell, and the base and lift turns between their windings."""
         for i, line in enumerate(self.lines):
             for e, joined in enumerate(line.joined):
                 a, b, v = line.left[e], line.right[e], self._middle(line, e)
@@ -257,7 +257,7 @@ class Complex:
                     yield a, b, int(self.wrapped and i == 0), lift
 
     def components(self) -> list[tuple[dict[int, tuple[int, int]], tuple[bool, bool]]]:
-        """Return each component: every cell's sheet (turns), and which joints it goes round."""
+        """Return each component: every cell's winding (turns), and which joints it goes round."""
         neighbours: dict[int, list[tuple[int, int, int]]] = {k: [] for k in range(len(self.cells))}
         for a, b, base, lift in self.joins():
             neighbours[a].append((b, base, lift))
@@ -272,28 +272,28 @@ class Complex:
     def _spread(
         self, start: int, neighbours: dict[int, list[tuple[int, int, int]]]
     ) -> tuple[dict[int, tuple[int, int]], tuple[bool, bool]]:
-        sheets = {start: (0, 0)}
+        windings = {start: (0, 0)}
         base_goes_round = lift_goes_round = False
         queue = [start]
         while queue:
             a = queue.pop()
             lift_goes_round |= self.whole[a]
             for b, base, lift in neighbours[a]:
-                sheet = sheets[a][0] + base, sheets[a][1] + lift
-                if b not in sheets:
-                    sheets[b] = sheet
+                winding = windings[a][0] + base, windings[a][1] + lift
+                if b not in windings:
+                    windings[b] = winding
                     queue.append(b)
-                base_goes_round |= sheets[b][0] != sheet[0]
-                lift_goes_round |= sheets[b][1] != sheet[1] and not self.whole[b]
-        return sheets, (base_goes_round, lift_goes_round)
+                base_goes_round |= windings[b][0] != winding[0]
+                lift_goes_round |= windings[b][1] != winding[1] and not self.whole[b]
+        return windings, (base_goes_round, lift_goes_round)
 
     # --- boundaries -----------------------------------------------------------------------------
 
     def loops(self, cells: Collection[int]) -> list[list[Step]]:
-        """Return the closed walks that bound a component, the component on the left.
+        """Return the closed loops that bound a component, the component on the left.
 
         The half-edges round each cell are a cycle. Where two cells are joined over an element of a
-        line, each other's half-edge is the way past it: what is left are the walks. A hole shorter
+        line, each other's half-edge is the way past it: what is left are the loops. A hole shorter
         round than TOUCH is a point at which a form touches zero: it bounds nothing.
         """
         after = {
@@ -302,14 +302,14 @@ class Complex:
         left_over = {step: None for step in after if not self._joined(step)}
         loops = []
         while left_over:
-            walk = [next(iter(left_over))]
-            while (step := self._past_joined(after, walk[-1])) != walk[0]:
-                walk.append(step)
-            loops.append(walk)
-            for step in walk:
+            loop = [next(iter(left_over))]
+            while (step := self._past_joined(after, loop[-1])) != loop[0]:
+                loop.append(step)
+            loops.append(loop)
+            for step in loop:
                 del left_over[step]
         tiny = all(self._size(k) <= TOUCH for k in cells)
-        return [walk for walk in loops if tiny or sum(map(self._length, walk)) > TOUCH]
+        return [loop for loop in loops if tiny or sum(map(self._length, loop)) > TOUCH]
 
     def _cycles(self, k: int) -> list[list[Step]]:
         """Return the half-edges round a cell, the cell on the left; a whole one has two cycles."""

@@ -241,7 +241,7 @@ def _events(plane: Plane) -> list[Complexes]:
     """Return the univariate polynomials whose roots are critical, as stacks of equal length."""
     c = _univariate(plane.scaled, plane.base_kind)  # (m, 3 lift coefficients, length)
     lifts = plane.scaled[:, :, 1:].any(axis=(1, 2))
-    walls, c = c[~lifts, 0], c[lifts]  # a form without the lift is a wall across every fibre
+    fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
     c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
     i, j = np.triu_indices(len(c), k=1)
     if plane.lift_kind == "revolute":
@@ -255,7 +255,7 @@ def _events(plane: Plane) -> list[Complexes]:
     if plane.lift_range is not None:
         at = basis(plane.lift_kind, np.asarray(plane.lift_range) / plane.lift_unit)
         events += [np.einsum("j,mjl->ml", factor, c) for factor in at]
-    return [walls, *events]
+    return [fixed, *events]
 
 
 def _circle_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
@@ -385,7 +385,7 @@ def _horner(stack: Complexes, z: Complexes) -> Complexes:
 
 def _cells(plane: Plane, middles: Floats) -> list[Cell]:
     """Return the feasible cells over one base value inside each slab."""
-    slab, values, roots = _walls(plane, middles)
+    slab, values, roots = _fibre_roots(plane, middles)
     after, tops = np.arange(1, len(slab) + 1), np.append(values[1:], np.nan)
     if plane.lift_range is None:  # a circle closes: after its last root comes the first, a turn on
         edges = np.flatnonzero(np.diff(slab, prepend=-1, append=len(middles)))
@@ -401,7 +401,7 @@ def _cells(plane: Plane, middles: Floats) -> list[Cell]:
     return cells
 
 
-def _walls(plane: Plane, t: Floats) -> tuple[Ints, Floats, Ints]:
+def _fibre_roots(plane: Plane, t: Floats) -> tuple[Ints, Floats, Ints]:
     """Return what bounds cells over each base value, ascending: slab, value and root, (k, 3).
 
     They are the roots in the lift's range and its ends; on a circle without roots, its cut.

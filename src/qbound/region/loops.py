@@ -1,6 +1,6 @@
-"""From walks round components to labelled arcs, in the order of the joints.
+"""From loops round components to labelled arcs, in the order of the joints.
 
-A walk's steps are laid one behind the other, those on one branch of one boundary are merged to an
+A loop's steps are laid one behind the other, those on one branch of one boundary are merged to an
 arc, and the corners where two forms meet are brought onto both.
 """
 
@@ -17,37 +17,37 @@ from numpy.typing import NDArray
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis, basis_slope
 from qbound.region.arcs import Arc, Pieces
-from qbound.region.cells import Complex, Step
+from qbound.region.cells import CellComplex, Step
 from qbound.region.decomposition import Plane, Root
 from qbound.tolerances import TRANSVERSAL
 
 Floats = NDArray[np.float64]
 Item = TypeVar("Item")
 Label = tuple[str, int | None]
-Place = tuple[float, float]
-Sheets = Mapping[int, tuple[int, int]]
+BaseLift = tuple[float, float]
+Windings = Mapping[int, tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class Walk:
-    """A closed walk round a component, and where the component's cells lie.
+class BoundaryLoop:
+    """A closed loop round a component, and where the component's cells lie.
 
     Attributes
     ----------
     steps : list of Step
-    sheets : mapping of cell to (base turns, lift turns)
+    windings : mapping of cell to (base turns, lift turns)
     shift : ndarray, shape (2,)
         Added to base and lift values of all cells, rad.
     """
 
     steps: list[Step]
-    sheets: Sheets
+    windings: Windings
     shift: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class _Ring:
-    """A walk laid out: its pieces, and which of them make an arc of which label."""
+    """A loop laid out: its pieces, and which of them make an arc of which label."""
 
     pieces: Pieces
     spans: list[slice]
@@ -55,11 +55,11 @@ class _Ring:
 
 
 class Layout:
-    """Lays out the walks of one decomposition.
+    """Lays out the loops of one decomposition.
 
     Parameters
     ----------
-    cells : Complex
+    cells : CellComplex
     base : int
         Which joint is the base.
     names : sequence of str
@@ -69,14 +69,14 @@ class Layout:
     """
 
     def __init__(
-        self, cells: Complex, base: int, names: Sequence[str], limits: Sequence[tuple[str, str]]
+        self, cells: CellComplex, base: int, names: Sequence[str], limits: Sequence[tuple[str, str]]
     ) -> None:
         self.cells, self.plane, self.base = cells, cells.plane, base
         self.names, self.limits = names, limits
 
-    def arcs(self, walks: Sequence[Walk]) -> list[tuple[Arc, ...]]:
-        """Return the arcs of each walk, the component on their left."""
-        rings = [self._laid(walk) for walk in walks]
+    def arcs(self, loops: Sequence[BoundaryLoop]) -> list[tuple[Arc, ...]]:
+        """Return the arcs of each loop, the component on their left."""
+        rings = [self._laid(loop) for loop in loops]
         self._polish(rings)
         return [
             tuple(
@@ -86,29 +86,29 @@ class Layout:
             for ring in rings
         ]
 
-    def _laid(self, walk: Walk) -> _Ring:
-        steps = walk.steps
+    def _laid(self, loop: BoundaryLoop) -> _Ring:
+        steps = loop.steps
         labels = [self._label(step) for step in steps]
         first = next((i for i in range(len(steps)) if labels[i] != labels[i - 1]), 0)
         steps, labels = steps[first:] + steps[:first], labels[first:] + labels[:first]
-        if self.base == 1:  # seen with the joints in their order, the walk runs backwards
+        if self.base == 1:  # seen with the joints in their order, the loop runs backwards
             steps, labels = steps[::-1], labels[::-1]
         groups = [list(group) for _, group in groupby(range(len(steps)), key=labels.__getitem__)]
         spans = [slice(group[0], group[-1] + 1) for group in groups]
-        return _Ring(self._pieces(steps, walk), spans, [labels[span.start] for span in spans])
+        return _Ring(self._pieces(steps, loop), spans, [labels[span.start] for span in spans])
 
     # --- labels ---------------------------------------------------------------------------------
 
     def _label(self, step: Step) -> Label:
         if step.kind in ("up", "down"):
-            return self._wall_label(step)
+            return self._line_label(step)
         cell = self.cells.cells[step.cell]
         root = cell.lower if step.kind == "lower" else cell.upper
         if root.form < 0:
             return self.limits[1 - self.base][-1 - root.form], None
         return self.names[root.form], root.branch if self.plane.lift_kind == "revolute" else None
 
-    def _wall_label(self, step: Step) -> Label:
+    def _line_label(self, step: Step) -> Label:
         """Name a piece of a critical line: a limit of the base, or a form without the lift."""
         plane, t = self.plane, self.cells.abscissae[step.line]
         side = 0 if step.kind == "down" else 1
@@ -123,17 +123,17 @@ class Layout:
 
     # --- places ---------------------------------------------------------------------------------
 
-    def _pieces(self, steps: Sequence[Step], walk: Walk) -> Pieces:
-        """Lay the steps one behind the other; a walk round a joint changes sheets."""
+    def _pieces(self, steps: Sequence[Step], loop: BoundaryLoop) -> Pieces:
+        """Lay the steps one behind the other; a loop round a joint changes windings."""
         circles = self.plane.base_range is None, self.plane.lift_range is None
-        shift = walk.shift.tolist()
+        shift = loop.shift.tolist()
         roots: list[Root | None] = []
-        rows: list[tuple[Place, Place, Place]] = []
+        rows: list[tuple[BaseLift, BaseLift, BaseLift]] = []
         for step in steps:
             root, start, end = self._step(step)
             start, end = (start, end) if self.base == 0 else (end, start)
-            sheet = walk.sheets[step.cell]
-            turns = [TURN * sheet[j] + shift[j] for j in (0, 1)]
+            winding = loop.windings[step.cell]
+            turns = [TURN * winding[j] + shift[j] for j in (0, 1)]
             for j in (0, 1) if rows else ():
                 turns[j] += TURN * circles[j] * round((rows[-1][1][j] - start[j] - turns[j]) / TURN)
             places = [(x[0] + turns[0], x[1] + turns[1]) for x in (start, end)]
@@ -146,7 +146,7 @@ class Layout:
         ends = ends - np.roll(gaps, -1, axis=0) / 2
         return Pieces(self.plane, self.base, roots, starts + gaps / 2, ends, offsets)
 
-    def _step(self, step: Step) -> tuple[Root | None, Place, Place]:
+    def _step(self, step: Step) -> tuple[Root | None, BaseLift, BaseLift]:
         """Return what a step follows and where it starts and ends, in the cell's coordinates."""
         cell, ends = self.cells.cells[step.cell], self.cells.ends[step.cell]
         left, right = map(float, self.cells.abscissae[cell.slab : cell.slab + 2])

@@ -128,7 +128,7 @@ def feasible(robot: Robot, q: ArrayLike) -> NDArray[np.bool_]:
 
 def problem(robot: Robot) -> Problem:
     """State the paper's rule for the general engine: the box as limits, half-spaces as forms."""
-    region, cuts = box(robot), [wall for wall, _ in _cuts(robot)]
+    region, cuts = box(robot), [half_space for half_space, _ in _cuts(robot)]
     ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
     sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
     names = [(low.boundary, high.boundary) for low, high in sides]
@@ -170,9 +170,9 @@ def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bo
             line = ranges.T.copy()
             line[:, window.joint] = value
             curves.append((Bound(window.boundary, window.component, k), line))
-    for wall in robot.boundaries:
-        if isinstance(wall, HalfSpace):
-            curves += _wall_curves(robot, wall, ranges, n)
+    for half_space in robot.boundaries:
+        if isinstance(half_space, HalfSpace):
+            curves += _half_space_curves(robot, half_space, ranges, n)
     return curves
 
 
@@ -285,10 +285,10 @@ def _on_edge(
     """Yield the vertices on an edge in its order, the start included and the end not."""
     cuts = _cuts(robot)
     found = [(0.0, Vertex(start, (before, own)))]
-    for wall, form in cuts:
+    for half_space, form in cuts:
         for t in _crossings(form, start, end):
             q = start + t * (end - start)
-            found.append((t, Vertex(q, (own, _wall_bound(wall, form, q)))))
+            found.append((t, Vertex(q, (own, _half_space_bound(half_space, form, q)))))
     for _, vertex in sorted(found, key=lambda item: item[0]):
         if all(
             form(vertex.q) >= -ON_BOUNDARY * np.abs(form.coefficients).max() for _, form in cuts
@@ -314,22 +314,22 @@ def _roots_along_last(robot: Robot, boundary: str, q: ArrayLike) -> CircleRoots:
     return circle_roots(a, b, -c0)
 
 
-def _wall_curves(
-    robot: Robot, wall: HalfSpace, ranges: Floats, n: int
+def _half_space_curves(
+    robot: Robot, half_space: HalfSpace, ranges: Floats, n: int
 ) -> Iterator[tuple[Bound, Floats]]:
     """Yield both roots of a half-space over the first joint's range, once per turn in range."""
-    component = int(np.argmax(np.abs(wall.normal))) + 1
+    component = int(np.argmax(np.abs(half_space.normal))) + 1
     q1 = np.linspace(ranges[0, 0], ranges[0, 1], n)
     for _ in range(3):  # closer and closer to where the roots appear, so that a curve meets itself
-        there = np.isfinite(geometric_bounds(robot, wall.name, np.stack([q1, q1], -1))[0])
+        there = np.isfinite(geometric_bounds(robot, half_space.name, np.stack([q1, q1], -1))[0])
         fold = np.nonzero(there[1:] != there[:-1])[0]
         q1 = np.sort(np.concatenate([q1, np.linspace(q1[fold], q1[fold + 1], 42)[1:-1].ravel()]))
-    roots = _roots_along_last(robot, wall.name, np.stack([q1, q1], -1))
+    roots = _roots_along_last(robot, half_space.name, np.stack([q1, q1], -1))
     alpha = np.where(roots.count > 0, roots.alpha, np.nan)
     centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn
     for k, sign in ((LOWER, -1), (UPPER, +1)):
         for q2 in _copies_within(centre + sign * alpha, *ranges[1]):
-            yield Bound(wall.name, component, k), np.stack([q1, q2], -1)
+            yield Bound(half_space.name, component, k), np.stack([q1, q2], -1)
 
 
 def _copies_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
@@ -339,8 +339,8 @@ def _copies_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
         yield np.where((shifted >= low) & (shifted <= high), shifted, np.nan)
 
 
-def _wall_bound(wall: HalfSpace, form: HarmonicForm, q: Floats) -> Bound:
+def _half_space_bound(half_space: HalfSpace, form: HarmonicForm, q: Floats) -> Bound:
     """Upper bound of the last joint where the form falls along it, lower where it rises."""
-    component = int(np.argmax(np.abs(wall.normal))) + 1
+    component = int(np.argmax(np.abs(half_space.normal))) + 1
     falls = form.gradient(q)[-1] < 0
-    return Bound(wall.name, component, UPPER if falls else LOWER)
+    return Bound(half_space.name, component, UPPER if falls else LOWER)

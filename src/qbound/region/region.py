@@ -17,9 +17,9 @@ from qbound.forms.angles import TURN, nearest_turn
 from qbound.model.robot import Held, Robot
 from qbound.region import paper_rule
 from qbound.region.arcs import NODES, Arc, legendre, ordered
-from qbound.region.cells import Complex, Placed
+from qbound.region.cells import CellComplex, Placed
 from qbound.region.decomposition import Decomposition, Plane, decompose
-from qbound.region.loops import Layout, Sheets, Walk, behind
+from qbound.region.loops import BoundaryLoop, Layout, Windings, behind
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import QUADRATURE
 
@@ -56,7 +56,7 @@ class Component:
     wraps : tuple of two bool
         Whether it goes all the way round each joint.
     loops : tuple of tuple of Arc
-        The closed walks that bound it, the component on the left.
+        The closed loops that bound it, the component on the left.
     vertices : tuple of Vertex
         In the order of the loops.
     contains_home : bool
@@ -88,7 +88,7 @@ class Region:
     components : tuple of Component
     problem : Problem
         What was asked: robot, joints, held values, rule, forms.
-    cells : Complex
+    cells : CellComplex
         The cells that make them up.
     base : int
         Which joint is the base of the cells.
@@ -100,7 +100,7 @@ class Region:
 
     components: tuple[Component, ...]
     problem: Problem
-    cells: Complex
+    cells: CellComplex
     base: int
     owner: dict[int, int]
     empty_because: tuple[str, ...] = ()
@@ -272,20 +272,22 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     blocked = tuple(problem.names[k] for k, value in constants.items() if value <= 0)
     plane = Plane(inner.forms, inner.ranges, base)
     if blocked:
-        nothing = Complex(Decomposition(plane, np.array(plane.ends), []))
+        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), []))
         return Region((), problem, nothing, base, {}, blocked)
-    cells = Complex(decompose(plane))
+    cells = CellComplex(decompose(plane))
     if not cells.cells:
         return Region((), problem, cells, base, {}, _irreducible(inner, base))
     found = _measured(cells, problem, home, base)
-    walks = [[Walk(w, f.sheets, f.shift) for w in cells.loops(f.sheets)] for f in found]
-    loops = iter(Layout(cells, base, inner.names, inner.limits).arcs(list(chain(*walks))))
+    bounding = [
+        [BoundaryLoop(w, f.windings, f.shift) for w in cells.loops(f.windings)] for f in found
+    ]
+    loops = iter(Layout(cells, base, inner.names, inner.limits).arcs(list(chain(*bounding))))
     components = [
-        (_component(f, base, list(islice(loops, len(own)))), f.sheets)
-        for f, own in zip(found, walks, strict=True)
+        (_component(f, base, list(islice(loops, len(own)))), f.windings)
+        for f, own in zip(found, bounding, strict=True)
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
-    owner = {k: i for i, (_, sheets) in enumerate(components) for k in sheets}
+    owner = {k: i for i, (_, windings) in enumerate(components) for k in windings}
     return Region(tuple(component for component, _ in components), problem, cells, base, owner)
 
 
@@ -319,7 +321,7 @@ def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     return [(name, margin) for name, margin in margins(robot, q) if margin < 0]
 
 
-def _closures(problem: Problem, cells: Complex, base: int, q: Floats) -> list[Placed]:
+def _closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list[Placed]:
     """Return the cells in whose closure a configuration lies.
 
     One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
@@ -341,7 +343,7 @@ def _closures(problem: Problem, cells: Complex, base: int, q: Floats) -> list[Pl
 class _Found:
     """A component before its boundary is laid out; base before lift."""
 
-    sheets: Sheets
+    windings: Windings
     wraps: tuple[bool, bool]
     area: float
     middle: Floats
@@ -349,24 +351,24 @@ class _Found:
     contains_home: bool
 
 
-def _measured(cells: Complex, problem: Problem, home: Floats, base: int) -> list[_Found]:
+def _measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> list[_Found]:
     """Measure every component, and choose the turns at which it is shown."""
     moments = _cell_moments(cells)
     at_home = {one.cell: one for one in _closures(problem, cells, base, home)}
     home = ordered(home, base)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
     found = []
-    for sheets, wraps in cells.components():
-        turns = TURN * np.array(list(sheets.values()), dtype=float)
-        areas, firsts = moments[list(sheets), 0], moments[list(sheets), 1:]
+    for windings, wraps in cells.components():
+        turns = TURN * np.array(list(windings.values()), dtype=float)
+        areas, firsts = moments[list(windings), 0], moments[list(windings), 1:]
         middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
-        own = next((one for cell, one in at_home.items() if cell in sheets), None)
+        own = next((one for cell, one in at_home.items() if cell in windings), None)
         shift = np.zeros(2)
         if own is not None:
-            shift = home - own.place - TURN * np.array(sheets[own.cell])
+            shift = home - own.place - TURN * np.array(windings[own.cell])
         elif not any(wraps):
             shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(_Found(sheets, wraps, areas.sum(), middle, shift, own is not None))
+        found.append(_Found(windings, wraps, areas.sum(), middle, shift, own is not None))
     return found
 
 
@@ -398,7 +400,7 @@ def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
                 yield Vertex(arc.start, (before.boundary, arc.boundary))
 
 
-def _cell_moments(cells: Complex) -> Floats:
+def _cell_moments(cells: CellComplex) -> Floats:
     """Return area and first moments about base and lift of each cell, shape (k, 3).
 
     Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
@@ -416,7 +418,7 @@ def _cell_moments(cells: Complex) -> Floats:
     return result
 
 
-def _moments(cells: Complex, chosen: list[int], n: int) -> Floats:
+def _moments(cells: CellComplex, chosen: list[int], n: int) -> Floats:
     nodes, weights = legendre(n)
     start, end = cells.spans(chosen).T[:, :, None]
     half, angle = (end - start) / 2, nodes * math.pi / 2

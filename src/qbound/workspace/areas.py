@@ -1,8 +1,8 @@
 """The exact geometric workspace of two joints: areas by one integral over circles or lines.
 
 The first joint moves the tool rigidly, so the plane falls into circles about its axis (or lines
-along its slide), one for each distance u of the second joint from the fold. On each of them the
-places that the arm reaches are intervals: the fibres of the region moved along by a known angle
+along its slide), one for each distance u of the second joint from the singularity. On each of them
+the places that the arm reaches are intervals: the fibres of the region moved along by a known angle
 (or length), one set a posture. The lengths of their union and intersection, times abs(det J),
 integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
 samples.
@@ -228,6 +228,6 @@ def area_by_green(arm: PlanarArm, region: Component) -> float:
 
 def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> Fibres:
     """Find the aspects with one sign of det J: the region with it as one more form."""
-    if arm.fold is None:
+    if arm.singularity is None:
         return find_fibres(problem, home)
     return find_fibres(problem.with_form(SINGULAR, side * arm.singular.coefficients), home)

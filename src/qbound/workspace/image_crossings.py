@@ -1,6 +1,6 @@
 """Where a boundary reached in one posture crosses one that is reached in the other.
 
-Both postures of a place lie at the same distance u from the fold (`planar`), and at the same
+Both postures of a place lie at the same distance u from the singularity (`planar`), and at the same
 place along the circle or line on which the first joint moves the tool. For fixed u each form
 becomes a one-joint form of that place; two of them share a root only where a resultant vanishes,
 one univariate polynomial of u a pair. Its degree is known, so that as many values determine it.
@@ -31,7 +31,7 @@ revolute), or 12 in u (prismatic)."""
 def crossing_distances(
     arm: PlanarArm, forms: HarmonicForm, ends: Sequence[float], farthest: float
 ) -> Floats:
-    """Return every distance u from the fold at which boundaries of the two postures may cross.
+    """Return every distance u from the singularity at which both postures' boundaries may cross.
 
     Some are spurious, which costs time. Boundaries that coincide for every u, as walls for the tool
     itself do, give none.
@@ -45,7 +45,7 @@ def crossing_distances(
     farthest : float
         Largest u of interest; rad or length.
     """
-    if arm.fold is None:
+    if arm.singularity is None:
         return np.zeros(0)
     u = farthest * _nodes(arm) if arm.kinds[1] == "prismatic" else _nodes(arm)
     table = _first_joint_forms(arm, forms, ends)

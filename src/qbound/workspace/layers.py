@@ -1,6 +1,6 @@
 """What an arm covers on each circle or line along which its first joint moves the tool.
 
-A distance u of the second joint from the fold names the circle (`planar`). On it the safe
+A distance u of the second joint from the singularity names the circle (`planar`). On it the safe
 places of one posture are the fibre of the region, moved along by the phase of the tool; what is
 between them is reached, too, but not safely. Laid over each other, the intervals of all postures
 tell how long a part of the circle is reached in one posture, in both, safely or not.
@@ -54,8 +54,8 @@ class Layers:
     def distances(self) -> Floats:
         """Values of u between which every length is analytic, ascending."""
         lines = [part.lines for part in self.sides.values()]
-        u = self.arm.unfold(np.concatenate([*lines, self.square[1] or ()]))
-        if self.arm.fold is not None:
+        u = self.arm.distance_to_singularity(np.concatenate([*lines, self.square[1] or ()]))
+        if self.arm.singularity is not None:
             farthest = math.pi if self.arm.kinds[1] == "revolute" else float(u.max())
             problem = next(iter(self.sides.values())).problem
             ends = {*(problem.ranges[0] or ()), *(self.square[0] or ())}
@@ -72,7 +72,9 @@ class Layers:
 
         def density(u: Floats, slab: Slab) -> Floats:
             laid = self.cover(u, slab)
-            return np.asarray(self.arm.speed(u) * [measure(laid) for measure in measures])
+            return np.asarray(
+                self.arm.abs_det_jacobian(u) * [measure(laid) for measure in measures]
+            )
 
         slabs = pairwise(self.distances.tolist())
         sums = [cache(partial(_quadrature, density, slab)) for slab in slabs]

@@ -94,8 +94,8 @@ class PlanarArm:
         return math.tau if self.kinds[0] == "revolute" else None
 
     @cached_property
-    def fold(self) -> tuple[float, float] | None:
-        r"""Centre s and slope d of the fold at which postures are mirrored; None where none is.
+    def singularity(self) -> tuple[float, float] | None:
+        r"""Centre s and slope d of the singularity that mirrors postures; None where none does.
 
         :math:`\det J = d \sin(q_2 - s)` (second joint revolute, d > 0) or
         :math:`\det J = d (q_2 - s)` (RP). In PP robots det J is constant.
@@ -108,27 +108,27 @@ class PlanarArm:
     @property
     def sides(self) -> tuple[int, ...]:
         """Signs that det J takes."""
-        return (1, -1) if self.fold else (int(np.sign(self.singular.coefficients[0, 0])),)
+        return (1, -1) if self.singularity else (int(np.sign(self.singular.coefficients[0, 0])),)
 
     def second(self, side: int, u: ArrayLike) -> Any:
-        """Return the second joint's value at a distance u >= 0 from the fold, on one side of it."""
-        if self.fold is None:
+        """Return the second joint's value at a distance u >= 0 from the singularity, on a side."""
+        if self.singularity is None:
             return np.asarray(u)
-        centre, slope = self.fold
+        centre, slope = self.singularity
         return centre + side * math.copysign(1, slope) * np.asarray(u)
 
-    def unfold(self, q2: ArrayLike) -> Any:
-        """Return the distance of values of the second joint from the fold, modulo full turns."""
-        if self.fold is None:
+    def distance_to_singularity(self, q2: ArrayLike) -> Any:
+        """Return how far values of the second joint are from the singularity, modulo full turns."""
+        if self.singularity is None:
             return np.asarray(q2)
-        away = np.asarray(q2) - self.fold[0]
+        away = np.asarray(q2) - self.singularity[0]
         return np.abs(nearest_turn(away, 0) if self.kinds[1] == "revolute" else away)
 
-    def speed(self, u: ArrayLike) -> Any:
-        """Return abs(det J) at a distance u from the fold: the same on both sides."""
-        if self.fold is None:
+    def abs_det_jacobian(self, u: ArrayLike) -> Any:
+        """Return abs(det J) at a distance u from the singularity: the same on both sides."""
+        if self.singularity is None:
             return np.full_like(np.asarray(u), abs(self.singular.coefficients[0, 0]))
-        slope = abs(self.fold[1])
+        slope = abs(self.singularity[1])
         return slope * (np.sin(u) if self.kinds[1] == "revolute" else np.asarray(u))
 
     def phase(self, q2: ArrayLike) -> Any:
@@ -216,25 +216,25 @@ def postures(
     if not np.isfinite(np.asarray(place, dtype=float)).all():
         raise ValueError("a place needs two finite coordinates")
     z = arm.in_frame(place)
-    u, on_fold = _distance(arm, z)
+    u, singular = _distance(arm, z)
     found = []
-    for side in arm.sides[:1] if on_fold else arm.sides:
+    for side in arm.sides[:1] if singular else arm.sides:
         if u is not None:
             q2 = float(arm.second(side, u))
             first = turns_within(arm.kinds[0], _first(arm, z, q2), ranges[0])
             second = turns_within(arm.kinds[1], q2, ranges[1])
-            sign = 0 if on_fold else side
+            sign = 0 if singular else side
             found += [Posture(np.array([a, b]), sign) for b in second for a in first]
     return found
 
 
 def _distance(arm: PlanarArm, z: complex) -> tuple[float | None, bool]:
-    """Return the distance u from the fold at which the tool is on the circle or line of z.
+    """Return the distance u from the singularity at which the tool is on the circle or line of z.
 
-    None: out of reach. Also tell whether the place is on the fold. Along q2 the circle's squared
-    radius changes by -2 det J (in the first joint's frame), the line's height by det J.
+    None: out of reach. Also tell whether the place is on the singularity. Along q2 the circle's
+    squared radius changes by -2 det J (in the first joint's frame), the line's height by det J.
     """
-    centre, slope = arm.fold or (0.0, float(arm.singular.coefficients[0, 0]))
+    centre, slope = arm.singularity or (0.0, float(arm.singular.coefficients[0, 0]))
     v = complex(basis(arm.kinds[1], centre) @ arm.v)
     size = abs(z) + abs(v) + abs(arm.v[0])
     if arm.period:
@@ -242,7 +242,7 @@ def _distance(arm: PlanarArm, z: complex) -> tuple[float | None, bool]:
     else:
         wanted, scale = z.imag - v.imag, size
     ratio, slack = arm.sense * wanted / slope, NEGLIGIBLE * scale / abs(slope)
-    if arm.fold is None:
+    if arm.singularity is None:
         return ratio, False
     highest = 2.0 if arm.kinds[1] == "revolute" else math.inf
     if not -slack <= ratio <= highest + slack:

@@ -1,0 +1,138 @@
+"""Configurations that refute a statement: where a boundary or a limit is violated, and how deep.
+
+Nothing here is trusted: the checkers look at the configuration that is written down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound import check
+from qbound.boundary.functions import clearance, margin_of
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import Robot
+from qbound.proofs.statements import Statement, units, with_extra_clearance
+
+Floats = NDArray[np.float64]
+Evidence = dict[str, Any]
+"""The boundary, the cell and the weights of its corners, as a certificate writes them."""
+
+SIDES = ("lower", "upper")
+
+
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """A configuration of the set, in the file's units, and what it violates by how much.
+
+    The depth is a length for a boundary, in the joint's unit of the file for a limit.
+    """
+
+    boundary: str
+    q: tuple[float, ...]
+    depth: float
+
+
+def beyond_limits(text: str, cells: Sequence[Any]) -> Evidence | None:
+    """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
+    depths = [
+        (sign * (check.number(end) - q[j]), f"{joint['name']}.{side}", i, k)
+        for j, joint in enumerate(check.Robot(text).joints)
+        for side, sign, end in zip(SIDES, (1, -1), joint.get("limits", ()), strict=False)
+        for i, cell in enumerate(cells)
+        for k, q in enumerate(cell)
+    ]
+    depth, name, i, k = max(depths, key=lambda row: row[0], default=(Fraction(0), "", 0, 0))
+    if depth <= 0:
+        return None
+    weights = ["1" if c == k else "0" for c in range(len(cells[i]))]
+    return {"boundary": name, "cell": i, "weights": weights}
+
+
+def deepest(
+    robot: Robot,
+    statement: Statement,
+    cells: Sequence[Any],
+    violated: Mapping[str, tuple[int, Floats]],
+) -> Evidence:
+    """Follow each violated boundary to where it is violated most, and return the deepest.
+
+    Parameters
+    ----------
+    violated : mapping of str to (int, ndarray)
+        A cell, and a configuration in it (rad or length) that violates the boundary.
+    """
+    corners = np.array(cells, dtype=float) * units(robot)
+    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
+    found = []
+    for name, (start, q) in violated.items():
+        form = clearance(wider, wider.boundary(name))
+        cell, weights = _lowest(form, corners, start, q)
+        value = float(form(weights @ corners[cell]))
+        found.append((_depth(wider, name, value), name, cell, weights))
+    _, name, cell, weights = max(found, key=lambda row: row[0])
+    return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
+
+
+def witness(
+    robot: Robot, statement: Statement, cells: Sequence[Any], evidence: Evidence
+) -> Witness:
+    """Read the configuration and its depth out of what the file says."""
+    corners = np.array(cells[evidence["cell"]], dtype=float)
+    q = np.array(evidence["weights"], dtype=float) @ corners
+    name, wider = (
+        evidence["boundary"],
+        with_extra_clearance(robot, float(Fraction(statement["margin"]))),
+    )
+    if any(boundary.name == name for boundary in wider.boundaries):
+        form = clearance(wider, wider.boundary(name))
+        return Witness(name, tuple(q), _depth(wider, name, float(form(q * units(robot)))))
+    joint, _, side = name.rpartition(".")
+    j = [other.name for other in robot.joints].index(joint)
+    limits = robot.joints[j].limits or (q[j], q[j])
+    end = limits[side == "upper"] / units(robot)[j]
+    return Witness(name, tuple(q), abs(float(q[j] - end)))
+
+
+def _depth(robot: Robot, name: str, value: float) -> float:
+    """How far a boundary is violated, length."""
+    return -float(margin_of(robot, robot.boundary(name), value))
+
+
+def _lowest(form: HarmonicForm, cells: Floats, cell: int, q: Floats) -> tuple[int, Floats]:
+    """Return the cell, and the weights of its corners, where a form is lowest, by a local search.
+
+    In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
+    the search starts at the centres and, in one cell, at a configuration that is known to be low.
+    """
+    count, k = cells.shape[:2]
+    i, j = np.triu_indices(k, 1)
+    tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
+    lowest, rows = np.full((count, k), 1 / k), np.arange(count)
+    lowest[cell] = _weights(cells[cell], q)
+    for size in 0.75 ** np.arange(80):
+        near = (1 - size) * lowest[:, None] + size * tries
+        around = np.concatenate([lowest[:, None], near], axis=1)
+        lowest = around[rows, form(around @ cells).argmin(axis=1)]
+    best = int(form(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
+    return best, lowest[best]
+
+
+def _weights(cell: Floats, q: Floats) -> Floats:
+    """Write a configuration of a cell as a mean of its corners."""
+    system = np.vstack([cell.T, np.ones(len(cell))])
+    weights = np.linalg.lstsq(system, np.append(q, 1), rcond=None)[0]
+    weights = np.maximum(weights, 0)
+    return np.asarray(weights / weights.sum())
+
+
+def _decimals(weights: Floats) -> list[str]:
+    """Round weights to decimals whose sum is 1."""
+    whole = [round(float(w) * 10**9) for w in weights]
+    whole[int(np.argmax(weights))] += 10**9 - sum(whole)
+    return [f"{w // 10**9}.{w % 10**9:09}" for w in whole]
