@@ -324,3 +324,17 @@ def main(kind: str, count: int) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("error", RuntimeWarning)
     main(sys.argv[1], int(sys.argv[2]))
+
+
+# --- what a reader sees --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["minervabot-v2", "pr-gantry-arm"])
+def test_what_a_region_is_made_of_prints_on_one_line(name):
+    region = find_region(load_robot(name))
+    arc = region.components[0].loops[0][0]
+    vertex = region.components[0].vertices[0]
+    for thing in (region, region.robot, region.problem, region.components[0], vertex, arc):
+        assert "\n" not in repr(thing)
+        assert len(repr(thing)) <= 120
+    assert arc.boundary in repr(arc)
