@@ -28,7 +28,7 @@ def draw() -> plt.Figure:
     figure, (joints, space) = plt.subplots(1, 2, figsize=(10.4, 4.6), width_ratios=[1, 1.35])
     figures.draw_components(joints, region)
     figures.joint_axes(joints, robot)
-    joints.axhline(np.degrees(workspace.arm.fold[0] - np.pi), color=figures.COLLIDING, ls=":", lw=2)
+    joints.axhline(np.degrees(workspace.arm.singularity[0] - np.pi), color=figures.COLLIDING, ls=":", lw=2)
     joints.plot(*np.degrees(POSE), "P", color=figures.INK, ms=9, mec="white", zorder=7)
     joints.set_title("Safe joint values")
     draw_patches(space, workspace)
