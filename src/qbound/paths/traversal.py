@@ -14,17 +14,6 @@ from qbound.boundary.functions import position
 from qbound.geometry.polylines import Curve, flatten, self_crossings
 from qbound.model.robot import Robot
 
-__all__ = [
-    "Leg",
-    "Traversal",
-    "follow",
-    "reach",
-    "self_crossings",
-    "simple_orders",
-    "straight",
-    "traverse",
-]
-
 Floats = NDArray[np.float64]
 
 
