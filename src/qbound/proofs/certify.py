@@ -6,12 +6,10 @@ The search here is floating point and untrusted: what it finds is written down, 
 
 from __future__ import annotations
 
-import hashlib
 import json
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -31,7 +29,7 @@ from qbound.proofs.statements import (
     home_vertices,
     scaled_polygon,
     units,
-    with_extra_clearance,
+    wider,
 )
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness, beyond_limits, deepest, witness
@@ -121,7 +119,8 @@ def certify(
     """
     robot = parse_robot(tomllib.loads(text))
     cells = check.read_cells(statement)
-    _check_margin(statement["margin"])
+    if check.number(statement["margin"]) < 0:
+        raise ValueError(f"a margin of {statement['margin']}: wanted a length of 0 or more")
     beyond = beyond_limits(text, cells)
     if beyond is not None:
         return _refuted(text, robot, statement, cells, beyond, {})
@@ -250,17 +249,12 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 
 def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     """Forms of the boundaries in use, by name; without those that nothing can violate."""
-    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
+    asked = wider(robot, statement)
     return {
-        boundary.name: clearance(wider, boundary)
-        for boundary in wider.boundaries
-        if boundary.used and wider.least_distance(boundary) != 0
+        boundary.name: clearance(asked, boundary)
+        for boundary in asked.boundaries
+        if boundary.used and asked.least_distance(boundary) != 0
     }
-
-
-def _check_margin(margin: str) -> None:
-    if check.number(margin) < 0:
-        raise ValueError(f"a margin of {margin}: wanted a length of 0 or more")
 
 
 # --- the file -------------------------------------------------------------------------------------
@@ -272,7 +266,7 @@ def _content(text: str, statement: Statement, verdict: Verdict, **evidence: Any)
         "verdict": verdict,
         "statement": statement,
         "robot": text,
-        "sha256": hashlib.sha256(text.encode()).hexdigest(),
+        "sha256": check.digest(text),
         **evidence,
     }
 

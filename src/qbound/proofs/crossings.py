@@ -15,24 +15,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import ball, balls, precision, turns
+from qbound.proofs.balls import arb, ball, balls, precision, turns
 from qbound.proofs.dyadic import BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
 
-if TYPE_CHECKING:
-    from flint import arb
-
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
-Balls = tuple["arb", "arb"]
+Balls = tuple[arb, arb]
 
 BITS = 212
 """Precision of a crossing: 60 digits, twice what is printed."""
@@ -401,7 +398,6 @@ def _corners(problem: ExactProblem) -> list[Crossing]:
     ends = list(enumerate(sides(problem), start=len(problem.names)))
     return [
         classify(problem, (one.value, other.value), (one.name, other.name), (i, j))
-        for i, one in ends
-        for j, other in ends
-        if (one.joint, other.joint) == (0, 1)
+        for (i, one), (j, other) in combinations(ends, 2)
+        if one.joint < other.joint
     ]
