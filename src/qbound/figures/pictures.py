@@ -16,6 +16,7 @@ from qbound import figures
 from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
+from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import Component, Region
@@ -172,10 +173,8 @@ def _joint_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats
         ax.set_aspect("equal")
     if numbered is not None and numbered.vertices:
         corners = np.array([vertex.q for vertex in numbered.vertices])
-        for j, turning in enumerate(ends is None for ends in ranges):
-            if turning:  # shown where the region's copy within the turn has them
-                corners[:, j] -= 2 * np.pi * np.ceil((corners[:, j] - np.pi) / (2 * np.pi))
-        corners *= scales
+        rounds = [ends is None for ends in ranges]  # there the copy within one turn is shown
+        corners = np.where(rounds, nearest_turn(corners, 0), corners) * scales
         ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)
         figures.number_points(ax, corners, corners.mean(axis=0))
 
