@@ -26,7 +26,7 @@ def region_document(region: Region) -> dict[str, Any]:
         "joints": list(problem.joint_names),
         "home_component": None if region.home is None else 0,
         "feasible_area": region.area,
-        "home": _home_content(region),
+        "home": home_content(region),
         "components": [_component_content(component) for component in region.components],
     }
     if region.empty_because:
@@ -94,7 +94,8 @@ def workspace_content(region: Region) -> dict[str, Any]:
     return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
 
 
-def _home_content(region: Region) -> dict[str, Any]:
+def home_content(region: Region) -> dict[str, Any]:
+    """Return the home pose, what it violates, and, where it is in no component, what it touches."""
     problem, robot = region.problem, region.robot
     home = robot.home[list(problem.joints)]
     found = list(zip(region.boundaries, region.margins(home).tolist(), strict=True))

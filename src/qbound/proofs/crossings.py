@@ -386,11 +386,9 @@ def _turned(problem: ExactProblem, joint: int, q: arb) -> list[arb] | None:
         first, last = (float((end - q) / turns(1)) for end in ends)
         candidates = [q + turns(k) for k in range(int(first) - 2, int(last) + 3)]
     inside = [_between(x, *ends) for x in candidates]
-    return (
-        None
-        if None in inside
-        else [x for x, there in zip(candidates, inside, strict=True) if there]
-    )
+    if None in inside:
+        return None
+    return [x for x, there in zip(candidates, inside, strict=True) if there]
 
 
 def _corners(problem: ExactProblem) -> list[Crossing]:

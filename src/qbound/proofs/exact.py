@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.evaluator import limit_names
-from qbound.boundary.functions import clearance
+from qbound.boundary.evaluator import limit_names, stacked
 from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.robot import Boundary, Joint, Robot
 from qbound.model.robotfile import load_robot, robot_text
@@ -114,10 +113,7 @@ def exact_state(
 ) -> ExactProblem:
     """Gather the exact clearance forms of some boundaries within given ranges."""
     with precision(BITS):
-        stacked = np.zeros((len(used), *(3,) * len(robot.joints)), dtype=object)
-        for i, boundary in enumerate(used):
-            stacked[i] = clearance(robot, boundary).coefficients
-        forms = HarmonicForm(stacked, robot.kinds)
+        forms = stacked(robot, used)
         values: Any = held
         forms = forms.restrict(values) if held else forms
     balls = tuple(None if r is None else (ball(r[0]), ball(r[1])) for r in ranges)
