@@ -24,8 +24,8 @@ from lizarraga2025.verdicts import Finding, judge, undetermined
 from qbound import pair_vector
 from qbound.geometry import polygon
 from qbound.measures import scaling
-from qbound.model.robot import joint_symbols
 from qbound.region import paper_rule, solve, state
+from qbound.symbols import joint_symbols
 
 
 @computes("F-1")

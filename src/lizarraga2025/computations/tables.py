@@ -25,7 +25,8 @@ from lizarraga2025.evidence.rounding import HALF_DIGIT, contact, degrees, radii
 from lizarraga2025.verdicts import Finding, judge, undetermined
 from qbound import circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
-from qbound.model.robot import Robot, joint_symbols
+from qbound.model.robot import Robot
+from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 
