@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound.export.document import loop_content
 from qbound.model.robot import Robot
-from qbound.model.units import joint_text
+from qbound.units import joint_text
 from qbound.version import __version__
 from qbound.workspace.areas import Aspect
 from qbound.workspace.passage import Passage

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from qbound.model.robot import Robot
-from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate
 from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
+from qbound.units import file_units
 from qbound.version import __version__
 
 
