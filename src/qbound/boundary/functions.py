@@ -58,7 +58,8 @@ def squared_distance(
 
 def observer(robot: Robot, pair: Pair) -> str:
     """Return the frame a of Theorem 1: that of the pair's point nearer to the base."""
-    return min((robot.point(name).frame for name in pair.points), key=robot.depth)
+    _, near, _ = _near_far(robot, pair)
+    return near.frame
 
 
 def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:

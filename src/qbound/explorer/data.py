@@ -78,7 +78,7 @@ def explorer_data(region: Region) -> Data:
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],
-        "reach": _reach(robot),
+        "reach": robot.stretched(robot.tool),
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],
@@ -130,13 +130,6 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
     """List the terms of a form that are not zero: coefficient, then one index a joint."""
     places = np.argwhere(form.coefficients != 0)
     return [[float(form.coefficients[tuple(p)]), *p.tolist()] for p in places]
-
-
-def _reach(robot: Robot) -> float:
-    """Bound the tool's distance from the base; the robot's size."""
-    lengths = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
-    slides = [joint.farthest for joint in robot.joints]
-    return sum(lengths) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:

@@ -72,9 +72,16 @@ class Robot:
     @property
     def reach(self) -> float:
         """Length that no place of the robot's points exceeds, seen from the base."""
-        links = (float(np.linalg.norm(joint.origin)) + joint.farthest for joint in self.joints)
-        tips = (float(np.linalg.norm(point.at)) for point in self.points)
-        return sum(links) + max(tips, default=0.0)
+        return max((self.stretched(point.name) for point in self.points), default=0.0)
+
+    def stretched(self, point: str) -> float:
+        """Return the length of the arm stretched out to a point: links, longest slides, the rest.
+
+        No place of the point is farther from the base.
+        """
+        links = [float(np.linalg.norm(joint.origin)) for joint in self.joints]
+        slides = [joint.farthest for joint in self.joints]
+        return sum(links) + sum(slides) + float(np.linalg.norm(self.point(point).at))
 
     def point(self, name: str) -> Point:
         """Return the point of that name."""
