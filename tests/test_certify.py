@@ -16,7 +16,7 @@ import pytest
 from scipy.optimize import minimize
 
 from qbound import check, cli
-from qbound.boundary import clearance
+from qbound.boundary.functions import clearance
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon

@@ -18,11 +18,11 @@ from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
 
+from lizarraga2025.closed_form import vertices
 from qbound import figures, find_region, load_robot
 from qbound.figures.pictures import pose_picture, traversal_picture, workspace_picture
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region.paper_rule import vertices
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
 from support.oracles import packaged_table, point_seen_from
@@ -246,7 +246,7 @@ import sys
 from matplotlib.figure import Figure
 import matplotlib as mpl
 from qbound import figures, find_region, load_robot
-from qbound.region.paper_rule import bound_curves, vertices
+from lizarraga2025.closed_form import bound_curves, vertices
 robot = load_robot("minervabot-v2")
 with mpl.rc_context(figures.STYLE):
     figure = Figure()

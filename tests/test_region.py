@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.ndimage import label
 
+from lizarraga2025 import closed_form
 from qbound import load_robot
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
@@ -229,7 +230,7 @@ def test_the_papers_rule_comes_out_of_the_same_engine():
     region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
     found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
     printed = sorted(
-        (v.q for v in paper_rule.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
+        (v.q for v in closed_form.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
     )
     assert len(found) == 6
     assert_allclose(found, printed, atol=1e-12, rtol=0)

@@ -20,7 +20,6 @@ from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
-from qbound.paths.route import stretched_length
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
@@ -78,7 +77,7 @@ def explorer_data(region: Region) -> Data:
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],
-        "reach": stretched_length(robot),
+        "reach": robot.stretched(robot.tool),
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
+from qbound.units import joint_units
 from qbound.version import __version__
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.export.formats import csv_text, pose_columns, pose_heading
-from qbound.model.units import joint_text
 from qbound.paths.encounters import Crossing, Margin, ParameterPoint
 from qbound.paths.report import PathReport
 from qbound.paths.route import Route
 from qbound.paths.trajectory import Trajectory, row_times
+from qbound.units import joint_text
 
 Floats = NDArray[np.float64]
 

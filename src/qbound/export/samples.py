@@ -8,8 +8,8 @@ import numpy as np
 
 from qbound.export.formats import csv_text, npz_bytes, pose_columns, pose_heading
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
 from qbound.sampling import Sample, joint_ranges
+from qbound.units import joint_units
 
 
 def sample_csv(robot: Robot, drawn: Sample) -> str:

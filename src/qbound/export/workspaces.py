@@ -8,7 +8,7 @@ from typing import Any
 from qbound.export.document import loop_content
 from qbound.export.formats import heading
 from qbound.model.robot import Robot
-from qbound.model.units import joint_text
+from qbound.units import joint_text
 from qbound.workspace.areas import Aspect
 from qbound.workspace.passage import Passage
 from qbound.workspace.report import PlaceReport, WorkspaceReport

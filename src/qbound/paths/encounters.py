@@ -17,10 +17,10 @@ from qbound.boundary.functions import position
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import crossing_pieces
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
 from qbound.paths.traversal import Traversal
 from qbound.region import Region
 from qbound.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
+from qbound.units import joint_units
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
 Floats = NDArray[np.float64]

@@ -8,13 +8,13 @@ from typing import Any
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import heading
 from qbound.model.robot import Robot
-from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate
 from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
+from qbound.units import file_units
 
 
 def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
