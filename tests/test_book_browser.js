@@ -21,6 +21,16 @@ function* textsOf(root) {
       yield { text, element: text.parentElement };
 }
 
+// The families of all text that is no code, as the browser writes them.
+/** @type {() => string[]} */
+function familiesOfText() {
+  const texts = [...textsOf(document.body)].map(({ element }) => element);
+  const read = texts.filter(
+    (e) => e.checkVisibility() && !e.closest("pre, code, kbd, mjx-container"),
+  );
+  return [...new Set(read.map((element) => getComputedStyle(element).fontFamily))];
+}
+
 function unshownFormulas() {
   const all = [...document.querySelectorAll(".math")];
   const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
@@ -172,11 +182,20 @@ function groundOf(element) {
   return own[3] === 1 ? own.slice(0, 3) : over(own, groundOf(element.parentElement));
 }
 
-// A canvas reads every notation of a colour.
+// A canvas reads every notation of a colour; each is read once.
 const pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+/** @type {Map<string, number[]>} */
+const known = new Map();
 
 /** @type {(colour: string) => number[]} */
 function rgba(colour) {
+  const read = known.get(colour) ?? readColour(colour);
+  known.set(colour, read);
+  return read;
+}
+
+/** @type {(colour: string) => number[]} */
+function readColour(colour) {
   if (!pen) throw new Error("This browser has no canvas.");
   pen.clearRect(0, 0, 1, 1);
   pen.fillStyle = colour;

@@ -8,13 +8,21 @@ from typing import Any
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from support.browser import HTML, open_page, refuse_remote, settle
+from support.browser import FAMILIES, HTML, in_every_family, open_page, refuse_remote, settle
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
+LAYOUT = [
+    "lostToTheRight",
+    "wideBoxesWithoutHint",
+    "tornPunctuation",
+    "cutFormulas",
+    "brokenWords",
+    "smallPanels",
+]
 QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
 
 
@@ -26,41 +34,52 @@ class Seen:
     console: list[str] = field(default_factory=list)
     formulas: list[str] = field(default_factory=list)
     images: list[str] = field(default_factory=list)
-    lost: dict[str, list[str]] = field(default_factory=dict)
-    unmarked: dict[str, list[str]] = field(default_factory=dict)
-    torn: dict[str, list[str]] = field(default_factory=dict)
-    cut: dict[str, list[str]] = field(default_factory=dict)
-    broken: dict[str, list[str]] = field(default_factory=dict)
-    small: dict[str, list[str]] = field(default_factory=dict)
+    layout: dict[tuple[str, str], list[str]] = field(default_factory=dict)
     faint: dict[str, list[str]] = field(default_factory=dict)
 
 
+@dataclass
+class Tab:
+    """A page that goes from one to the next: a new one for each would take longer than they do."""
+
+    page: Any
+    requests: list[str] = field(default_factory=list)
+    console: list[str] = field(default_factory=list)
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Any) -> Iterator[Tab]:
+    tab = Tab(browser.new_page(reduced_motion="reduce"))
+    refuse_remote(tab.page, tab.requests)
+    tab.page.on("pageerror", lambda error: tab.console.append(str(error)))
+    tab.page.on("console", lambda m: m.type == "error" and tab.console.append(m.text))
+    yield tab
+    tab.page.close()
+
+
 @pytest.fixture(scope="module", params=PAGES)
-def seen(browser: Any, request: pytest.FixtureRequest) -> Iterator[Seen]:
-    """Open one page once; look at it at both widths and in both themes."""
-    seen = Seen()
-    page = browser.new_page(reduced_motion="reduce")
-    refuse_remote(page, seen.requests)
-    page.on("pageerror", lambda error: seen.console.append(str(error)))
-    page.on("console", lambda m: m.type == "error" and seen.console.append(m.text))
+def seen(tab: Tab, request: pytest.FixtureRequest) -> Seen:
+    """Open one page once; look at it at both widths, in every family, and in both themes."""
+    tab.requests.clear()
+    tab.console.clear()
+    seen, page = Seen(), tab.page
+    page.set_viewport_size({"width": WIDTHS["wide screen"], "height": 900})
     open_page(page, request.param)
     page.add_script_tag(content=QUESTIONS)
     page.evaluate("openEverything()")
     for name, width in WIDTHS.items():
         page.set_viewport_size({"width": width, "height": 900})
-        settle(page)
-        seen.lost[name] = page.evaluate("lostToTheRight()")
-        seen.unmarked[name] = page.evaluate("wideBoxesWithoutHint()")
-        seen.torn[name] = page.evaluate("tornPunctuation()")
-        seen.cut[name] = page.evaluate("cutFormulas()")
-        seen.broken[name] = page.evaluate("brokenWords()")
-        seen.small[name] = page.evaluate("smallPanels()")
+        for family in in_every_family(page):
+            for question in LAYOUT:
+                answers = page.evaluate(f"{question}()")
+                found = seen.layout.setdefault((question, name), [])
+                found += [f"{family}: {answer}" for answer in answers]
     seen.formulas = page.evaluate("unshownFormulas()")
     seen.images = page.evaluate("badImages()")
     for theme in THEMES:
         seen.faint[theme] = page.evaluate("faintText", theme)
-    yield seen
-    page.close()
+    seen.requests, seen.console = [*tab.requests], [*tab.console]
+    return seen
 
 
 def test_a_page_asks_nothing_of_the_network(seen):
@@ -81,36 +100,47 @@ def test_every_image_loads_and_has_words(seen):
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_nothing_leaves_the_page(seen, width):
-    assert seen.lost[width] == []
+    assert seen.layout["lostToTheRight", width] == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_what_scrolls_shows_that_it_does_and_the_keyboard_reaches_it(seen, width):
-    assert seen.unmarked[width] == []
+    assert seen.layout["wideBoxesWithoutHint", width] == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_a_line_begins_with_no_stop_and_ends_with_no_open_bracket(seen, width):
-    assert seen.torn[width] == []
+    assert seen.layout["tornPunctuation", width] == []
 
 
 def test_a_wide_screen_cuts_no_formula_of_a_line(seen):
-    assert seen.cut["wide screen"] == []
+    assert seen.layout["cutFormulas", "wide screen"] == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_titles_of_the_neighbouring_pages_break_between_words(seen, width):
-    assert seen.broken[width] == []
+    assert seen.layout["brokenWords", width] == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_panels_side_by_side_are_large_enough_to_read(seen, width):
-    assert seen.small[width] == []
+    assert seen.layout["smallPanels", width] == []
 
 
 @pytest.mark.parametrize("theme", THEMES)
 def test_text_stands_out_from_its_ground(seen, theme):
     assert seen.faint[theme] == []
+
+
+def test_all_but_code_is_set_in_families_of_three_widths(tab):
+    open_page(tab.page, "index.html")
+    tab.page.add_script_tag(content=QUESTIONS)
+    seen, heights = [], []
+    for _ in in_every_family(tab.page):
+        seen.append(tab.page.evaluate("familiesOfText()"))
+        heights.append(tab.page.evaluate("document.querySelector('.bd-article').offsetHeight"))
+    assert seen == [[f'"test {family}"'] for family in FAMILIES]
+    assert heights[0] < heights[1] < heights[2]
 
 
 @pytest.fixture
@@ -213,16 +243,37 @@ SAMPLE = [  # one page of each kind, and the longest
 ]
 
 
-@pytest.mark.parametrize("theme", THEMES)
-@pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("name", SAMPLE)
-def test_a_page_breaks_no_rule_of_accessibility(browser, name, width, theme):
-    size = {"width": WIDTHS[width], "height": 900}
-    page = browser.new_page(viewport=size, color_scheme=theme, reduced_motion="reduce")
-    open_page(page, name)
-    found = Axe().run(page, context=FORMULA_HEADS).response["violations"]
-    page.close()
-    assert [(v["id"], [node["html"][:120] for node in v["nodes"]]) for v in found] == []
+COLOURS = {"runOnly": ["color-contrast", "link-in-text-block"]}
+LOOKS = {  # a theme is nothing but colours, and those of a phone are asked for on every page above
+    "wide screen": ("light", {}),
+    "phone": ("light", {}),
+    "wide screen in the dark": ("dark", COLOURS),
+}
+
+
+@pytest.fixture(scope="module", params=SAMPLE)
+def broken_rules(tab: Tab, request: pytest.FixtureRequest) -> dict[str, list[Any]]:
+    """Open one page once; ask axe at both widths and in the dark."""
+    found, page = {}, tab.page
+    page.set_viewport_size({"width": WIDTHS["wide screen"], "height": 900})
+    open_page(page, request.param)
+    for look, (theme, rules) in LOOKS.items():
+        page.emulate_media(color_scheme=theme)
+        page.set_viewport_size({"width": WIDTHS[look.split(" in ")[0]], "height": 900})
+        settle(page)
+        assert page.evaluate("document.documentElement.dataset.theme") == theme
+        answer = Axe().run(page, context=FORMULA_HEADS, options=rules).response
+        assert answer["passes"]
+        found[look] = [
+            (rule["id"], [node["html"][:120] for node in rule["nodes"]])
+            for rule in answer["violations"]
+        ]
+    return found
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_a_page_breaks_no_rule_of_accessibility(broken_rules, look):
+    assert broken_rules[look] == []
 
 
 def test_a_solution_is_folded_until_a_reader_asks(page):

@@ -513,3 +513,10 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
 def test_options_that_say_nothing_together_are_refused(options, capsys):
     assert cli.main(["certify", "minervabot-v2", *options]) == 2
     assert "inset" in (error := capsys.readouterr().err) or "--largest-scale" in error
+
+
+def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
+    """Home is feasible: that the strip swallows it is no fault of home's."""
+    assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
+    error = capsys.readouterr().err
+    assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error

@@ -14,7 +14,7 @@ from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
-from support.browser import refuse_remote, settle
+from support.browser import in_every_family, refuse_remote, settle
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}
@@ -110,8 +110,11 @@ def test_every_kind_of_robot_opens(open_explorer, name, width):
     page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
     assert "afe" in page.inner_text("#status")
     assert page.locator("#joints .arc").count() > 0
-    assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     assert page.locator("#plane .workspace").count() == 2
+    for family in in_every_family(page):
+        assert page.evaluate("document.documentElement.scrollWidth") <= WIDTHS[width], family
+        assert covered(page, "#joints text") == [], family
+        assert beyond(page) == [], family
 
 
 def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
@@ -406,8 +409,10 @@ def test_words_in_the_pictures_stand_out_from_their_ground(open_explorer, theme)
 @pytest.mark.parametrize("width", WIDTHS)
 def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer, width, name):
     page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
-    for picture in ("#joints text", "#plane .walls text"):
-        assert covered(page, picture) == []
+    for family in in_every_family(page):
+        assert covered(page, "#joints text") == [], family
+        assert covered(page, "#plane .walls text") == [], family
+        assert beyond(page) == [], family
 
 
 def covered(page, picture):
@@ -423,6 +428,25 @@ def covered(page, picture):
         for b in boxes[i + 1 :]
         if min(a[3], b[3]) > max(a[1], b[1]) and min(a[4], b[4]) > max(a[2], b[2])
     ]
+
+
+def beyond(page):
+    """Return the words that leave their picture."""
+    return page.evaluate(
+        """() => [...document.querySelectorAll("#joints text, #plane text:not([hidden])")]
+            .filter((t) => {
+              const [word, box] = [t, t.closest("svg")].map((e) => e.getBoundingClientRect());
+              return word.left < box.left - 1 || word.right > box.right + 1
+                || word.top < box.top - 1 || word.bottom > box.bottom + 1; })
+            .map((t) => t.textContent)"""
+    )
+
+
+def test_the_letters_of_all_three_families_are_drawn(open_explorer):
+    page = open_explorer()
+    width = "document.querySelector('#joints .line-name').getBBox().width"
+    narrow, usual, wide = (page.evaluate(width) for _ in in_every_family(page))
+    assert narrow < usual < wide
 
 
 def test_without_scripts_the_page_says_what_it_would_show(browser, files):

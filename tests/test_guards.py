@@ -57,6 +57,17 @@ def test_edge_cases_keep_their_pieces_when_joints_are_zeroed_elsewhere(name, bas
 
 
 @both_bases
+@pytest.mark.parametrize("scale", [1e-20, 1e20])
+def test_the_unit_of_a_form_does_not_matter(scale, base) -> None:
+    for name in ("one curve", "a hole within limits", "a band round the cylinder", "a strip"):
+        kinds, ranges, terms, expected = EDGES[name]
+        tiny = [{key: scale * value for key, value in term.items()} for term in terms]
+        found = pieces(forms(kinds, *tiny), ranges, base)
+        assert [piece[1:] for piece in found] == [piece[1:] for piece in expected], name
+        assert_allclose([piece[0] for piece in found], [p[0] for p in expected], rtol=1e-8)
+
+
+@both_bases
 @pytest.mark.parametrize("turn", [-1.95, -1.6])
 def test_squares_that_touch_at_corners_are_two_where_the_form_vanishes_on_a_fibre(turn, base):
     """cos q1 cos(q2 - turn), either way round: a fibre of zeros has no roots to speak of."""

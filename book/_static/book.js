@@ -17,14 +17,16 @@ function markWide(box) {
   else box.removeAttribute("tabindex");
 }
 
-// A box changes its size with the window, and when the cell that hides it is opened.
+// A box changes its size with the window, and when the cell that hides it is opened; what it holds
+// does so with the size of the letters.
 function watchBoxes() {
   const sizes = new ResizeObserver((changes) => {
-    for (const { target } of changes) markWide(target);
+    for (const box of new Set(changes.map(({ target }) => target.closest(BOXES))))
+      if (box) markWide(box);
   });
   for (const box of document.querySelectorAll(BOXES)) {
     box.addEventListener("scroll", () => markWide(box));
-    sizes.observe(box);
+    for (const part of [box, box.firstElementChild]) if (part) sizes.observe(part);
   }
 }
 
@@ -110,9 +112,11 @@ function repairNames() {
 
 // A module's name is long for a phone: it may break after a dot.
 function breakAfterDots() {
-  for (const title of document.querySelectorAll(".prev-next-title")) {
-    const parts = title.textContent.split(/(?<=\.)(?=\w)/);
-    title.replaceChildren(...parts.flatMap((part) => [part, document.createElement("wbr")]));
+  for (const name of document.querySelectorAll(".prev-next-title, .bd-article :is(h1, cite)")) {
+    for (const text of [...name.childNodes].filter((node) => node instanceof Text)) {
+      const parts = text.data.split(/(?<=\.)(?=\w)/);
+      text.replaceWith(...parts.flatMap((part) => [part, document.createElement("wbr")]));
+    }
   }
 }
 

@@ -1,12 +1,19 @@
-"""The system's Chromium, without a network, and pages of the built book in it."""
+"""The system's Chromium, without a network, pages of the built book in it, and three families of
+letters, the same on every machine.
+"""
 
+import base64
 import os
 import shutil
 from collections.abc import Iterator
+from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import pytest
+from fontTools import subset
 
 HTML = Path(__file__).resolve().parents[2] / "book" / "_build" / "html"
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -24,6 +31,32 @@ FLAGS = [
     "--disable-sync",
 ]
 LOCAL = ("file:", "data:", "blob:")
+
+FAMILIES = {
+    "narrow": ("STIXGeneral", "STIXGeneralBol"),
+    "DejaVu Sans": ("DejaVuSans", "DejaVuSans-Bold"),
+    "wide": ("DejaVuSansMono", "DejaVuSansMono-Bold"),
+}
+"""Plain and bold files of a face like Times, of the widest that systems set pages in, and of one
+that is wider than any. A layout must hold for all; which of them a machine has is chance, so they
+come from matplotlib and are handed to the page."""
+
+LETTERS = [*range(0x20, 0x250), *range(0x370, 0x400), *range(0x2000, 0x2300)]
+"""Latin, Greek, punctuation, arrows and signs: the files shrink to a sixth."""
+
+ADD_FACES = """async (faces) => {
+  const known = new Set([...document.fonts].map((face) => face.family.replaceAll('"', "")));
+  for (const [family, weight, text] of faces.filter(([family]) => !known.has(family))) {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    document.fonts.add(await new FontFace(family, bytes, { weight }).load());
+  }
+}"""
+WEAR = """(family) => {
+  const { style } = document.documentElement;
+  const faces = ["--book-serif", "--book-sans", "font-family"];
+  for (const name of faces) style.setProperty(name, family);
+  window.redraw?.(); // an explorer's pictures are drawn for the letters that it finds
+}"""
 
 
 def chromium() -> str:
@@ -43,6 +76,33 @@ def browser() -> Iterator[Any]:
         browser = run.chromium.launch(executable_path=path, args=FLAGS)
         yield browser
         browser.close()
+
+
+@cache
+def faces() -> list[tuple[str, str, str]]:
+    """Return family, weight and base64 of each file."""
+    folder = Path(mpl.get_data_path(), "fonts/ttf")
+    found = []
+    for family, files in FAMILIES.items():
+        for weight, file in zip(("400", "700"), files, strict=True):
+            options = subset.Options(hinting=False, drop_tables=["FFTM"])
+            font = subset.load_font(str(folder / f"{file}.ttf"), options)
+            small, letters = BytesIO(), subset.Subsetter(options)
+            letters.populate(unicodes=LETTERS)
+            letters.subset(font)
+            font.save(small)
+            text = base64.b64encode(small.getvalue()).decode()
+            found.append((f"test {family}", weight, text))
+    return found
+
+
+def in_every_family(page: Any) -> Iterator[str]:
+    """Set the page in one family after the other; code and signs keep their own."""
+    page.evaluate(ADD_FACES, faces())
+    for family in FAMILIES:
+        page.evaluate(WEAR, f"'test {family}'")
+        settle(page)
+        yield family
 
 
 def refuse_remote(page: Any, requests: list[str]) -> None:

@@ -18,7 +18,7 @@ from qbound import check
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.proofs.triangulation import triangulate
-from qbound.region import Component, find_region
+from qbound.region import Component, find_region, margins
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]
@@ -180,6 +180,7 @@ def inner_polygon(
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
+    _check_inset(robot, inset, held)
     component = _home(with_extra_clearance(robot, inset), held)
     loops = [_thinned(loop, per_arc) for loop in component.loops]
     return filled(
@@ -201,6 +202,20 @@ def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
     if any(component.wraps):
         raise ValueError("the home component goes all the way round a joint: state a box instead")
     return component
+
+
+def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -> None:
+    """Refuse an inset that home does not survive, though home itself is feasible."""
+    q = robot.with_held(robot.home[robot.free(held or {})], held or {})
+    used = [boundary.name for boundary in robot.boundaries if boundary.used]
+    lengths = {name: margin for name, margin in margins(robot, q) if name in used}
+    name = min(lengths, key=lambda name: lengths[name], default="")
+    if name and 0 <= lengths[name] < inset:
+        unit = robot.length_unit
+        raise ValueError(
+            f"an inset of {inset:g} {unit} is larger than home's margin to {name},"
+            f" {lengths[name]:.6g} {unit}"
+        )
 
 
 def _corners(loop: Sequence[Any]) -> Floats:

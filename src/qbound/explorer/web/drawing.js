@@ -15,6 +15,15 @@ function make(name, attributes, text = "") {
   return element;
 }
 
+/** The height of a line of text: it differs from font to font.
+ * @type {(svg: SVGSVGElement) => number} */
+function lineHeight(svg) {
+  const probe = svg.appendChild(make("text", {}, "0"));
+  const { height } = probe.getBBox();
+  probe.remove();
+  return height;
+}
+
 /** The part of the page that has an id, of the kind that the caller needs.
  * @template {Element} T
  * @param {string} id

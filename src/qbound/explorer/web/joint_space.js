@@ -4,9 +4,11 @@
 function drawJointSpace(robot, state, slice) {
   const svg = partOf("joints", SVGSVGElement);
   const ranges = robot.views.map((view) => [view.low, view.high]);
-  const drawn = picture(svg, ranges, { left: 46, right: 12, top: 12, bottom: 40 }, false);
+  const line = lineHeight(svg);
+  const margin = { left: 46, right: 12, top: 12, bottom: 12 + 2 * line };
+  const drawn = picture(svg, ranges, margin, false);
   clear(drawn);
-  drawJointAxes(robot, drawn);
+  drawJointAxes(robot, drawn, line);
   drawCells(drawn, slice);
   if (state.show.sample)
     drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
@@ -20,10 +22,12 @@ function drawJointSpace(robot, state, slice) {
   return { ...drawn, ...hand, singular, arcs, path, ghost };
 }
 
-/** @type {(robot: Robot, drawn: Picture) => void} */
-function drawJointAxes(robot, drawn) {
+/** Axes of the box; below it are two rows, beneath the label that stands at its lowest corner.
+ * @type {(robot: Robot, drawn: Picture, line: number) => void} */
+function drawJointAxes(robot, drawn, line) {
   const group = layer(drawn, "axes", false);
   const { left, top, right, bottom } = drawn.box;
+  const rows = [bottom + 4 + line, bottom + 4 + 2 * line];
   robot.views.forEach((view, k) => {
     const joint = robot.joints[robot.free[k]];
     const turn = joint.kind === "revolute";
@@ -34,15 +38,15 @@ function drawJointAxes(robot, drawn) {
       group.append(make("line", { class: "grid", ...ends }));
       const place =
         k === 0
-          ? { x, y: bottom + 16, "text-anchor": "middle" }
+          ? { x, y: rows[0], "text-anchor": "middle" }
           : { x: left - 6, y: y + 4, "text-anchor": "end" };
       group.append(make("text", place, shown(joint, value)));
     }
     const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
     group.append(
       k === 0
-        ? make("text", { x: right, y: bottom + 33, "text-anchor": "end" }, title)
-        : make("text", { x: 4, y: bottom + 33 }, `↑ ${title}`),
+        ? make("text", { x: right, y: rows[1], "text-anchor": "end" }, title)
+        : make("text", { x: 4, y: rows[1] }, `↑ ${title}`),
     );
   });
 }
