@@ -6,7 +6,7 @@ Exit status: 0 proved, 1 refuted, 2 malformed, proves nothing, or is about anoth
 holds a robot as text, a set of configurations made of simplices (segments, triangles, ...), and for
 each boundary and simplex a tree: "." is a leaf, a letter halves the simplex across an edge: leaves
 cover the set. A boundary function is a sum of waves, beta = sum Re A exp(i w . q). On a leaf with
-centre m, beta(m) + grad beta(m) . d - 1/2 sum abs(A) (w . d)^2 > 0 is shown at each corner m + d;
+centre m, beta(m) + grad beta(m) . d - 1/2 sum |A| (w . d)^2 > 0 is verified at each corner m + d;
 this bounds beta(m + d) from below and is concave in d, so that it is positive in between as well.
 """
 import collections, hashlib, json, math, pathlib, re, sys, tomllib
