@@ -1,7 +1,12 @@
-"""qbound: feasible joint and geometric workspaces through boundary functions.
+"""qbound: which joint values of a robot arm are safe, and where its tool goes over them.
 
-A companion to J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383. A robot file becomes a robot,
-the robot gives boundary functions, and these are harmonic forms.
+A robot file becomes a robot, the robot gives boundary functions, and these are harmonic forms;
+`find_region` solves them for every component of the safe region. The method is that of
+J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
+
+The mathematics: `geometry`, `forms`, `model`, `boundary`, `region`, and `tolerances`.
+On top of it: `sampling`, `measures`, `workspace`, `paths`, `export`, `proofs`, `figures`,
+`explorer`, `cli`. Alone: `check`. Beside all: `extras`, `version`.
 """
 
 from qbound.boundary.functions import clearance, components, pair_vector
@@ -9,7 +14,7 @@ from qbound.forms.circle import circle_arc, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-from qbound.region import Region, find_region
+from qbound.region import Region, find_region, margins, violated
 
 __all__ = [
     "HarmonicForm",
@@ -22,9 +27,11 @@ __all__ = [
     "components",
     "find_region",
     "load_robot",
+    "margins",
     "packaged_robots",
     "pair_vector",
     "save_robot",
+    "violated",
 ]
 
 

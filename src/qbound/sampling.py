@@ -75,6 +75,15 @@ def sample(
         Range of each joint; default: its limits, or (-pi, pi) where it turns all the way round.
     progress : callable, optional
         Told, now and then, how many are done.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> drawn = sample(load_robot("minervabot-v2"), 1000, keeps_clear, seed=1)
+    >>> drawn.fraction_free, round(drawn.standard_error, 3)
+    (0.667, 0.015)
+
+    The region's exact part of the square is 0.6546; a sample knows it to its standard error only.
     """
     low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))

@@ -1,1 +1,5 @@
-"""Boundary functions: from a robot to named harmonic forms."""
+"""How far is a configuration from contact? Boundary functions, as named harmonic forms.
+
+- `functions`: from a robot's points and boundaries to forms and margins, one boundary at a time;
+- `evaluator`: all of them compiled once, for one configuration or for millions.
+"""

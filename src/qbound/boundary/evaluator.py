@@ -76,6 +76,25 @@ class Evaluator:
         ------
         ValueError
             If the last axis has not one value a joint, or one is NaN or infinite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from qbound import load_robot
+        >>> compiled = evaluator(load_robot("pp-portal"))
+        >>> margins = compiled.margins([0.0, 490.0])
+        >>> compiled.names[0], round(float(margins[0]), 3)
+        ('table', 480.0)
+        >>> compiled.names[-2:], margins[-2:].tolist()
+        (('column.lower', 'column.upper'), [490.0, 10.0])
+
+        Any shape of configurations will do, but each has one value for each joint:
+
+        >>> compiled.margins(np.zeros((4, 3, 2))).shape
+        (4, 3, 11)
+        >>> compiled.margins([600.0])
+        Traceback (most recent call last):
+        ValueError: expected 2 joint values on the last axis, found 1
         """
         q = self._checked(q)
         if q.ndim == 1:
@@ -210,7 +229,20 @@ def compiled(
 
 @lru_cache(maxsize=64)
 def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
-    """Return the evaluator of a robot: every boundary in use, and the limits of all joints."""
+    """Return the evaluator of a robot: every boundary in use, and the limits of all joints.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> evaluator(robot).names
+    ('B1', 'B2', 'B3', 'B4', 'B7')
+
+    It is compiled once a robot: the next call returns the same one.
+
+    >>> evaluator(robot) is evaluator(robot)
+    True
+    """
     used = [boundary for boundary in robot.boundaries if boundary.used]
     return compiled(
         stacked(robot, used),

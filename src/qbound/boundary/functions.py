@@ -74,6 +74,14 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
     Notes
     -----
     Eq. (25) shows the same vector from the base, turned by :math:`R_{0,a}`.
+
+    Examples
+    --------
+    >>> from qbound import load_robot, pair_vector
+    >>> robot = load_robot("minervabot-v2")
+    >>> vector = pair_vector(robot, robot.boundary("B1"))
+    >>> vector([0.0, 0.0]).round(3).tolist()
+    [4.0, 0.0, 14.91]
     """
     sign, near, far = _near_far(robot, pair)
     vector = position(robot, far.name, near.frame) - near.at
@@ -89,12 +97,34 @@ def clearance(robot: Robot, boundary: Boundary) -> HarmonicForm:
         A pair: :math:`|B|^2 - d_{\min}^2` in length squared, where :math:`d_{\min}` is the two
         radii plus the clearance.
         A half-space: ``normal . r - offset - radius`` in length.
+
+    Examples
+    --------
+    >>> from qbound import clearance, load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> floor = clearance(robot, robot.boundary("B7"))
+    >>> round(float(floor([0.2, -0.5])), 3), floor.gradient([0.2, -0.5]).round(3).tolist()
+    (41.05, [-43.746, -23.883])
+
+    Of a pair the value is a difference of squares; `qbound.margins` gives lengths:
+
+    >>> pair = clearance(robot, robot.boundary("B1"))
+    >>> round(float(pair([0.2, -0.5])), 3)
+    179.453
     """
     return _clearance(boundary, robot)
 
 
 def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
-    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,)."""
+    """Return the vector :math:`B_i(q)` of a boundary, point or geometric (eq. 29), shape (3,).
+
+    Examples
+    --------
+    >>> from qbound import components, load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> components(robot, robot.boundary("B7"))([0.0, 0.0]).round(3).tolist()
+    [0.0, 0.0, 37.16]
+    """
     return _components(boundary, robot)
 
 

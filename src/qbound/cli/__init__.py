@@ -1,4 +1,10 @@
-"""The command ``qbound``: one thin module a command; angles in radians on the way out."""
+"""What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
+
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
+  `check`, `draw`, `explore`, `robots`;
+- `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
+  type them), `files` (written whole or not at all), `progress` (a line while work is long).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was found, as others read it: JSON, tables, polygons, sentences.
+"""How do others read what was found? As JSON, tables, polygons and sentences.
 
 - `formats`: texts and bytes of files; `document`: regions as JSON;
 - `polygons`: rings through the arcs of a region; `outlines`: these as CSV, GeoJSON, NumPy arrays;

@@ -1,10 +1,12 @@
-"""Figures of the book: each function draws what it is handed and returns what it drew.
+"""What does it look like? Each function draws what it is handed and returns what it drew.
 
 Angles come in radians and are drawn in degrees. The colours (Okabe and Ito) hold for colour-blind
 readers, and no meaning rests on colour alone: lines differ in dash, points in marker.
 
-Here are the style and the parts of pictures; `pictures` puts whole ones together for a robot file,
-`workspace` draws aspects and their images, `cells` pavings.
+Here are the style and the parts of pictures.
+
+- `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
+- `workspace`: aspects and their images; `cells`: pavings.
 """
 
 from __future__ import annotations

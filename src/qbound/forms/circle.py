@@ -65,6 +65,18 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
     -----
     ``theta = atan2(b, a)``: the printed arctan(b / a) loses the quadrant when a < 0 and is
     undefined when a = 0. Both signs of the arccos are roots: the printed proof keeps one.
+
+    Examples
+    --------
+    >>> from qbound import circle_roots
+    >>> roots = circle_roots(1.0, 0.0, 0.5)
+    >>> int(roots.count), roots.q.round(4).tolist(), roots.slope.tolist()
+    (2, [-1.0472, 1.0472], [1, -1])
+
+    The count tells whether the angles are roots: one where the line touches, none beyond.
+
+    >>> circle_roots(1.0, 0.0, [1.0, 2.0]).count.tolist()
+    [1, 0]
     """
     a, b, c = (np.asarray(x, dtype=float) for x in np.broadcast_arrays(a, b, c))
     if not (np.isfinite(a).all() and np.isfinite(b).all() and np.isfinite(c).all()):
@@ -120,6 +132,20 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
     ----------
     a, b, c : array_like, shape (...)
         As in `circle_roots`, with its errors.
+
+    Examples
+    --------
+    >>> from qbound import circle_arc
+    >>> arc = circle_arc(-1.0, 0.0, 0.5)
+    >>> float(arc.centre.round(4)), float(arc.half_width.round(4))
+    (3.1416, 1.0472)
+
+    Where no angle satisfies the inequality the arc is empty; where all do it is a full turn:
+
+    >>> circle_arc(1.0, 0.0, [2.0, -2.0]).empty.tolist()
+    [True, False]
+    >>> float(circle_arc(1.0, 0.0, -2.0).half_width.round(4))
+    3.1416
     """
     roots = circle_roots(a, b, c)
     above = np.broadcast_to(np.asarray(c, dtype=float), roots.theta.shape) > 0

@@ -44,6 +44,26 @@ class HarmonicForm:
         balls (dtype object).
     kinds : tuple of {"revolute", "prismatic"}
         The factor of each joint: (1, cos q, sin q) or (1, q, q²), a row of `factors.FACTORS`.
+
+    Examples
+    --------
+    The form :math:`2 + \cos q_1 - 3 \sin q_1\, q_2` of a joint that turns and one that slides:
+
+    >>> import numpy as np
+    >>> from qbound import HarmonicForm
+    >>> coefficients = np.zeros((3, 3))
+    >>> coefficients[0, 0], coefficients[1, 0], coefficients[2, 1] = 2.0, 1.0, -3.0
+    >>> form = HarmonicForm(coefficients, ("revolute", "prismatic"))
+    >>> float(form([0.0, 5.0])), form.gradient([0.0, 5.0]).tolist()
+    (3.0, [-15.0, 0.0])
+
+    Configurations are rows; a column for each joint is wanted:
+
+    >>> form([[0.0, 5.0], [np.pi, 5.0]]).round(12).tolist()
+    [3.0, 1.0]
+    >>> form(0.0)
+    Traceback (most recent call last):
+    ValueError: expected 2 joint values on the last axis, found a bare number
     """
 
     coefficients: Array

@@ -1,1 +1,5 @@
-"""Plane geometry that knows no robot: polygons, and curves as polylines."""
+"""What is true of points and lines, whatever they stand for? Geometry that knows no robot.
+
+- `polygon`: area, centroid, scaling; `polylines`: curves in steps of a stated deviation;
+- `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals.
+"""

@@ -16,6 +16,12 @@ def area(vertices: ArrayLike) -> float:
     Parameters
     ----------
     vertices : array_like, shape (m, 2)
+
+    Examples
+    --------
+    >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> area(square), area(square[::-1])
+    (1.0, -1.0)
     """
     p = np.asarray(vertices, dtype=float)
     return float(cross(p, np.roll(p, -1, axis=0)).sum() / 2)
@@ -28,6 +34,14 @@ def centroid(vertices: ArrayLike) -> Floats:
     ------
     ValueError
         If the polygon has no area.
+
+    Examples
+    --------
+    >>> centroid([[0, 0], [3, 0], [0, 3]]).tolist()
+    [1.0, 1.0]
+    >>> centroid([[0, 0], [1, 1], [2, 2]])
+    Traceback (most recent call last):
+    ValueError: a polygon without area has no centroid of the area
     """
     p = np.asarray(vertices, dtype=float)
     p0 = p.mean(axis=0)  # moments about a near point: less cancellation
@@ -39,7 +53,13 @@ def centroid(vertices: ArrayLike) -> Floats:
 
 
 def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
-    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy."""
+    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy.
+
+    Examples
+    --------
+    >>> scaled([[0, 0], [4, 0], [0, 4]], 0.5, [0, 0]).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]
+    """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
     return np.asarray(g + factor * (p - g))
 
@@ -58,6 +78,12 @@ def contains(vertices: ArrayLike, point: ArrayLike) -> bool:
     ----------
     vertices : array_like, shape (m, 2)
     point : array_like, shape (2,)
+
+    Examples
+    --------
+    >>> bowl = [[0, 0], [4, 0], [4, 4], [2, 1], [0, 4]]
+    >>> contains(bowl, [2.0, 0.5]), contains(bowl, [2.0, 3.0])
+    (True, False)
     """
     p, (x, y) = np.asarray(vertices, dtype=float), np.asarray(point, dtype=float)
     q = np.roll(p, -1, axis=0)

@@ -1,1 +1,6 @@
-"""How large, how near, how far may it grow? Moments, nearest points, safe scales, gaps."""
+"""How large is a region, how near its boundary, how far may it grow? Measures on exact arcs.
+
+- `nearest`: moments of a component, the nearest boundary point;
+- `scaling`: the largest safe scale of a polygon; `star`: of the exact region, and inner polygons;
+- `bodies`: outlines of whole links, the gaps between them, first contacts.
+"""

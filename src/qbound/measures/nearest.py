@@ -189,6 +189,19 @@ def nearest_boundary(
     ------
     ValueError
         If there is no boundary, or a weight or joint value is unfit.
+
+    Examples
+    --------
+    >>> from qbound import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> point = nearest_boundary(region, [0.2, -0.5])
+    >>> point.boundary, point.q.round(3).tolist(), round(point.distance, 3)
+    ('B7', [0.898, -0.223], 0.751)
+
+    A configuration that is not feasible has a nearest boundary too: the way back.
+
+    >>> nearest_boundary(region, [1.5, 0.0]).boundary
+    'B7'
     """
     q, w = np.asarray(q, dtype=float), np.asarray(weights, dtype=float)
     if q.shape != (2,) or not np.isfinite(q).all():

@@ -78,6 +78,25 @@ def largest_safe_scale(
     A local search over the edges gives a scale that touches. Then the polygon, scaled by it less
     `PROVED_SCALE`, is subdivided until each triangle is shown to be safe by a bound of second
     order, in floating point. A violation found on the way starts the search anew from there.
+
+    Examples
+    --------
+    >>> from qbound import clearance, find_region, load_robot
+    >>> from qbound.geometry import polygon
+    >>> robot = load_robot("minervabot-v2")
+    >>> used = [boundary for boundary in robot.boundaries if boundary.used]
+    >>> forms = [clearance(robot, boundary) for boundary in used]
+    >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
+    >>> centre = polygon.centroid(vertices)
+    >>> found = largest_safe_scale(vertices, centre, forms)
+    >>> round(found.scale, 6), used[found.form].name
+    (0.965049, 'B7')
+
+    Where nothing binds below the `highest` scale, that is the answer and the form is -1:
+
+    >>> found = largest_safe_scale(vertices, centre, forms, highest=0.5)
+    >>> found.scale, found.form
+    (0.5, -1)
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
     stacked = _stacked(forms, g + highest * (p - g), g)

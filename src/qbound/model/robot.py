@@ -40,7 +40,23 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """What a robot file says, in its own length unit and in radians."""
+    """What a robot file says, in its own length unit and in radians.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> robot = load_robot("pr-gantry-arm")
+    >>> [(joint.name, joint.type_name, joint.limits) for joint in robot.joints]
+    [('cart', 'prismatic', (-2.0, 2.0)), ('arm', 'revolute', None)]
+    >>> robot.length_unit, robot.tool
+    ('m', 'hand')
+
+    A robot does not change; `dataclasses.replace` makes another one:
+
+    >>> from dataclasses import replace
+    >>> replace(robot, tool="elbow").tool
+    'elbow'
+    """
 
     name: str
     joints: tuple[Joint, ...]

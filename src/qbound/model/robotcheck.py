@@ -32,7 +32,17 @@ AngleUnit = Literal["deg", "rad"]
 
 
 class RobotFileError(ValueError):
-    """A robot file that is wrong: names the file, the key, what was found, what is allowed."""
+    """A robot file that is wrong: names the file, the key, what was found, what is allowed.
+
+    Examples
+    --------
+    >>> from qbound import RobotFileError, load_robot
+    >>> try:
+    ...     load_robot("no such file.toml")
+    ... except RobotFileError as error:
+    ...     print(str(error).partition(";")[0])
+    no such file.toml: No such file or directory
+    """
 
 
 class RobotFile(Row, kw_only=True):

@@ -48,6 +48,18 @@ def load_robot(source: str | Path) -> Robot:
     -----
     UserWarning
         If a pair of points has no radius and no clearance: it never bounds anything.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> load_robot("pp-portal")
+    <Robot Portal with a gripper: beam (prismatic), column (prismatic); 7 boundaries>
+
+    A file that is not there, or says what no robot file may, is one error that names the place:
+
+    >>> load_robot("arm.tml")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    qbound.model.robotcheck.RobotFileError: arm.tml: No such file or directory; packaged robots ...
     """
     text, label = robot_text(source)
     try:
@@ -69,6 +81,20 @@ def save_robot(robot: Robot, path: str | Path) -> None:
         If the robot is none that a file may hold (an infinite offset, say); nothing is written.
     ModuleNotFoundError
         If there is no tomlkit; it comes with ``qbound[files]``.
+
+    Examples
+    --------
+    A robot with one number changed:
+
+    >>> from dataclasses import replace
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from qbound import load_robot, save_robot
+    >>> robot = replace(load_robot("pp-portal"), home=[600.0, 100.0])
+    >>> with TemporaryDirectory() as folder:
+    ...     save_robot(robot, Path(folder, "portal.toml"))
+    ...     load_robot(Path(folder, "portal.toml")).home.tolist()
+    [600.0, 100.0]
     """
     require("tomlkit")
     import tomlkit
@@ -88,7 +114,14 @@ def save_robot(robot: Robot, path: str | Path) -> None:
 
 
 def packaged_robots() -> tuple[str, ...]:
-    """Return the names of the robots inside the package."""
+    """Return the names of the robots inside the package.
+
+    Examples
+    --------
+    >>> from qbound import packaged_robots
+    >>> "minervabot-v2" in packaged_robots()
+    True
+    """
     folder = resources.files("qbound") / "robots"
     return tuple(sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml")))
 

@@ -1,4 +1,4 @@
-"""Paths through a region: traversals, what they meet, and when each joint is where.
+"""How does the arm go through a region? Paths, what they meet, and when each joint is where.
 
 - `traversal`: vertices or arcs in an order, the joint path and the tool's;
 - `encounters`: where a path crosses itself or the singular curve, and its margins;

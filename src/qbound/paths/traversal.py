@@ -52,7 +52,7 @@ class Traversal:
     reach : ndarray, shape (m,)
         Distance of the tool from the origin of the first joint's frame; length.
     s : ndarray, shape (m,)
-        ParameterPoint of each row on the path: legs behind it, plus the parameter on its own.
+        Place of each row on the path: legs behind it, plus the parameter on its own.
     legs : tuple of Leg
     deviation : float
         The tool's path is nowhere farther than this from the polyline through `tool`; length.
@@ -110,6 +110,20 @@ def traverse(
     ------
     ValueError
         If there are fewer than two vertices or a value is not finite.
+
+    Examples
+    --------
+    >>> from qbound import find_region, load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
+    >>> path = traverse(robot, vertices, closed=True, deviation=0.01)
+    >>> len(path.legs), path.tool.shape, path.deviation <= 0.01
+    (6, (317, 3), True)
+
+    Straight lines between feasible vertices may leave the region: it is not convex.
+
+    >>> bool(find_region(robot).contains(path.q).all())
+    False
     """
     stops = np.asarray(vertices, dtype=float)
     if len(stops) < 2 or not np.isfinite(stops).all():

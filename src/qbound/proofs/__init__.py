@@ -1,4 +1,4 @@
-"""Proofs: exact numbers, balls, cells and certificates that a checker accepts.
+"""What is proved? Exact numbers, balls, cells, and certificates that a checker accepts.
 
 - answers: `verdict` (proved, refuted, undecided: of every prover);
 - numbers: `exact` (a robot as its file writes it), `balls` (python-flint's, and their precision);

@@ -116,6 +116,26 @@ def certify(
         Cells that are opened for one boundary before the answer is "undecided".
     bound : callable
         The lower bound on a cell; the checkers only follow `minorant.second_order`.
+
+    Examples
+    --------
+    >>> from qbound.model.robotfile import robot_text
+    >>> from qbound.proofs.statements import box
+    >>> text, _ = robot_text("minervabot-v2")
+    >>> answer = certify(text, box(["-10", "-10"], ["10", "10"]))  # in degrees, as the file
+    >>> answer.verdict.value, answer.leaves
+    ('proved', 10)
+
+    Nobody has to believe it: the checker stands alone, and says whether the statement is refuted.
+
+    >>> check.check(answer.text)[0]
+    False
+
+    What is not safe is refuted, with a configuration that violates a boundary:
+
+    >>> answer = certify(text, box(["-10", "-10"], ["90", "10"]))
+    >>> answer.verdict.value, answer.witness is not None
+    ('refuted', True)
     """
     robot = parse_robot(tomllib.loads(text))
     cells = check.read_cells(statement)

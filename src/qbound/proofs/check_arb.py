@@ -47,6 +47,22 @@ def verify(text: str) -> Verdict:
         If it does not prove what it says.
     ModuleNotFoundError
         Without python-flint (the extra `proofs`).
+
+    Examples
+    --------
+    >>> from qbound.model.robotfile import robot_text
+    >>> from qbound.proofs.certify import certify
+    >>> from qbound.proofs.statements import box
+    >>> text, _ = robot_text("minervabot-v2")
+    >>> proof = certify(text, box(["-10", "-10"], ["10", "10"])).text
+    >>> verify(proof).value
+    'proved'
+
+    A proof of another robot is none:
+
+    >>> verify(proof.replace("11.32", "11.33"))
+    Traceback (most recent call last):
+    ValueError: the hash is not of this robot
     """
     require("flint")
     from flint import ctx

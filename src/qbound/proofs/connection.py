@@ -106,6 +106,18 @@ def connection(
     ------
     ValueError
         If a configuration is none, or lies outside the limits.
+
+    Examples
+    --------
+    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> problem = exact_problem(exact_robot("minervabot-v2"))
+    >>> connection(problem, [0.0, 0.0], [0.2, -0.5]).answer
+    'connected'
+
+    Both poses may be safe, and yet no safe path joins them:
+
+    >>> connection(problem, [0.0, 0.0], [0.2, 2.5]).answer
+    'separated'
     """
     for q in (one, other):
         values = np.asarray(q, dtype=float)

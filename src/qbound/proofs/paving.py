@@ -146,6 +146,16 @@ def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Pav
     ------
     ValueError
         If the tolerance is not positive.
+
+    Examples
+    --------
+    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> paving = pave(exact_problem(exact_robot("minervabot-v2")), 0.1)
+    >>> float(paving.undecided_fraction) <= 0.1
+    True
+    >>> inner, outer = (float(volume) for volume in paving.bracket)
+    >>> inner < 25.8433 < outer
+    True
     """
     if not tolerance > 0:
         raise ValueError(f"a tolerance of {tolerance} cannot be met; it has to be positive")

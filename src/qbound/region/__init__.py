@@ -1,4 +1,9 @@
-"""Which values of two joints are safe? All of them, as components bounded by exact arcs."""
+"""Which values of two joints are safe? All of them, as components bounded by exact arcs.
+
+- `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
+- `decomposition`: cells in which every form is positive; `cells`: which of them are adjacent;
+- `loops`, `arcs`: the boundary of each component; `region`: the answer, and what it can be asked.
+"""
 
 from qbound.region.problem import Problem, Rule, clearance_problem, state
 from qbound.region.region import Component, Region, Vertex, find_region, margins, solve, violated

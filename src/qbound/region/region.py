@@ -97,6 +97,19 @@ class Region:
         Component of each cell.
     empty_because : tuple of str
         Where there is no component: boundaries that leave no room together, each of them needed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from qbound import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> [round(component.area, 3) for component in region.components]
+    [11.78, 8.552, 4.212, 0.65, 0.649]
+    >>> vertex = region.home.vertices[0]
+    >>> vertex.boundaries, np.degrees(vertex.q).round(2).tolist()
+    (('B7', 'B4'), [-93.81, -163.81])
+
+    `home` is None where the home pose is in no component, so test it before use.
     """
 
     components: tuple[Component, ...]
@@ -150,52 +163,154 @@ class Region:
         Raises
         ------
         ValueError
-            If a joint value is NaN or infinite.
+            If a joint value is NaN or infinite, or there are not two on the last axis.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.boundaries
+        ('B1', 'B2', 'B3', 'B4', 'B7')
+        >>> region.margins([0.2, -0.5]).round(3).tolist()
+        [13.296, 23.914, 12.395, 19.261, 41.05]
+
+        A million configurations are one call. A value that is no number is no answer:
+
+        >>> region.margins([[0.2, -0.5], [0.8, 0.3]]).shape
+        (2, 5)
+        >>> region.margins([0.2, float("nan")])
+        Traceback (most recent call last):
+        ValueError: a joint value is NaN or infinite
         """
         return self.problem.evaluator.margins(q)
 
     def contains(self, q: ArrayLike) -> Bools:
-        """Tell where configurations, shape (..., 2), are feasible: every margin is >= 0."""
+        """Tell where configurations, shape (..., 2), are feasible: every margin is >= 0.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.contains([[0.2, -0.5], [1.5, 0.0]]).tolist()
+        [True, False]
+
+        A configuration on the boundary itself is feasible:
+
+        >>> bool(region.contains(region.home.vertices[0].q))
+        True
+        """
         return self.problem.evaluator.feasible(q)
 
     def components_of(self, q: ArrayLike) -> tuple[int, ...]:
         """Return every component, by index, whose closure holds a configuration, shape (2,).
 
         Modulo full turns of a joint without limits; errors as in `margins`.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.components_of([0.2, -0.5]), region.components_of([1.5, 0.0])
+        ((0,), ())
+
+        Both configurations may be feasible, and yet the arm cannot go from one to the other:
+
+        >>> region.components_of([0.2, 2.5])
+        (1,)
         """
         placed = _closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
         return tuple(sorted({self.owner[one.cell] for one in placed}))
 
     def component_of(self, q: ArrayLike) -> int | None:
-        """Return the first of `components_of`, None where there is none."""
+        """Return the first of `components_of`, None where there is none.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.component_of([0.2, -0.5])
+        0
+        >>> print(region.component_of([1.5, 0.0]))
+        None
+        """
         return next(iter(self.components_of(q)), None)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the components with matplotlib and return the axes."""
+        """Draw the components and return the axes; matplotlib comes with ``qbound[figures]``.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from qbound import find_region, load_robot
+        >>> figure = Figure()
+        >>> axes = find_region(load_robot("pp-portal")).plot(figure.subplots())
+        >>> axes.get_xlabel()
+        'beam / mm'
+
+        Without axes of your own it draws on those of `matplotlib.pyplot`.
+        """
         from qbound.figures.pictures import plot_region
 
         return plot_region(self, ax)
 
     def explore(self) -> Any:
-        """Return the page in which one moves the arm; Jupyter shows it inline."""
+        """Return the page in which one moves the arm; Jupyter shows it inline.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> page = find_region(load_robot("pp-portal")).explore()
+        >>> page.save("portal.html")  # doctest: +SKIP
+        """
         from qbound.explorer import explore
 
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the region as plain data, schema qbound/region/2: what `--json` writes."""
+        """Return the region as plain data, schema qbound/region/2: what `--json` writes.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> document = find_region(load_robot("minervabot-v2")).to_dict()
+        >>> document["schema"], document["joints"], len(document["components"])
+        ('qbound/region/2', ['q1', 'q2'], 5)
+        >>> document["home"]
+        {'q': [0.0, 0.0], 'feasible': True, 'violated': []}
+        """
         from qbound.export.document import region_document
 
         return region_document(self)
 
     def to_geojson(self, deviation: float = 1e-3) -> dict[str, Any]:
-        """Return polygons of a stated deviation as GeoJSON has them."""
+        """Return polygons as GeoJSON has them, no farther from the arcs than `deviation`.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> drawn = find_region(load_robot("minervabot-v2")).to_geojson(deviation=0.01)
+        >>> drawn["type"], len(drawn["features"])
+        ('FeatureCollection', 5)
+        >>> drawn["features"][0]["properties"]["deviation"] <= 0.01
+        True
+        """
         from qbound.export.outlines import find_outlines, outlines_geojson
 
         return outlines_geojson(find_outlines(self, deviation))
 
     def to_shapely(self, deviation: float = 1e-3) -> MultiPolygon:
-        """Return polygons of a stated deviation as one shapely geometry."""
+        """Return polygons, no farther from the arcs than `deviation`, as one shapely geometry.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> drawn = region.to_shapely()
+        >>> len(drawn.geoms), round(region.area, 3), round(drawn.area, 3)
+        (5, 25.843, 25.846)
+
+        The polygons bound the region only up to the deviation; the arcs are exact.
+        """
         from qbound.export.outlines import find_outlines, outlines_shapely
 
         return outlines_shapely(find_outlines(self, deviation))
@@ -230,14 +345,25 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> from qbound import find_region, load_robot
     >>> region = find_region(load_robot("minervabot-v2"))
     >>> region
-    <Region of MinervaBotV2: 5 components, with home, area 23.0965 rad^2>
-    >>> region.component_of([0.2, -0.5]), region.component_of([0.2, 2.5])
-    (0, None)
+    <Region of MinervaBotV2: 5 components, with home, area 25.8433 rad^2>
+    >>> region.home
+    <Component: area 11.78, 6 vertices, 1 loops, with home>
 
-    A region may be empty; then it says why:
+    A region may be empty. It is no error, and the region says which boundaries leave no room; here
+    the floor is raised above the arm's reach:
 
-    >>> find_region(load_robot("minervabot-v2"), rule="paper").empty_because
-    ()
+    >>> from dataclasses import replace
+    >>> robot = load_robot("minervabot-v2")
+    >>> floor = replace(robot.boundary("B7"), offset=100.0)
+    >>> region = find_region(replace(robot, boundaries=(floor,)))
+    >>> region.components, region.home, region.empty_because
+    ((), None, ('B7',))
+
+    A region has two joints, and all others are held, by name or by index:
+
+    >>> find_region(robot, held={"q2": 0.3})
+    Traceback (most recent call last):
+    ValueError: a region has two joints; MinervaBotV2 has 1 that are not held
     """
     if rule == "clearance":
         return solve(clearance_problem(robot, held))
@@ -311,14 +437,37 @@ def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     Raises
     ------
     ValueError
-        If a joint value is NaN or infinite.
+        If a joint value is NaN or infinite, or there is not one for each joint.
+
+    Examples
+    --------
+    >>> from qbound import load_robot, margins
+    >>> robot = load_robot("two-joint-arm-with-walls")
+    >>> name, margin = min(margins(robot, [0.0, 0.0]), key=lambda item: item[1])
+    >>> name, round(margin, 3)
+    ('forearm, lamp', 0.131)
+
+    All joints count, however many, and a joint limit is a boundary; on its limit a joint keeps it:
+
+    >>> dict(margins(load_robot("pp-portal"), [0.0, 100.0]))["beam.lower"]
+    0.0
     """
     compiled = evaluator(robot)
     return list(zip(compiled.names, compiled.margins(q).tolist(), strict=True))
 
 
 def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
-    """Return those of the `margins` of a configuration that are negative; none: feasible."""
+    """Return those of the `margins` of a configuration that are negative; none: feasible.
+
+    Examples
+    --------
+    >>> from qbound import load_robot, violated
+    >>> robot = load_robot("minervabot-v2")
+    >>> [(name, round(margin, 3)) for name, margin in violated(robot, [1.5, 0.0])]
+    [('B7', -26.882)]
+    >>> violated(robot, [0.2, -0.5])
+    []
+    """
     return [(name, margin) for name, margin in margins(robot, q) if margin < 0]
 
 
@@ -369,7 +518,7 @@ def _measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> 
             shift = home - own.place - TURN * np.array(windings[own.cell])
         elif not any(wraps):
             shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(_Found(windings, wraps, areas.sum(), middle, shift, own is not None))
+        found.append(_Found(windings, wraps, float(areas.sum()), middle, shift, own is not None))
     return found
 
 

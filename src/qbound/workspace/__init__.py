@@ -1,4 +1,4 @@
-"""The geometric workspace of two joints: inverse kinematics, areas, and what connects.
+"""Where does the tool go? The geometric workspace of two joints: areas, postures, passages.
 
 - `planar`: the arm in its plane: det J, its zeros, inverse kinematics;
 - `fibres`: the region as intervals of the first joint, one set for each value of the second;

@@ -143,6 +143,21 @@ def find_workspace(
     ------
     NoHomeError
         If the home pose is in no component.
+
+    Examples
+    --------
+    >>> from qbound import find_region, load_robot
+    >>> from qbound.workspace.planar import planar_arm
+    >>> robot = load_robot("minervabot-v2")
+    >>> problem = find_region(robot).problem
+    >>> found = find_workspace(planar_arm(robot), problem, robot.home)
+    >>> round(found.area, 2), round(found.covered_twice, 2)
+    (3391.72, 2491.81)
+
+    A place may be reached in two postures, in one, or, like one out of reach, in none:
+
+    >>> [found.safe_postures(place) for place in ([40.0, 40.0], [0.0, 500.0])]
+    [2, 0]
     """
     region = find_fibres(problem, home)
     chosen = frozenset(

@@ -1,0 +1,82 @@
+"""Examples run, whatever a newcomer calls first has one, and no module is left out of the books."""
+
+import doctest
+import importlib
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+import qbound
+
+SOURCES = Path(qbound.__file__).parents[1]
+API = Path(__file__).parents[1] / "book" / "api.md"
+FILES = {
+    ".".join(path.relative_to(SOURCES).with_suffix("").parts).removesuffix(".__init__"): path
+    for package in ("qbound", "lizarraga2025")
+    for path in (SOURCES / package).rglob("*.py")
+}
+MODULES = sorted(name for name, path in FILES.items() if ">>>" in path.read_text(encoding="utf-8"))
+PACKAGES = sorted(name for name, path in FILES.items() if path.name == "__init__.py")
+ON_A_PAGE_OF_THEIR_PACKAGE = (
+    "qbound.cli",
+    "lizarraga2025.commands",
+    "lizarraga2025.computations",
+    "lizarraga2025.evidence",
+    "lizarraga2025.ledger",
+)
+METHODS = [
+    name
+    for name, _ in inspect.getmembers(qbound.Region, inspect.isfunction)
+    if not name.startswith("_")
+]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_show_what_the_calls_return(name) -> None:
+    failed, tried = doctest.testmod(importlib.import_module(name))
+    assert tried
+    assert not failed
+
+
+@pytest.mark.parametrize("name", qbound.__all__)
+def test_everything_at_the_front_door_has_an_example(name) -> None:
+    assert ">>>" in (getattr(qbound, name).__doc__ or "")
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_of_a_region_has_an_example(name) -> None:
+    assert ">>>" in (getattr(qbound.Region, name).__doc__ or "")
+
+
+def test_the_first_calls_of_the_api_page_return_what_it_shows() -> None:
+    page = API.read_text(encoding="utf-8").replace("```", "")  # a fence would belong to the output
+    examples = doctest.DocTestParser().get_doctest(page, {}, API.name, str(API), 0)
+    failed, tried = doctest.DocTestRunner().run(examples)
+    assert tried > 10
+    assert not failed
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_the_docstring_of_a_package_lists_its_modules(name) -> None:
+    said = set(re.findall(r"`(\w+)`", importlib.import_module(name).__doc__ or ""))
+    inside = {module.rpartition(".")[2] for module in FILES if module.rpartition(".")[0] == name}
+    assert inside - {"__main__"} <= said
+
+
+def test_the_api_page_lists_every_module_once_and_no_other() -> None:
+    listed = re.findall(
+        r"^   ((?:qbound|lizarraga2025)[.\w]+)$", API.read_text("utf-8"), re.MULTILINE
+    )
+    inside = tuple(f"{name}." for name in ON_A_PAGE_OF_THEIR_PACKAGE)
+    modules = set(FILES) - set(PACKAGES) - {"qbound.__main__", "qbound.check"}  # a file to read
+    assert len(set(listed)) == len(listed)
+    assert set(listed) <= set(FILES)
+    assert {name for name in modules if not name.startswith(inside)} <= set(listed)
+    assert set(ON_A_PAGE_OF_THEIR_PACKAGE) <= set(listed)
+
+
+def test_there_are_modules_and_methods_to_look_at() -> None:
+    assert {"qbound.region.region", "qbound.proofs.certify"} <= set(MODULES)
+    assert {"margins", "contains", "plot", "to_dict"} <= set(METHODS)
