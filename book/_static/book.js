@@ -110,11 +110,13 @@ function repairNames() {
   }
 }
 
-// A module's name is long for a phone: it may break after a dot.
-function breakAfterDots() {
-  for (const name of document.querySelectorAll(".prev-next-title, .bd-article :is(h1, cite)")) {
+// A module's name is long for a phone and for a side bar: it may break after a dot or a low line.
+const NAMES = ".prev-next-title, .bd-article :is(h1, cite), .bd-sidebar-primary nav a";
+
+function breakNames() {
+  for (const name of document.querySelectorAll(NAMES)) {
     for (const text of [...name.childNodes].filter((node) => node instanceof Text)) {
-      const parts = text.data.split(/(?<=\.)(?=\w)/);
+      const parts = text.data.split(/(?<=[._])(?=\w)/);
       text.replaceWith(...parts.flatMap((part) => [part, document.createElement("wbr")]));
     }
   }
@@ -122,7 +124,7 @@ function breakAfterDots() {
 
 window.addEventListener("load", () => {
   repairNames();
-  breakAfterDots();
+  breakNames();
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
   formulasShown.then(holdPunctuation).then(watchBoxes);
