@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
-import importlib
 import re
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -37,11 +37,7 @@ def test_every_object_of_the_paper_stands_in_the_book_once(label):
 @rows
 def test_the_function_exists(row):
     name = re.search(r"\{py:\w+\}`~?([\w.]+)`", row)[1]
-    module, *attributes = re.split(r"\.(?=[A-Z_a-z])", name.removeprefix("qbound."))
-    found = importlib.import_module(f"qbound.{module}")
-    for attribute in attributes:
-        found = getattr(found, attribute)
-    assert callable(found)
+    assert callable(resolve_name(name))
 
 
 @rows

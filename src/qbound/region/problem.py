@@ -43,7 +43,8 @@ class Problem:
     limits : tuple of two (str, str)
         Names of the lower and the upper end of each range.
     distances : tuple of (float or None)
-        What a pair keeps (eq. 11), one a form; None where the form's value is the margin.
+        What a pair keeps (eq. 11), one a form; None where the form's value is the margin, as it is
+        of all forms after the last that is given.
     robot : Robot, optional
         Whose boundaries these are; None for forms that stand for themselves.
     joints : tuple of two int
@@ -72,7 +73,8 @@ class Problem:
     @cached_property
     def evaluator(self) -> Evaluator:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
-        distances = self.distances or (None,) * len(self.names)
+        missing = len(self.names) - len(self.distances)
+        distances = (*self.distances, *[None] * missing)
         return compiled(self.forms, self.names, distances, self.ranges, self.limits)
 
     @property
@@ -98,9 +100,7 @@ class Problem:
     def with_form(self, name: str, coefficients: Floats) -> Problem:
         """Return the problem with one more form, of coefficients (3, 3), as its last."""
         table = np.concatenate([self.forms.coefficients, coefficients[None]])
-        forms = HarmonicForm(table, self.forms.kinds)
-        distances = (*self.distances, None) if self.distances else ()
-        return replace(self, forms=forms, names=(*self.names, name), distances=distances)
+        return replace(self, forms=HarmonicForm(table, self.forms.kinds), names=(*self.names, name))
 
     def without(self, dropped: Sequence[int]) -> Problem:
         """Return the problem without some of its forms, by index."""
@@ -109,7 +109,7 @@ class Problem:
             self,
             forms=self.forms[kept],
             names=tuple(self.names[k] for k in kept),
-            distances=tuple(self.distances[k] for k in kept) if self.distances else (),
+            distances=tuple(d for k, d in enumerate(self.distances) if k not in dropped),
         )
 
     def constants(self) -> dict[int, float]:
@@ -177,7 +177,7 @@ def state(
         names=(*(boundary.name for boundary in used), *(name for name, _ in beyond)),
         ranges=(ranges[0], ranges[1]),
         limits=(limits[0], limits[1]),
-        distances=(*(robot.least_distance(b) for b in used), *[None] * len(beyond)),
+        distances=tuple(robot.least_distance(boundary) for boundary in used),
         robot=robot,
         joints=(one, other),
         held=dict(held),
