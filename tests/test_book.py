@@ -159,7 +159,7 @@ def test_a_field_of_the_api_is_called_as_in_the_docstring(page):
 @pytest.mark.parametrize("page", API_PAGES)
 def test_no_formula_of_the_api_is_left_as_tex(page):
     article = copy(read(page).select_one("article"))
-    for known in article.select("code, pre, .math, .sig, script"):  # pre: examples that run
+    for known in article.select("code, pre, .math, .sig, script"):  # examples are code
         known.decompose()
     assert re.findall(r"\S*(?:\w_\{|\w\^)\S*", article.get_text()) == []
 

@@ -21,8 +21,9 @@ from qbound.boundary.functions import (
     position,
     squared_distance,
 )
-from qbound.model.robot import HalfSpace, Pair, Point, joint_symbols, with_symbols
+from qbound.model.robot import HalfSpace, Pair, Point
 from qbound.model.robotfile import parse_robot
+from qbound.symbols import joint_symbols, with_symbols
 from support.oracles import (
     ANGLES,
     VECTORS,

@@ -16,7 +16,7 @@ import pytest
 from scipy.optimize import minimize
 
 from qbound import check, cli
-from qbound.boundary import clearance
+from qbound.boundary.functions import clearance
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
@@ -344,7 +344,7 @@ def third(cells, edges):
     return halves
 
 
-HALVED, UNITS, FORMS, MORE = prover.halved, prover.units, prover._forms, prover.with_extra_clearance
+HALVED, UNITS, FORMS = prover.halved, prover.units, prover._forms
 CUT, CLOSE, TREE = FOREST.cut, FOREST.close, FOREST._tree
 
 FAULTS = {
@@ -373,7 +373,7 @@ FAULTS = {
         forest_with(_tree=lambda self, root: TREE(self, (root + 1) % self.size)),
     ),
     "degrees off": ("units", lambda robot: UNITS(robot) * 0.97),
-    "the margin ignored": ("with_extra_clearance", lambda robot, length: MORE(robot, 0)),
+    "the margin ignored": ("wider", lambda robot, statement: robot),
     "a boundary forgotten": (
         "_forms",
         lambda *x: {name: w for name, w in FORMS(*x).items() if name != "B7"},

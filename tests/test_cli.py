@@ -9,9 +9,9 @@ import pytest
 from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 
+from lizarraga2025 import closed_form
 from qbound import load_robot, packaged_robots
 from qbound.cli import main
-from qbound.region import paper_rule
 
 
 def run(capsys, *arguments: str) -> tuple[int, str, str]:
@@ -45,7 +45,7 @@ def test_region_writes_the_promised_json_and_nothing_else(capsys):
 def test_the_papers_rule_gives_the_six_points(capsys):
     status, out, _ = run(capsys, "region", "minervabot-v2", "--rule", "paper", "--json", "-")
     (component,) = json.loads(out)["components"]
-    expected = sorted(v.q.tolist() for v in paper_rule.vertices(load_robot("minervabot-v2")))
+    expected = sorted(v.q.tolist() for v in closed_form.vertices(load_robot("minervabot-v2")))
     assert status == 0
     assert_allclose(sorted(v["q"] for v in component["vertices"]), expected, atol=1e-12)
 

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.geometry.polygon import centroid, scaled
 from qbound.model.robotfile import parse_robot
@@ -23,7 +24,7 @@ from support.oracles import crossing_points, packaged_table, point_seen_from, ro
 MINERVA = load_robot("minervabot-v2")
 REGION = find_region(MINERVA)
 TABLE = packaged_table()
-SIX = np.array([vertex.q for vertex in paper_rule.vertices(MINERVA)])
+SIX = np.array([vertex.q for vertex in closed_form.vertices(MINERVA)])
 SMALL = scaled(SIX, 0.9, centroid(SIX))
 ORDERS = st.permutations(range(6)).flatmap(lambda o: st.integers(3, 6).map(lambda n: o[:n]))
 SINGULAR = np.arctan2(-25.98, 15.0)  # link 2 in line with link 1

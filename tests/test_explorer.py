@@ -15,6 +15,7 @@ import quickjs
 import shapely
 from numpy.testing import assert_allclose
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
@@ -296,7 +297,7 @@ def test_the_smallest_clearance_of_a_scaled_polygon_is_that_of_its_edges(factor)
 def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
     data = explorer_data(find_region(robot, rule="paper"))
-    corners = [vertex.q for vertex in paper_rule.vertices(robot)]
+    corners = [vertex.q for vertex in closed_form.vertices(robot)]
     assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
     script = Script(data)

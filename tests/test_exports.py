@@ -20,7 +20,6 @@ from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson
 from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.geometry.bisection import last_before
-from qbound.model.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.proofs.connection import connection
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
@@ -32,6 +31,7 @@ from qbound.proofs.reports import (
     paving_lines,
 )
 from qbound.sampling import keeps_clear, sample
+from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.report import workspace_report
 
 MINERVA = load_robot("minervabot-v2")

@@ -188,7 +188,7 @@ def test_a_command_says_how_to_install_what_it_misses(
 
 CALLS = {
     "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
-    "sympy": "qbound.model.robot.with_symbols(robot)",
+    "sympy": "qbound.symbols.with_symbols(robot)",
     "flint": "qbound.proofs.exact.exact_robot(robot)",
     "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
     "IPython": "qbound.figures.table(['a'], [[1]])",
@@ -198,7 +198,7 @@ CALLS = {
 @pytest.mark.parametrize("module", CALLS)
 def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
     code = (
-        "import qbound.figures.pictures, qbound.model.robot, qbound.proofs.exact\n"
+        "import qbound.figures.pictures, qbound.model.robot, qbound.proofs.exact, qbound.symbols\n"
         f"robot = qbound.load_robot('minervabot-v2')\n{CALLS[module]}"
     )
     done = plain.run("python", "-c", code)

@@ -18,11 +18,11 @@ from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
 
+from lizarraga2025.closed_form import vertices
 from qbound import figures, find_region, load_robot
-from qbound.figures.pictures import Chart, pose_picture, traversal_picture, workspace_picture
+from qbound.figures.pictures import pose_picture, traversal_picture, workspace_picture
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
-from qbound.region.paper_rule import vertices
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
 from support.oracles import packaged_table, point_seen_from
@@ -221,11 +221,11 @@ def test_every_picture_draws_the_names_of_the_file_as_they_are(name) -> None:
     table |= {"home": {joint["name"]: 0.0 for joint in table["joint"]}, "tool": old[table["tool"]]}
     robot = parse_robot(table)
     region, (first, second) = find_region(robot), (joint.name for joint in robot.joints)
-    chart, walk = Chart(region, (0, 1)), traverse(robot, SIX[:2])
+    walk = traverse(robot, SIX[:2])
     seen = {f"{first} / °", f"{second} / °", old["B7"]}
-    assert seen <= texts_in(traversal_picture(robot, chart, walk, ["1", "2"]))
+    assert seen <= texts_in(traversal_picture(region, walk, ["1", "2"]))
     seen |= {f"{first} = 0°, {second} = 0°"}
-    assert seen <= texts_in(pose_picture(robot, robot.home, chart))
+    assert seen <= texts_in(pose_picture(robot, robot.home, region))
     workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
     loops = (loop for aspect in workspace.aspects for loop in aspect.region.loops)
     bounds = {arc.boundary for loop in loops for arc in loop}
@@ -246,7 +246,7 @@ import sys
 from matplotlib.figure import Figure
 import matplotlib as mpl
 from qbound import figures, find_region, load_robot
-from qbound.region.paper_rule import bound_curves, vertices
+from lizarraga2025.closed_form import bound_curves, vertices
 robot = load_robot("minervabot-v2")
 with mpl.rc_context(figures.STYLE):
     figure = Figure()

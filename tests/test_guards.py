@@ -74,7 +74,6 @@ def test_squares_that_touch_at_corners_are_two_where_the_form_vanishes_on_a_fibr
     assert two_squares(turn, base)
 
 
-@pytest.mark.xfail(reason="the jump of a root by half a turn between two close critical values")
 @both_bases
 def test_squares_that_touch_at_corners_are_two_wherever_they_lie(base) -> None:
     assert [turn for turn in np.arange(-60, 60) / 20 if not two_squares(turn, base)] == []

@@ -36,10 +36,10 @@ def test_numbers_never_call_sympy() -> None:
     """From the file to the vertices and a sample: the file is checked, no symbol is made."""
     modules = loaded_by(
         "import qbound, numpy\n"
-        "from qbound import sampling\nfrom qbound.region import paper_rule\n"
+        "from qbound import sampling\nfrom lizarraga2025 import closed_form\n"
         "from qbound.paths import traversal\n"
         "robot = qbound.load_robot('minervabot-v2')\n"
-        "q = [v.q for v in paper_rule.vertices(robot)]\n"
+        "q = [v.q for v in closed_form.vertices(robot)]\n"
         "traversal.traverse(robot, q)\n"
         "sampling.sample(robot, 10, sampling.keeps_clear, seed=1)"
     )

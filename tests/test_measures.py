@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.measures.nearest import along, moments, nearest_boundary, vertex_centroid
@@ -91,7 +92,7 @@ def test_the_papers_region_has_the_centroid_of_its_cells():
     found = moments(region.problem, only(region))
     assert found.area == pytest.approx(only(region).area, rel=1e-13)
     assert_allclose(found.centroid, only(region).centroid, atol=1e-13)
-    mean = np.mean([vertex.q for vertex in paper_rule.vertices(robot)], axis=0)
+    mean = np.mean([vertex.q for vertex in closed_form.vertices(robot)], axis=0)
     assert_allclose(vertex_centroid(only(region)), mean, atol=1e-12)
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely.geometry import Point, Polygon
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.export.polygons import area, polygons
 from qbound.model.robotfile import parse_robot
@@ -117,7 +118,7 @@ def test_areas_of_cut_polygons_are_those_of_the_region(x, y, clearance) -> None:
 
 def test_vertices_of_the_papers_rule_bear_the_papers_numbers() -> None:
     (numbered,) = solve(paper_rule.problem(MINERVA), MINERVA.home).components
-    expected = [vertex.q for vertex in paper_rule.vertices(MINERVA)]
+    expected = [vertex.q for vertex in closed_form.vertices(MINERVA)]
     assert_allclose([vertex.q for vertex in numbered.vertices], expected, atol=1e-12)
     starts = [arc.points[0] for arc in numbered.loops[0]]
     assert_allclose(starts, expected, atol=1e-9)

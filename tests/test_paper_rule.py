@@ -1,6 +1,7 @@
 """The paper's rule: the 22 bounds, the box, the six vertices, and what other readings give."""
 
 import re
+from dataclasses import replace
 from math import degrees, pi
 
 import numpy as np
@@ -8,19 +9,18 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.closed_form import bound_curves, geometric_bounds, vertices
 from qbound import load_robot
 from qbound.boundary.functions import closest_approach
-from qbound.model.robot import Robot
+from qbound.model.robot import Boundary, Robot
 from qbound.model.robotfile import parse_robot
 from qbound.region.paper_rule import (
     LOWER,
     UPPER,
     Bound,
-    bound_curves,
     box,
     feasible,
-    geometric_bounds,
-    vertices,
+    problem,
     windows,
 )
 from support.oracles import (
@@ -444,3 +444,14 @@ def test_a_joint_without_a_window_is_refused() -> None:
     table["boundary"] = [row_of(table, "boundary", name) for name in ("B1", "B2", "B7")]
     with pytest.raises(ValueError, match=re.escape("no point pair bounds joint 'q2'")):
         box(parse_robot(table))
+
+
+@pytest.mark.parametrize("ask", [windows, problem, lambda robot: feasible(robot, robot.home)])
+def test_a_boundary_of_another_type_is_refused_where_it_is_in_use(ask) -> None:
+    """Passing over it would call free what it forbids."""
+    other = type("Ring", (Boundary,), dict.fromkeys(Boundary.__abstractmethods__))
+    robot = replace(MINERVA, boundaries=(*MINERVA.boundaries, other("ring")))
+    ask(robot)  # only drawn
+    other.used = True
+    with pytest.raises(ValueError, match=r"^ring: the paper's rule has no bounds for a Ring$"):
+        ask(robot)

@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.ndimage import label
 
+from lizarraga2025 import closed_form
 from qbound import load_robot
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
@@ -229,7 +230,7 @@ def test_the_papers_rule_comes_out_of_the_same_engine():
     region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
     found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
     printed = sorted(
-        (v.q for v in paper_rule.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
+        (v.q for v in closed_form.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
     )
     assert len(found) == 6
     assert_allclose(found, printed, atol=1e-12, rtol=0)
@@ -324,3 +325,17 @@ def main(kind: str, count: int) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("error", RuntimeWarning)
     main(sys.argv[1], int(sys.argv[2]))
+
+
+# --- what a reader sees --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["minervabot-v2", "pr-gantry-arm"])
+def test_what_a_region_is_made_of_prints_on_one_line(name):
+    region = find_region(load_robot(name))
+    arc = region.components[0].loops[0][0]
+    vertex = region.components[0].vertices[0]
+    for thing in (region, region.robot, region.problem, region.components[0], vertex, arc):
+        assert "\n" not in repr(thing)
+        assert len(repr(thing)) <= 120
+    assert arc.boundary in repr(arc)

@@ -17,8 +17,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from lizarraga2025 import printed as paper
 from qbound import load_robot, packaged_robots
 from qbound.boundary.functions import position
-from qbound.model.robot import joint_symbols, with_symbols
 from qbound.model.robotfile import parse_robot
+from qbound.symbols import joint_symbols, with_symbols
 from support.oracles import (
     ANGLES,
     QUARTER_TURNS,

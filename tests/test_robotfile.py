@@ -24,10 +24,11 @@ from lizarraga2025 import printed as paper
 from qbound import RobotFileError, load_robot, packaged_robots
 from qbound.boundary.functions import clearance
 from qbound.model.frames import roll_pitch_yaw
-from qbound.model.robot import HalfSpace, Pair, Robot, with_symbols
+from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.model.robotcheck import json_schema
 from qbound.model.robotfile import parse_robot, save_robot
 from qbound.model.schema import SENTENCES, explained
+from qbound.symbols import with_symbols
 from support.oracles import OFFSETS, Table, packaged_table, robot_tables, row_of
 
 MINIMAL = """

@@ -18,7 +18,6 @@ from qbound.paths.report import report
 from qbound.paths.route import (
     nth_component,
     plan_route,
-    stretched_length,
 )
 from qbound.paths.trajectory import lasting
 from qbound.paths.traversal import reach
@@ -93,8 +92,8 @@ def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
     route = plan_route(REGION, [1, 2])
     turns = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 2))
     places = MINERVA.frames(turns).position("0", "3", "0")
-    assert np.linalg.norm(places, axis=1).max() <= stretched_length(MINERVA)
-    assert route.path.deviation <= 1e-4 * stretched_length(MINERVA)
+    assert np.linalg.norm(places, axis=1).max() <= MINERVA.stretched(MINERVA.tool)
+    assert route.path.deviation <= 1e-4 * MINERVA.stretched(MINERVA.tool)
 
 
 def test_a_held_joint_stays():

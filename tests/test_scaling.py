@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from lizarraga2025.closed_form import vertices
 from qbound import clearance, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.polygon import along_edges, centroid, scaled
@@ -18,7 +19,6 @@ from qbound.measures.scaling import (
     least_along_edges,
     worst_margins,
 )
-from qbound.region.paper_rule import vertices
 from support.oracles import equation_29
 
 MINERVA = load_robot("minervabot-v2")

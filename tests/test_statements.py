@@ -13,6 +13,7 @@ import pytest
 import shapely
 from skimage.measure import marching_cubes
 
+from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import effort, joint_region, tool_paths
 from lizarraga2025.evidence.arms import sliding
@@ -24,7 +25,7 @@ from support.oracles import OFFSETS, equation_29
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")
-CORNERS = np.array([corner.q for corner in paper_rule.vertices(ROBOT)])
+CORNERS = np.array([corner.q for corner in closed_form.vertices(ROBOT)])
 STRETCHED = -np.arctan2(OFFSETS["z12"], OFFSETS["x12"])
 DRAWN = np.random.default_rng(5).uniform(-np.pi, np.pi, (200_000, 2))
 
@@ -112,7 +113,7 @@ def test_tangents_stay_inside_and_chords_do_not() -> None:
     t = np.linspace(0, 1, 500)
     for n in (2, 3, 5):
         for tangents in (True, False):
-            edge = polygon.along_edges(paper_rule.refined(ROBOT, n, tangents=tangents), t)
+            edge = polygon.along_edges(closed_form.refined(ROBOT, n, tangents=tangents), t)
             height = equation_29(edge[..., 0], edge[..., 1])["beta_{7,3}"]
             assert (height.min() > -1e-9) == tangents
 

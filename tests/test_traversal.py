@@ -8,11 +8,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from lizarraga2025.closed_form import vertices
 from qbound import load_robot
 from qbound.geometry.polygon import centroid, scaled
+from qbound.geometry.polylines import self_crossings
 from qbound.model.robotfile import parse_robot
-from qbound.paths.traversal import self_crossings, simple_orders, traverse
-from qbound.region.paper_rule import vertices
+from qbound.paths.traversal import simple_orders, traverse
 from support.oracles import (
     crosses_itself,
     crossing_points,

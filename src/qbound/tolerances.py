@@ -60,6 +60,12 @@ UNCHANGED: Final = 1e-3
 It is looked at within the square of this part of a slab. Where it changes more the line is kept:
 that costs time and no answer."""
 
+BEYOND_JUMP: Final = 1e-7
+"""Distance from a critical line at which what changes on the line has changed.
+
+Critical values are known to some 1e-9 where two nearly coincide; a root that jumps there by half a
+turn does so this near to the line, and cells must be looked at beyond."""
+
 QUADRATURE: Final = 1e-13
 """Relative change of a quadrature at doubled nodes under which it has converged.
 

@@ -18,7 +18,8 @@ from lizarraga2025.verdicts import Finding, judge, require
 from qbound import HarmonicForm, circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.forms.angles import nearest_turn
-from qbound.model.robot import Pair, Robot, joint_symbols, with_symbols
+from qbound.model.robot import Pair, Robot
+from qbound.symbols import joint_symbols, with_symbols
 
 Floats = NDArray[np.float64]
 

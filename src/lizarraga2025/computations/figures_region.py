@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import floor, half_spaces, pairs, robot, symbolic_robot
@@ -23,8 +24,8 @@ from lizarraga2025.verdicts import Finding, judge, undetermined
 from qbound import pair_vector
 from qbound.geometry import polygon
 from qbound.measures import scaling
-from qbound.model.robot import joint_symbols
 from qbound.region import paper_rule, solve, state
+from qbound.symbols import joint_symbols
 
 
 @computes("F-1")
@@ -68,7 +69,7 @@ def chain_of_the_robot() -> Finding:
 
 def _edges() -> set[str]:
     """Labels of the bounds that bound the region."""
-    return {b.label for corner in paper_rule.vertices(robot()) for b in corner.bounds}
+    return {b.label for corner in closed_form.vertices(robot()) for b in corner.bounds}
 
 
 @computes("F-4.1")
@@ -128,7 +129,7 @@ def red_lines_play_no_part() -> Finding:
 @computes("F-5.1")
 def six_points_on_two_curves_each() -> Finding:
     residuals = []
-    for corner in paper_rule.vertices(robot()):
+    for corner in closed_form.vertices(robot()):
         for bound in corner.bounds:
             boundary = robot().boundary(bound.boundary)
             form = (

@@ -44,9 +44,10 @@ from qbound import clearance
 from qbound.boundary.functions import closest_approach
 from qbound.geometry import polygon
 from qbound.measures.bodies import gaps
-from qbound.model.robot import Body, joint_symbols
+from qbound.model.robot import Body
 from qbound.paths.traversal import traverse
 from qbound.region import paper_rule
+from qbound.symbols import joint_symbols
 
 
 @computes("S-1")

@@ -26,8 +26,8 @@ from lizarraga2025.evidence.tool_paths import (
 from lizarraga2025.verdicts import Finding, judge, require
 from qbound import clearance, components
 from qbound.boundary.functions import closest_approach, position
-from qbound.model.robot import joint_symbols, with_symbols
 from qbound.region import clearance_problem, solve
+from qbound.symbols import joint_symbols, with_symbols
 
 
 @computes("S-43")

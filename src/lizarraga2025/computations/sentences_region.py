@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from lizarraga2025 import closed_form
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import (
     corrected,
@@ -151,7 +152,7 @@ def home_pose_is_not_printed() -> Finding:
 
 @computes("S-24")
 def six_intersection_points() -> Finding:
-    by_rule = {name: len(paper_rule.vertices(arm)) for name, arm in _robots().items()}
+    by_rule = {name: len(closed_form.vertices(arm)) for name, arm in _robots().items()}
     home = by_clearances().home
     count = len(home.vertices) if home else 0
     return Finding(
@@ -168,7 +169,7 @@ def _robots() -> dict[str, Robot]:
 @computes("S-25")
 def nonlinear_functions_are_violated() -> Finding:
     depth = depth_below_edges()
-    corners = paper_rule.vertices(robot())
+    corners = closed_form.vertices(robot())
     shared = [
         next(iter(set(one.bounds) & set(other.bounds))).boundary
         for one, other in zip(corners, corners[1:] + corners[:1], strict=True)
@@ -184,10 +185,10 @@ def nonlinear_functions_are_violated() -> Finding:
 
 @computes("S-26")
 def tangents_mend_it() -> Finding:
-    inner = {n: paper_rule.refined(robot(), n, tangents=True) for n in (2, 3, 5)}
+    inner = {n: closed_form.refined(robot(), n, tangents=True) for n in (2, 3, 5)}
     least = {n: scaling.least_along_edges(floor(), p)[0] for n, p in inner.items()}
     kept = 100 * polygon.area(inner[5]) / by_windows().area
-    chord = paper_rule.refined(robot(), 33, tangents=False)
+    chord = closed_form.refined(robot(), 33, tangents=False)
     deep = -scaling.least_along_edges(floor(), chord)[0]
     return Finding(
         judge(holds=min(least.values()) > -SMALL),

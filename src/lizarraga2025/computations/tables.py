@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import RESIDUAL, half_space_bound, pair_bound
 from lizarraga2025.computations.registry import computes, computes_each
@@ -24,8 +25,8 @@ from lizarraga2025.evidence.rounding import HALF_DIGIT, contact, degrees, radii
 from lizarraga2025.verdicts import Finding, judge, undetermined
 from qbound import circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
-from qbound.model.robot import Robot, joint_symbols
-from qbound.region import paper_rule
+from qbound.model.robot import Robot
+from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 
@@ -218,7 +219,7 @@ def unit_of_table_4() -> Finding:
 def _six_points(of: Robot) -> int:
     """Count the points of Figure 5 that exist; none where the rule names no polygon."""
     try:
-        return len(paper_rule.vertices(of))
+        return len(closed_form.vertices(of))
     except ValueError:
         return 0
 
@@ -262,7 +263,7 @@ def unit_of_the_side_limits() -> Finding:
         offsets = (cm["x_{min,1}"], cm["x_{min,2}"])
         sides = (replace(w, offset=x) for w, x in zip(half_spaces(), offsets, strict=False))
         moved = replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1]))
-        corners = np.array([vertex.q for vertex in paper_rule.vertices(moved)])
+        corners = np.array([vertex.q for vertex in closed_form.vertices(moved)])
         fits[unit] = bool(np.allclose(corners, vertices()))
         seen.append(f"x = ±{cm['x_{min,1}']:g} cm")
     base = abs(float(robot().point("6").at[0]))

@@ -16,7 +16,7 @@ from lizarraga2025.verdicts import Finding, judge
 from qbound import components, pair_vector
 from qbound.boundary.functions import closest_approach, observer
 from qbound.model.frames import Frame, Frames
-from qbound.model.robot import joint_symbols
+from qbound.symbols import joint_symbols
 
 
 @computes("E-13")

@@ -13,8 +13,8 @@ from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.verdicts import Finding, judge, require
 from qbound import circle_arc, circle_roots, components, pair_vector
 from qbound.forms.circle import ALL
-from qbound.model.robot import joint_symbols
 from qbound.region import paper_rule
+from qbound.symbols import joint_symbols
 
 if TYPE_CHECKING:
     import sympy

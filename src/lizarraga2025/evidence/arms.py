@@ -10,7 +10,8 @@ import numpy as np
 
 from qbound import HarmonicForm, clearance, load_robot
 from qbound.boundary.functions import position
-from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot, with_symbols
+from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot
+from qbound.symbols import with_symbols
 
 if TYPE_CHECKING:
     import sympy

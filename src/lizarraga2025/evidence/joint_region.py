@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, robot
 from qbound import find_region
 from qbound.geometry import polygon
@@ -39,7 +40,7 @@ def by_clearances() -> Region:
 @cache
 def vertices(of: Robot | None = None) -> Floats:
     """Return the six points of Figure 5, rad, shape (6, 2)."""
-    return np.array([corner.q for corner in paper_rule.vertices(of or robot())])
+    return np.array([corner.q for corner in closed_form.vertices(of or robot())])
 
 
 @cache

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from lizarraga2025.evidence.arms import robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled
+from qbound.geometry.polylines import self_crossings
 from qbound.model.robot import Robot
-from qbound.paths.traversal import Traversal, self_crossings, simple_orders, traverse
+from qbound.paths.traversal import Traversal, simple_orders, traverse
 from qbound.region import paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm

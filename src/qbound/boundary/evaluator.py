@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
+from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import ROUNDING
@@ -26,6 +27,7 @@ Bools = NDArray[np.bool_]
 Range = tuple[float, float] | None
 Array = NDArray[Any]
 Index = tuple[int, ...]
+Monomial = tuple[Callable[[float], float], Callable[[Floats], Floats]]
 
 BLOCK = 8192
 """Configurations a block: their monomials stay in the cache between the two passes."""
@@ -50,8 +52,8 @@ class Evaluator:
     table : ndarray, shape (columns, monomials)
     products : tuple of (int, int)
         The two earlier monomials, by index, that each one after the factors is the product of.
-    factors : tuple of (joint, str)
-        The first monomials after the constant: ``cos``, ``sin``, ``q`` or ``q^2`` of a joint.
+    factors : tuple of (joint, monomial)
+        The first monomials after the constant, of one joint each.
     joints : int
     distance : ndarray, shape (columns,)
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
@@ -61,7 +63,7 @@ class Evaluator:
 
     names: tuple[str, ...]
     table: Floats
-    factors: tuple[tuple[int, str], ...]
+    factors: tuple[tuple[int, Monomial], ...]
     products: tuple[tuple[int, int], ...]
     joints: int
     distance: Floats
@@ -146,7 +148,7 @@ class Evaluator:
 
     def _one(self, q: Sequence[float]) -> list[float]:
         row = [1.0]
-        row += [SCALAR[name](q[joint]) for joint, name in self.factors]
+        row += [of_float(q[joint]) for joint, (of_float, _) in self.factors]
         for i, j in self.products:
             row.append(row[i] * row[j])
         return row
@@ -155,28 +157,23 @@ class Evaluator:
         rows = np.empty((self.table.shape[1], len(q)))
         rows[0] = 1
         columns = np.ascontiguousarray(q.T)
-        for row, (joint, name) in enumerate(self.factors, 1):
-            rows[row] = ARRAY[name](columns[joint])
+        for row, (joint, (_, of_array)) in enumerate(self.factors, 1):
+            rows[row] = of_array(columns[joint])
         for row, (i, j) in enumerate(self.products, 1 + len(self.factors)):
             np.multiply(rows[i], rows[j], out=rows[row])
         return rows
 
 
-FACTORS = {"revolute": ("cos", "sin"), "prismatic": ("q", "q^2")}
-SCALAR: dict[str, Callable[[float], float]] = {
-    "cos": math.cos,
-    "sin": math.sin,
-    "q": float,
-    "q^2": lambda x: x * x,
+MONOMIALS: dict[tuple[Kind, int], Monomial] = {
+    ("revolute", 1): (math.cos, np.cos),
+    ("revolute", 2): (math.sin, np.sin),
+    ("prismatic", 1): (float, np.asarray),
+    ("prismatic", 2): (lambda q: q * q, np.square),
 }
-ARRAY: dict[str, Callable[[Floats], Floats]] = {
-    "cos": np.cos,
-    "sin": np.sin,
-    "q": np.asarray,
-    "q^2": np.square,
-}
-SIZES = SCALAR | dict.fromkeys(("cos", "sin"), lambda _: 1.0)
-"""Largest absolute values, over a range within this distance of 0."""
+"""The functions of `FACTORS` one by one, of a float and of an array."""
+
+VALUE: tuple[Kind, int] = ("prismatic", 1)
+"""The value of a joint itself: what a limit bounds, of a revolute joint too."""
 
 
 def compiled(
@@ -203,8 +200,8 @@ def compiled(
     n = len(forms.kinds)
     bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
     singles, products = _monomials(forms.coefficients)
-    factors = [(j, FACTORS[forms.kinds[j]][i - 1]) for j, i in map(_last, singles)]
-    factors += [(j, "q") for j, *_ in bounded if (j, "q") not in factors]
+    factors = [(j, (forms.kinds[j], i)) for j, i in map(_last, singles)]
+    factors += [(j, VALUE) for j, *_ in bounded if (j, VALUE) not in factors]
     place = {(0,) * n: 0} | {index: row for row, index in enumerate(singles, 1)}
     place |= {index: row for row, index in enumerate(products, 1 + len(factors))}
     coefficients = forms.coefficients.reshape(len(names), 3**n)
@@ -212,17 +209,17 @@ def compiled(
     for index, row in place.items():
         table[: len(names), row] = coefficients[:, np.ravel_multi_index(index, (3,) * n)]
     for k, (j, low, high) in enumerate(bounded):
-        q, at = 1 + factors.index((j, "q")), len(names) + 2 * k
+        q, at = 1 + factors.index((j, VALUE)), len(names) + 2 * k
         table[at : at + 2, [0, q]] = [[-low, 1], [high, -1]]
     pairs = tuple((place[_head(index)], place[_tail(index)]) for index in products)
     reach = [1.0 if ends is None else max(map(abs, ends)) for ends in ranges]
-    sizes = [1.0] + [SIZES[name](reach[j]) for j, name in factors]
+    sizes = [1.0] + [float(FACTORS[kind].largest(reach[j])[i]) for j, (kind, i) in factors]
     for one, other in pairs:
         sizes.append(sizes[one] * sizes[other])
     return Evaluator(
         names=(*names, *(name for j, *_ in bounded for name in limits[j])),
         table=table,
-        factors=tuple(factors),
+        factors=tuple((j, MONOMIALS[which]) for j, which in factors),
         products=pairs,
         joints=n,
         distance=np.array([*distances, *[None] * 2 * len(bounded)], dtype=float),

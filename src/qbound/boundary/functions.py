@@ -7,7 +7,6 @@ symbols: the formulas of the paper are derived here, never typed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import reduce, singledispatch
 from typing import Any
 
@@ -59,7 +58,8 @@ def squared_distance(
 
 def observer(robot: Robot, pair: Pair) -> str:
     """Return the frame a of Theorem 1: that of the pair's point nearer to the base."""
-    return min((robot.point(name).frame for name in pair.points), key=robot.depth)
+    _, near, _ = _near_far(robot, pair)
+    return near.frame
 
 
 def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
@@ -126,19 +126,6 @@ def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
     [0.0, 0.0, 37.16]
     """
     return _components(boundary, robot)
-
-
-def margin_function(robot: Robot, boundary: Boundary) -> Callable[[ArrayLike], Array]:
-    """Return what gives the margin, a length, of configurations of shape (..., n).
-
-    It is ``|B| - d_min`` for a pair and the height over the wall for a half-space; negative where
-    the boundary is violated.
-    """
-    d_min = robot.least_distance(boundary)
-    if d_min is None:
-        return clearance(robot, boundary)
-    vector = components(robot, boundary)
-    return lambda q: np.asarray(np.linalg.norm(vector(q), axis=-1) - d_min)
 
 
 def margin_of(robot: Robot, boundary: Boundary, value: ArrayLike) -> Array:

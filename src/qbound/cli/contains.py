@@ -5,14 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-import numpy as np
-
+from qbound.boundary.evaluator import limit_names
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import write_text
 from qbound.cli.values import configuration
 from qbound.export.document import configuration_document
 from qbound.export.formats import json_text
-from qbound.model.robot import Robot
+from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
 
 
@@ -74,24 +73,22 @@ def _component(content: dict[str, Any]) -> str:
 def _amount(robot: Robot, item: dict[str, Any]) -> str:
     """Write a margin with its unit: a length, or that of a joint limit."""
     for joint in robot.joints:
-        if item["boundary"] in (f"{joint.name}.lower", f"{joint.name}.upper"):
-            return _joint_text(joint.kind, item["margin"], robot.length_unit)
+        if item["boundary"] in limit_names(joint.name):
+            return _joint_text(robot, joint, item["margin"])
     return f"{item['margin']:.6g} {robot.length_unit}"
 
 
-def _joint_text(kind: str, value: float, length_unit: str) -> str:
-    if kind == "revolute":
-        return f"{np.degrees(value):.6g} deg"
-    return f"{value:.6g} {length_unit}"
+def _joint_text(robot: Robot, joint: Joint, value: float) -> str:
+    return f"{value * joint.shown_scale:.6g} {joint.unit(robot.length_unit, 'deg')}"
 
 
 def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
     joints = robot.joints
     place = ", ".join(
-        f"{joint.name} = {_joint_text(joint.kind, x, robot.length_unit)}"
+        f"{joint.name} = {_joint_text(robot, joint, x)}"
         for joint, x in zip(joints, nearest["q"], strict=True)
     )
     distance = f"{nearest['distance']:.6g}"
     if nearest["weights"] == [1.0, 1.0] and joints[0].kind == joints[1].kind:
-        distance = _joint_text(joints[0].kind, nearest["distance"], robot.length_unit)
+        distance = _joint_text(robot, joints[0], nearest["distance"])
     return f"nearest boundary: {nearest['boundary']} at {place}, distance {distance}"

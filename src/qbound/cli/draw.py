@@ -57,13 +57,13 @@ def run(options: argparse.Namespace) -> int:
 def _picture(
     robot: Robot, q: ArrayLike, values: dict[int, float], ending: str, options: argparse.Namespace
 ) -> bytes:
-    from qbound.figures.pictures import Chart, pose_picture
+    from qbound.figures.pictures import pose_picture
 
-    both, chart, plane = options.region == options.arm, None, None
+    both, kind = options.region == options.arm, ending.removeprefix(".").lower()
+    region = plane = numbered = None
     if both or options.region:
         region = region_by_rule(robot, options.rule, values)
         numbered = nth_component(region, options.component) if region.components else None
-        chart = Chart(region, region.problem.joints, numbered)
     if both or options.arm:
         plane = plane_of_motion(robot) or (0, 2)
-    return pose_picture(robot, q, chart, plane, ending.removeprefix(".").lower())
+    return pose_picture(robot, q, region, plane, kind, numbered)

@@ -10,6 +10,7 @@ from typing import Any
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.values import held
+from qbound.export.document import home_content
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robotfile import load_robot
@@ -64,16 +65,13 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 def _lines(region: Region) -> Iterator[str]:
     unit = region.area_unit
-    home = region.robot.home[list(region.problem.joints)]
-    margins = region.margins(home).tolist()
-    for name, margin in zip(region.boundaries, margins, strict=True):
-        if margin < 0:
-            yield f"home violates {name}, margin {margin:.6g}"
+    home = home_content(region)
+    for item in home["violated"]:
+        yield f"home violates {item['boundary']}, margin {item['margin']:.6g}"
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
-    elif region.home is None and min(margins) >= 0:
-        touched = [n for n, m in zip(region.boundaries, margins, strict=True) if m == 0]
-        yield f"home is feasible, but in no component: it touches {', '.join(touched)}"
+    elif "touches" in home:
+        yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
     yield f"{len(region.components)} components, area {region.area:.9g} {unit} in all"
     for component in region.components:
         home_too = ", with the home pose" if component.contains_home else ""

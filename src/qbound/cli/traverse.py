@@ -115,8 +115,7 @@ def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
 
 
 def _picture(found: PathReport) -> bytes:
-    from qbound.figures.pictures import Chart, traversal_picture
+    from qbound.figures.pictures import traversal_picture
 
-    route, region = found.route, found.route.region
-    chart, plane = Chart(region, region.problem.joints), found.plane or (0, 2)
-    return traversal_picture(region.robot, chart, route.path, route.stops, plane)
+    route = found.route
+    return traversal_picture(route.region, route.path, route.stops, found.plane or (0, 2))

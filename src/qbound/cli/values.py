@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from qbound.model.robot import Robot
-from qbound.model.units import parse_joint_value
 from qbound.proofs.points import joint_decimal, limits_as_decimals
+from qbound.units import parse_joint_value
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:

@@ -7,13 +7,14 @@ as data, together with the coefficients from which the page computes what moves.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.functions import clearance, position
+from qbound.export.document import vertex_content, workspace_content
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
@@ -23,8 +24,6 @@ from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.version import __version__
-from qbound.workspace.areas import find_workspace
-from qbound.workspace.planar import planar_arm
 
 Floats = NDArray[np.float64]
 Data = dict[str, Any]
@@ -56,8 +55,8 @@ def explorer_data(region: Region) -> Data:
         If the region is of forms, not of a robot.
     """
     robot, problem = region.robot, region.problem
-    held, free = problem.held, list(problem.joints)
-    q = robot.with_held(robot.home[free], held)
+    free = list(problem.joints)
+    q = robot.with_held(robot.home[free], problem.held)
     views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
     tool = position(robot, robot.tool)
     return {
@@ -78,12 +77,12 @@ def explorer_data(region: Region) -> Data:
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],
-        "reach": _reach(robot),
+        "reach": robot.stretched(robot.tool),
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],
         "polygon": _polygon(region),
-        "workspace": _workspace(robot, region, held, q[free]),
+        "workspace": workspace_content(region)["workspace"],
         "sample": _sample(views),
     }
 
@@ -130,13 +129,6 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
     """List the terms of a form that are not zero: coefficient, then one index a joint."""
     places = np.argwhere(form.coefficients != 0)
     return [[float(form.coefficients[tuple(p)]), *p.tolist()] for p in places]
-
-
-def _reach(robot: Robot) -> float:
-    """Bound the tool's distance from the base; the robot's size."""
-    lengths = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
-    slides = [joint.farthest for joint in robot.joints]
-    return sum(lengths) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
@@ -207,9 +199,7 @@ def _component(component: Component, views: Sequence[Data]) -> Data:
         "centroid": None if centroid is None else centroid.tolist(),
         "wraps": list(component.wraps),
         "loops": [[_arc(arc, views) for arc in loop] for loop in component.loops],
-        "vertices": [
-            {"q": v.q.tolist(), "boundaries": list(v.boundaries)} for v in component.vertices
-        ],
+        "vertices": [vertex_content(vertex) for vertex in component.vertices],
     }
 
 
@@ -240,15 +230,6 @@ def _polygon(region: Region) -> Data | None:
         "binds": None if largest.form < 0 else region.problem.names[largest.form],
         "walks": _walks(len(vertices)),
     }
-
-
-def _workspace(robot: Robot, region: Region, held: Mapping[int, float], q: Floats) -> Data | None:
-    """Return the areas of the exact workspace; None where the tool has no planar one."""
-    try:
-        found = find_workspace(planar_arm(robot, held), region.problem, q)
-    except ValueError:  # no home component, or a tool that leaves the plane
-        return None
-    return {"area": found.area, "covered_twice": found.covered_twice}
 
 
 def _walks(m: int) -> list[list[int]]:

@@ -7,9 +7,10 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from qbound.export.formats import heading
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
-from qbound.region import Component, Region, find_region, margins
+from qbound.region import Component, Region, Vertex, find_region, margins
 from qbound.region.arcs import Arc
 from qbound.version import __version__
 from qbound.workspace.areas import NoHomeError, find_workspace
@@ -20,19 +21,17 @@ def region_document(region: Region) -> dict[str, Any]:
     """Return a region as JSON holds it, schema qbound/region/2: rad, lengths, the robot's unit."""
     problem = region.problem
     content = {
-        "schema": "qbound/region/2",
-        "robot": region.robot.name,
-        "version": __version__,
+        **heading("qbound/region/2", region.robot),
         "rule": problem.rule,
         "joints": list(problem.joint_names),
         "home_component": None if region.home is None else 0,
         "feasible_area": region.area,
-        "home": _home_content(region),
+        "home": home_content(region),
         "components": [_component_content(component) for component in region.components],
     }
     if region.empty_because:
         content["empty_because"] = list(region.empty_because)
-    return content | _workspace_content(region)
+    return content | workspace_content(region)
 
 
 def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
@@ -79,7 +78,24 @@ def configuration_document(
     return content
 
 
-def _home_content(region: Region) -> dict[str, Any]:
+def vertex_content(vertex: Vertex) -> dict[str, Any]:
+    """Return a vertex as JSON holds it."""
+    return {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
+
+
+def workspace_content(region: Region) -> dict[str, Any]:
+    """Return the workspace of the home component, or the reason why there is none."""
+    robot, problem = region.robot, region.problem
+    try:
+        arm = planar_arm(robot, problem.held)
+        found = find_workspace(arm, problem, robot.home[list(problem.joints)])
+    except (NoPlanarWorkspaceError, NoHomeError) as reason:
+        return {"workspace": None, "workspace_reason": str(reason)}
+    return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
+
+
+def home_content(region: Region) -> dict[str, Any]:
+    """Return the home pose, what it violates, and, where it is in no component, what it touches."""
     problem, robot = region.problem, region.robot
     home = robot.home[list(problem.joints)]
     found = list(zip(region.boundaries, region.margins(home).tolist(), strict=True))
@@ -99,23 +115,9 @@ def _component_content(component: Component) -> dict[str, Any]:
         "area": component.area,
         "centroid": None if component.centroid is None else component.centroid.tolist(),
         "wraps": list(component.wraps),
-        "vertices": [
-            {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
-            for vertex in component.vertices
-        ],
+        "vertices": [vertex_content(vertex) for vertex in component.vertices],
         "loops": [loop_content(loop) for loop in component.loops],
     }
-
-
-def _workspace_content(region: Region) -> dict[str, Any]:
-    """Return the workspace of the home component, or the reason why there is none."""
-    robot, problem = region.robot, region.problem
-    try:
-        arm = planar_arm(robot, problem.held)
-        found = find_workspace(arm, problem, robot.home[list(problem.joints)])
-    except (NoPlanarWorkspaceError, NoHomeError) as reason:
-        return {"workspace": None, "workspace_reason": str(reason)}
-    return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
 
 
 def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> dict[str, Any]:

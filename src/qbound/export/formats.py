@@ -12,16 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
+from qbound.units import joint_units
 from qbound.version import __version__
 
 
-def heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
-    """Return what a JSON of paths or poses begins with: what, of which robot, in which units."""
+def heading(schema: str, robot: Robot) -> dict[str, Any]:
+    """Return what every JSON begins with: what it is, of which robot, by which version."""
+    return {"schema": schema, "robot": robot.name, "version": __version__}
+
+
+def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
+    """Return what a JSON of paths or poses begins with: in which units, too."""
     return {
-        "schema": schema,
-        "robot": robot.name,
-        "version": __version__,
+        **heading(schema, robot),
         "rule": rule,
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},

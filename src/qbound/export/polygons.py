@@ -14,12 +14,12 @@ from itertools import groupby, pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.angles import TURN
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.region import Component
 
 Floats = NDArray[np.float64]
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True, eq=False)

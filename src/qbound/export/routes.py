@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.export.formats import csv_text, heading, pose_columns
-from qbound.model.units import joint_text
+from qbound.export.formats import csv_text, pose_columns, pose_heading
 from qbound.paths.encounters import Crossing, Margin, ParameterPoint
 from qbound.paths.report import PathReport
 from qbound.paths.route import Route
 from qbound.paths.trajectory import Trajectory, row_times
+from qbound.units import joint_text
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def route_document(found: PathReport, times: Trajectory | None = None) -> dict[s
         route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
     )
     return {
-        **heading("qbound/traverse/1", route.region.robot, route.region.problem.rule),
+        **pose_heading("qbound/traverse/1", route.region.robot, route.region.problem.rule),
         "component": route.component,
         "order": list(route.order),
         "along": route.along,

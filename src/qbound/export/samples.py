@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from qbound.export.formats import csv_text, heading, npz_bytes, pose_columns
+from qbound.export.formats import csv_text, npz_bytes, pose_columns, pose_heading
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
 from qbound.sampling import Sample, joint_ranges
+from qbound.units import joint_units
 
 
 def sample_csv(robot: Robot, drawn: Sample) -> str:
@@ -30,7 +30,7 @@ def sample_npz(robot: Robot, drawn: Sample) -> bytes:
 def sample_document(robot: Robot, drawn: Sample, rule: str, seed: int) -> dict[str, Any]:
     """Return the JSON form of a sample drawn within the joints' ranges from a seed."""
     return {
-        **heading("qbound/sample/1", robot, rule),
+        **pose_heading("qbound/sample/1", robot, rule),
         "ranges": joint_ranges(robot).tolist(),
         "n": len(drawn.free),
         "seed": seed,

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from qbound.export.document import loop_content
+from qbound.export.formats import heading
 from qbound.model.robot import Robot
-from qbound.model.units import joint_text
-from qbound.version import __version__
+from qbound.units import joint_text
 from qbound.workspace.areas import Aspect
 from qbound.workspace.passage import Passage
 from qbound.workspace.report import PlaceReport, WorkspaceReport
@@ -18,9 +18,7 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
     workspace, region = found.workspace, found.workspace.region
     return {
-        "schema": "qbound/workspace/1",
-        "robot": region.robot.name,
-        "version": __version__,
+        **heading("qbound/workspace/1", region.robot),
         "rule": region.problem.rule,
         "joints": list(region.problem.joint_names),
         "length_unit": region.robot.length_unit,

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.export.polygons import polygons
 from qbound.extras import require
+from qbound.forms.angles import TURN, whole_turns
 from qbound.measures.bodies import outline
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
@@ -84,9 +85,8 @@ def joint_axes(
 ) -> None:
     """Label the plane of two joints, degrees, and give both axes one scale."""
     (x0, x1), (y0, y1) = np.degrees(np.asarray(ranges))
-    ax.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
-    ax.set_xlabel(f"{symbol(robot.joints[0].name)} / °")
-    ax.set_ylabel(f"{symbol(robot.joints[1].name)} / °")
+    one, other = (f"{symbol(joint.name)} / °" for joint in robot.joints[:2])
+    ax.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal", xlabel=one, ylabel=other)
     ax.xaxis.set_major_locator(every(x1 - x0))
     ax.yaxis.set_major_locator(every(y1 - y0))
 
@@ -95,9 +95,8 @@ def plane_axes(
     ax: Axes, robot: Robot, limits: ArrayLike | None = None, plane: tuple[int, int] = (0, 2)
 ) -> None:
     """Label the plane of motion of a planar arm, x and z, and give both axes one scale."""
-    ax.set_aspect("equal")
-    ax.set_xlabel(f"${'xyz'[plane[0]]}$ / {robot.length_unit}")
-    ax.set_ylabel(f"${'xyz'[plane[1]]}$ / {robot.length_unit}")
+    one, other = (f"${'xyz'[axis]}$ / {robot.length_unit}" for axis in plane)
+    ax.set(aspect="equal", xlabel=one, ylabel=other)
     if limits is not None:
         (x0, x1), (z0, z1) = np.asarray(limits)
         ax.set(xlim=(x0, x1), ylim=(z0, z1))
@@ -363,7 +362,7 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
 
     artists: list[Artist] = []
     scale = joint_scales(region)
-    turns = [[0.0] if r else [-2 * np.pi, 0.0, 2 * np.pi] for r in region.problem.ranges]
+    turns = [[0.0] if r else [-TURN, 0.0, TURN] for r in region.problem.ranges]
     rounds = np.array([len(shifts) > 1 for shifts in turns])
     for component in reversed(region.components):  # home's last, over the edges of the others
         colour = FEASIBLE if component.contains_home else "#777777"
@@ -384,7 +383,7 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
 def _turns_off(points: Floats, rounds: NDArray[np.bool_]) -> Floats:
     """Return the full turns by which points are off the first one, on joints that turn round."""
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    return np.where(rounds, 2 * np.pi * np.round(middle / (2 * np.pi)), 0.0)
+    return np.where(rounds, TURN * whole_turns(middle), 0.0)
 
 
 def joint_scales(region: Region) -> Floats:

@@ -6,7 +6,6 @@ Each is returned as bytes, the same on every run; `figures` draws the parts.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
@@ -17,6 +16,7 @@ from qbound import figures
 from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.workspace import draw_images, draw_patches, legend
+from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import Component, Region
@@ -26,65 +26,46 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
-FORMATS: Final = ("svg", "png")
 PANEL: Final = (5.4, 5.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Chart:
-    """A region and what its axes are.
-
-    Attributes
-    ----------
-    region : Region
-    joints : tuple of two int
-        The joints of the robot that span it.
-    numbered : Component or None
-        The component whose vertices bear their numbers.
-    """
-
-    region: Region
-    joints: tuple[int, int]
-    numbered: Component | None = None
 
 
 def pose_picture(
     robot: Robot,
     q: ArrayLike,
-    chart: Chart | None = None,
+    region: Region | None = None,
     plane: tuple[int, int] | None = (0, 2),
     kind: str = "svg",
+    numbered: Component | None = None,
 ) -> bytes:
     """Draw the joint-space region with a pose marked and, beside it, the robot in that pose.
 
     Parameters
     ----------
     q : array_like, shape (n,)
-    chart : Chart or None
+    region : Region or None
         None: no panel of joint space.
     plane : tuple of int or None
         The coordinates of the robot's panel, 0, 1, 2 for x, y, z; None: no such panel.
     kind : {"svg", "png"}
+    numbered : Component or None
+        The component whose vertices bear their numbers.
     """
     pose = np.asarray(q, dtype=float)
 
     def draw(axes: Sequence[Axes]) -> None:
-        if chart is not None:
-            _joint_panel(axes[0], robot, chart, pose[None])
-            place = pose[list(chart.joints)] * figures.joint_scales(chart.region)
-            axes[0].plot(*place, "P", color=INK, ms=9, mec="white", zorder=7)
+        if region is not None:
+            _pose_panel(axes[0], region, numbered, pose)
         if plane is not None:
             figures.draw_spheres(axes[-1], robot, pose, plane)
             figures.draw_robot(axes[-1], robot, pose, plane=plane)
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 
-    return _picture((chart is not None) + (plane is not None), draw, kind)
+    return _picture((region is not None) + (plane is not None), draw, kind)
 
 
 def traversal_picture(
-    robot: Robot,
-    chart: Chart,
+    region: Region,
     path: Traversal,
     labels: Sequence[str],
     plane: tuple[int, int] = (0, 2),
@@ -97,11 +78,12 @@ def traversal_picture(
     labels : sequence of str
         Names of the stops, in the order of the visit.
     """
+    robot = region.robot
 
     def draw(axes: Sequence[Axes]) -> None:
         joints, space = axes
-        drawn = path.q[:, list(chart.joints)] * figures.joint_scales(chart.region)
-        _joint_panel(joints, robot, chart, path.q)
+        drawn = path.q[:, list(region.problem.joints)] * figures.joint_scales(region)
+        _joint_panel(joints, region, None, path.q)
         figures.draw_path(joints, drawn, path.stops, labels=labels, distance=-13, color=INK)
         figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
@@ -131,11 +113,8 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
 
         ax = pyplot.gca()
     robot, problem = region.robot, region.problem
-    home = robot.home[list(problem.joints)]
-    q = robot.with_held(home, problem.held)
-    numbered = region.components[0] if region.components else None
-    _joint_panel(ax, robot, Chart(region, problem.joints, numbered), q[None])
-    ax.plot(*(home * figures.joint_scales(region)), "P", color=INK, ms=9, mec="white", zorder=7)
+    home = robot.with_held(robot.home[list(problem.joints)], problem.held)
+    _pose_panel(ax, region, next(iter(region.components), None), home)
     return ax
 
 
@@ -164,12 +143,20 @@ def _picture(
     return buffer.getvalue()
 
 
-def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
+def _pose_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats) -> None:
+    """Draw all components and mark one configuration."""
+    _joint_panel(ax, region, numbered, q[None])
+    place = q[list(region.problem.joints)] * figures.joint_scales(region)
+    ax.plot(*place, "P", color=INK, ms=9, mec="white", zorder=7)
+
+
+def _joint_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats) -> None:
     """Draw all components over one turn or the limits, and further where `q` goes."""
-    scales, ranges = figures.joint_scales(chart.region), chart.region.problem.ranges
-    figures.draw_components(ax, chart.region)
+    robot, chosen = region.robot, region.problem.joints
+    scales, ranges = figures.joint_scales(region), region.problem.ranges
+    figures.draw_components(ax, region)
     shown = [np.array(ends or (-np.pi, np.pi)) for ends in ranges]
-    for axis, j, ends, scale in zip(("x", "y"), chart.joints, shown, scales, strict=True):
+    for axis, j, ends, scale in zip(("x", "y"), chosen, shown, scales, strict=True):
         joint = robot.joints[j]
         values = np.concatenate([ends, q[:, j]]) * scale
         room = 0.03 * np.ptp(values)
@@ -182,14 +169,12 @@ def _joint_panel(ax: Axes, robot: Robot, chart: Chart, q: Floats) -> None:
                 f"{axis}label": f"{figures.symbol(joint.name)} / {unit}",
             }
         )
-    if len({robot.joints[j].kind for j in chart.joints}) == 1:
+    if len({robot.joints[j].kind for j in chosen}) == 1:
         ax.set_aspect("equal")
-    if chart.numbered is not None and chart.numbered.vertices:
-        corners = np.array([vertex.q for vertex in chart.numbered.vertices])
-        for j, turning in enumerate(ends is None for ends in ranges):
-            if turning:  # shown where the region's copy within the turn has them
-                corners[:, j] -= 2 * np.pi * np.ceil((corners[:, j] - np.pi) / (2 * np.pi))
-        corners *= scales
+    if numbered is not None and numbered.vertices:
+        corners = np.array([vertex.q for vertex in numbered.vertices])
+        rounds = [ends is None for ends in ranges]  # there the copy within one turn is shown
+        corners = np.where(rounds, nearest_turn(corners, 0), corners) * scales
         ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)
         figures.number_points(ax, corners, corners.mean(axis=0))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED, as_text
-from qbound.region.arcs import Arc
-from qbound.workspace.areas import SINGULAR, Aspect, Workspace
+from qbound.workspace.areas import SINGULAR, Workspace
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -74,7 +72,9 @@ def legend(ax: Axes, columns: int = 4) -> None:
 
 def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
     artists: list[Artist] = []
-    arcs = list(_arcs(workspace.aspects))
+    loops = (loop for aspect in workspace.aspects for loop in aspect.region.loops)
+    arcs = [arc for loop in loops for arc in loop]
+    arcs.sort(key=lambda arc: (arc.boundary != SINGULAR, arc.boundary))  # the curve first
     names = sorted({arc.boundary for arc in arcs} - {SINGULAR})
     looks = dict(zip(names, zip(cycle(COLOURS), cycle(DASHES), strict=False), strict=False))
     looks[SINGULAR] = (COLLIDING, (0, (1, 1)))
@@ -84,12 +84,6 @@ def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
         width = 2.6 if arc.boundary == SINGULAR else 1.7
         artists += ax.plot(*path, color=colour, ls=dash, lw=width, label=as_text(arc.boundary))
     return artists
-
-
-def _arcs(aspects: tuple[Aspect, ...]) -> Iterator[Arc]:
-    """Yield every arc of the aspects; the singular curve, the same from both sides, first."""
-    arcs = [arc for aspect in aspects for loop in aspect.region.loops for arc in loop]
-    yield from sorted(arcs, key=lambda arc: (arc.boundary != SINGULAR, arc.boundary))
 
 
 def _fill(ax: Axes, rings: list[Floats], colour: str, label: str) -> Artist:

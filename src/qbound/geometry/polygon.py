@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.geometry.polylines import cross
+
 Floats = NDArray[np.float64]
 
 
@@ -21,7 +23,8 @@ def area(vertices: ArrayLike) -> float:
     >>> area(square), area(square[::-1])
     (1.0, -1.0)
     """
-    return float(_cross(np.asarray(vertices, dtype=float)).sum() / 2)
+    p = np.asarray(vertices, dtype=float)
+    return float(cross(p, np.roll(p, -1, axis=0)).sum() / 2)
 
 
 def centroid(vertices: ArrayLike) -> Floats:
@@ -42,11 +45,11 @@ def centroid(vertices: ArrayLike) -> Floats:
     """
     p = np.asarray(vertices, dtype=float)
     p0 = p.mean(axis=0)  # moments about a near point: less cancellation
-    doubled = _cross(p - p0)
+    start, end = p - p0, np.roll(p - p0, -1, axis=0)
+    doubled = cross(start, end)
     if doubled.sum() == 0:
         raise ValueError("a polygon without area has no centroid of the area")
-    sums = (p - p0) + np.roll(p - p0, -1, axis=0)
-    return np.asarray(p0 + doubled @ sums / (3 * doubled.sum()))
+    return np.asarray(p0 + doubled @ (start + end) / (3 * doubled.sum()))
 
 
 def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
@@ -66,11 +69,6 @@ def along_edges(vertices: ArrayLike, t: ArrayLike) -> Floats:
     p = np.asarray(vertices, dtype=float)
     step = np.roll(p, -1, axis=0) - p
     return np.asarray(p[:, None] + np.asarray(t)[None, :, None] * step[:, None])
-
-
-def _cross(p: Floats) -> Floats:
-    x, y = p.T
-    return np.asarray(x * np.roll(y, -1) - y * np.roll(x, -1))
 
 
 def contains(vertices: ArrayLike, point: ArrayLike) -> bool:

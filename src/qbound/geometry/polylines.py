@@ -81,11 +81,27 @@ def self_crossings(path: ArrayLike) -> Floats:
     path : array_like, shape (m, 2)
     """
     p = np.asarray(path, dtype=float)
+    i, _, t, _ = crossing_pieces(p)
+    return np.asarray(p[i] + t[:, None] * (p[i + 1] - p[i]))
+
+
+def crossing_pieces(
+    p: Floats, beyond: float = 0.0
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats, Floats]:
+    """Return the pieces i, j of a plane path that cross, and at which fractions t, s of them.
+
+    Parameters
+    ----------
+    p : ndarray, shape (m, 2)
+    beyond : float
+        Part of its length by which each piece may be taken longer at both ends.
+    """
     start, step = p[:-1], np.diff(p, axis=0)
     t, s = meetings(start, step, start, step)
     later = np.triu(np.ones(t.shape, dtype=bool), k=2)
-    i, j = np.nonzero(later & (t > 0) & (t < 1) & (s > 0) & (s < 1))
-    return np.asarray(start[i] + t[i, j, None] * step[i])
+    low, high = -beyond, 1 + beyond
+    i, j = np.nonzero(later & (t > low) & (t < high) & (s > low) & (s < high))
+    return i, j, t[i, j], s[i, j]
 
 
 def meetings(a: Floats, u: Floats, b: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
 from qbound.measures.scaling import first_exit, least_along_edges
 from qbound.region import Component, Problem
@@ -179,27 +180,25 @@ def _corners(problem: Problem, arc: Arc, n: int) -> Iterator[Floats]:
 
 
 def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
-    """Tell where the tangent of a level curve stays on the side on which the form is larger."""
-    return np.asarray(_curving(form, q) > 0)
+    """Tell where the tangent of a level curve stays on the side on which the form is larger.
 
-
-def _curving(form: HarmonicForm, q: Floats) -> Floats:
-    """Return the second derivative of a form along its level curves."""
+    There the form's second derivative along the curve is positive.
+    """
     slope = form.gradient(q)
     tangent = np.stack([-slope[..., 1], slope[..., 0]], axis=-1)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-300)
     hessian = form.derivatives.gradient(q)
-    return np.asarray(np.einsum("...i,...ij,...j", tangent, hessian, tangent))
+    return np.asarray(np.einsum("...i,...ij,...j", tangent, hessian, tangent) > 0)
 
 
 def _inflections(form: HarmonicForm, arc: Arc) -> Floats:
     """Parameters at which an arc changes the side to which it bends, with 0 and 1."""
     s = np.linspace(0, 1, (PLACES - 1) * len(arc.pieces.roots) + 1)
-    turns = _bends_in(form, arc.at(s))
-    low, high = s[:-1][turns[1:] != turns[:-1]], s[1:][turns[1:] != turns[:-1]]
-    first = _bends_in(form, arc.at(low)) if len(low) else np.zeros(0, dtype=bool)
-    for _ in range(40 if len(low) else 0):
-        middle = (low + high) / 2
-        same = _bends_in(form, arc.at(middle)) == first
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    inside = _bends_in(form, arc.at(s))
+    changes = np.flatnonzero(inside[1:] != inside[:-1])
+
+    def as_before(places: Floats) -> NDArray[np.bool_]:
+        return np.asarray(_bends_in(form, arc.at(places)) == inside[changes])
+
+    low, _ = last_before(as_before, s[changes], s[changes + 1])
     return np.concatenate([[0.0], low, [1.0]])

@@ -15,7 +15,7 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from qbound.model.frames import whole_numbers
-from qbound.model.rows import Direction, Label, Number, Row, Size, floats, unit_vector
+from qbound.model.rows import Direction, Label, Number, Row, Size, unit_vector
 from qbound.model.shapes import Point
 
 Array = NDArray[Any]
@@ -81,12 +81,7 @@ class Pair(Boundary):
 
     def row(self) -> PairRow:
         """Return its table [[boundary]]."""
-        return PairRow(
-            name=self.name,
-            points=list(self.points),
-            clearance=float(self.clearance),
-            used=self.used,
-        )
+        return PairRow.of(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,13 +112,7 @@ class HalfSpace(Boundary):
 
     def row(self) -> HalfSpaceRow:
         """Return its table [[boundary]]."""
-        return HalfSpaceRow(
-            name=self.name,
-            point=self.point,
-            normal=floats(self.normal),
-            offset=float(self.offset),
-            used=self.used,
-        )
+        return HalfSpaceRow.of(self)
 
 
 TWO_POINTS = "a list of the names of 2 different points"

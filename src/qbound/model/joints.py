@@ -24,7 +24,7 @@ from qbound.model.rows import (
     Number,
     Row,
     Vector,
-    floats,
+    plain,
     quotient,
     unit_vector,
 )
@@ -119,8 +119,8 @@ class Joint(ABC):
             type=self.type_name,  # type: ignore[arg-type]  # one of `JOINT_TYPES`
             parent=self.parent,
             frame=self.frame,
-            origin=floats(self.origin),
-            axis=floats(self.axis),
+            origin=plain(self.origin),
+            axis=plain(self.axis),
             rpy=UNSET if straight else [quotient(x, angle) for x in _rpy(self.mount)],
             limits=UNSET if self.limits is None else [quotient(x, scale) for x in self.limits],
             velocity=UNSET if self.velocity is None else quotient(self.velocity, scale),

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.extras import require
 from qbound.model.boundaries import Boundary, HalfSpace, Pair
-from qbound.model.frames import Frame, Frames, whole_numbers
+from qbound.model.frames import Frame, Frames
 from qbound.model.joints import JOINT_TYPES, Joint, Kind, Prismatic, Revolute
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Point
 from qbound.model.values import joint_values
-
-if TYPE_CHECKING:
-    import sympy
 
 __all__ = [
     "JOINT_TYPES",
@@ -34,8 +29,6 @@ __all__ = [
     "Prismatic",
     "Revolute",
     "Robot",
-    "joint_symbols",
-    "with_symbols",
 ]
 
 Array = NDArray[Any]
@@ -95,9 +88,16 @@ class Robot:
     @property
     def reach(self) -> float:
         """Length that no place of the robot's points exceeds, seen from the base."""
-        links = (float(np.linalg.norm(joint.origin)) + joint.farthest for joint in self.joints)
-        tips = (float(np.linalg.norm(point.at)) for point in self.points)
-        return sum(links) + max(tips, default=0.0)
+        return max((self.stretched(point.name) for point in self.points), default=0.0)
+
+    def stretched(self, point: str) -> float:
+        """Return the length of the arm stretched out to a point: links, longest slides, the rest.
+
+        No place of the point is farther from the base.
+        """
+        links = [float(np.linalg.norm(joint.origin)) for joint in self.joints]
+        slides = [joint.farthest for joint in self.joints]
+        return sum(links) + sum(slides) + float(np.linalg.norm(self.point(point).at))
 
     def point(self, name: str) -> Point:
         """Return the point of that name."""
@@ -212,72 +212,6 @@ class Robot:
         moved = [joint.frame_at(x) for joint, x in zip(self.joints, columns, strict=True)]
         fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
         return Frames(self.base, [*moved, *fixed])
-
-
-def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:
-    r"""Return a real SymPy symbol for each joint: :math:`q_1, q_2, \ldots`."""
-    require("sympy")
-    import sympy
-
-    return tuple(sympy.Symbol(_subscripted(joint.name), real=True) for joint in robot.joints)
-
-
-def with_symbols(robot: Robot) -> tuple[Robot, dict[sympy.Symbol, float]]:
-    r"""Replace every non-zero offset by its label, such as :math:`x_{a,b}` (rule 8 of Section 2).
-
-    The offset of a half-space along an axis becomes :math:`x_{\min,1}, x_{\min,2}, \ldots` as in
-    Table 5.
-
-    Returns
-    -------
-    Robot
-        The same robot with SymPy symbols for lengths; its forms are the printed formulas.
-    dict
-        The value of each symbol, in the robot's length unit.
-    """
-    require("sympy")
-    values: dict[sympy.Symbol, float] = {}
-    joints = tuple(
-        replace(j, origin=_labelled(j.parent, j.frame, j.origin, values)) for j in robot.joints
-    )
-    points = tuple(replace(p, at=_labelled(p.frame, p.name, p.at, values)) for p in robot.points)
-    exact = tuple(
-        replace(j, axis=whole_numbers(j.axis), mount=whole_numbers(j.mount)) for j in joints
-    )
-    label = _numbered(values)
-    boundaries = tuple(boundary.with_labels(label) for boundary in robot.boundaries)
-    return replace(robot, joints=exact, points=points, boundaries=boundaries), values
-
-
-def _labelled(a: str, b: str, vector: Array, values: dict[sympy.Symbol, float]) -> Array:
-    import sympy
-
-    result = np.zeros(3, dtype=object)
-    for i, (letter, value) in enumerate(zip("xyz", vector, strict=True)):
-        if value:
-            symbol = sympy.Symbol(f"{letter}_{{{a},{b}}}", real=True)
-            result[i], values[symbol] = symbol, float(value)
-    return result
-
-
-def _numbered(values: dict[sympy.Symbol, float]) -> Callable[[str, float], sympy.Symbol]:
-    """Return what makes labels x_{min,1}, x_{min,2}, ..., z_{min,1} and notes their values."""
-    import sympy
-
-    counts: Counter[str] = Counter()
-
-    def label(letter: str, value: float) -> sympy.Symbol:
-        counts[letter] += 1
-        symbol = sympy.Symbol(f"{letter}_{{min,{counts[letter]}}}", real=True)
-        values[symbol] = value
-        return symbol
-
-    return label
-
-
-def _subscripted(name: str) -> str:
-    letters = name.rstrip("0123456789")
-    return f"{letters}_{name[len(letters) :]}" if letters and letters != name else name
 
 
 def _named(what: str, items: Mapping[str, Item], name: str) -> Item:

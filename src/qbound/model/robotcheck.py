@@ -129,23 +129,21 @@ def _check_finite(table: Table) -> None:
 
 def _check_names(table: Table) -> None:
     """Refuse a name that its list, a frame or a joint limit has already."""
-    for kind in ("joint", "point", "boundary"):
-        first: dict[str, int] = {}
-        for i, row in enumerate(_rows(table, kind)):
-            if (j := first.setdefault(row["name"], i)) != i:
-                text = f"{shown(row['name'])} is used twice, first by {kind}[{j}]; names are unique"
-                raise _fault(table, (kind, i, "name"), text)
+    first: dict[tuple[str, str], int] = {}
+    for kind, i, row in _rows(table, "joint", "point", "boundary"):
+        if (j := first.setdefault((kind, row["name"]), i)) != i:
+            text = f"{shown(row['name'])} is used twice, first by {kind}[{j}]; names are unique"
+            raise _fault(table, (kind, i, "name"), text)
     limits = [f"{j['name']}.{side}" for j in table["joint"] for side in ("lower", "upper")]
     _check_free(table, "point", "frame", _frames(table))
     _check_free(table, "boundary", "joint limit", limits)
 
 
 def _check_free(table: Table, kind: str, other: str, taken: Sequence[str]) -> None:
-    for i, row in enumerate(_rows(table, kind)):
+    for _, i, row in _rows(table, kind):
         if row["name"] in taken:
-            text = (
-                f"{shown(row['name'])} is the name of a {other}; a {kind} needs a name of its own"
-            )
+            name = shown(row["name"])
+            text = f"{name} is the name of a {other}; a {kind} needs a name of its own"
             raise _fault(table, (kind, i, "name"), text)
 
 
@@ -169,18 +167,17 @@ def _check_references(table: Table) -> None:
     """Refuse a name that nothing has, under whatever key of a row names a frame or points."""
     points = [p["name"] for p in table["point"]]
     _check_known(table, ("tool",), "point", points)
-    for kind in ("point", "boundary", "body"):
-        for i, row in enumerate(_rows(table, kind)):
-            if "frame" in row:
-                _check_known(table, (kind, i, "frame"), "frame", _frames(table))
-            if "point" in row:
-                _check_known(table, (kind, i, "point"), "point", points)
-            for k in range(len(row.get("points", ()))):
-                _check_known(table, (kind, i, "points", k), "point", points)
+    for kind, i, row in _rows(table, "point", "boundary", "body"):
+        if "frame" in row:
+            _check_known(table, (kind, i, "frame"), "frame", _frames(table))
+        if "point" in row:
+            _check_known(table, (kind, i, "point"), "point", points)
+        for k in range(len(row.get("points", ()))):
+            _check_known(table, (kind, i, "points", k), "point", points)
 
 
 def _check_pairs(table: Table) -> None:
-    for i, row in enumerate(_rows(table, "boundary")):
+    for _, i, row in _rows(table, "boundary"):
         names = row.get("points", ())
         if len(set(names)) < len(names):
             text = f"{shown(names)} names one thing twice; wanted: {TWO_POINTS}"
@@ -208,18 +205,18 @@ def _check_home(table: Table) -> None:
 
 
 def _check_directions(table: Table) -> None:
-    for kind, key in (("joint", "axis"), ("boundary", "normal")):
-        for i, row in enumerate(_rows(table, kind)):
-            vector = row.get(key, (1.0,))
-            if not all(map(math.isfinite, vector)):
-                _check_finite(table)
-            if not any(vector):
-                text = f"{shown(vector)} has no direction; one number must not be 0"
-                raise _fault(table, (kind, i, key), text)
+    for kind, i, row in _rows(table, "joint", "boundary"):
+        key = "axis" if kind == "joint" else "normal"
+        vector = row.get(key, (1.0,))
+        if not all(map(math.isfinite, vector)):
+            _check_finite(table)
+        if not any(vector):
+            text = f"{shown(vector)} has no direction; one number must not be 0"
+            raise _fault(table, (kind, i, key), text)
 
 
 def _check_limits(table: Table) -> None:
-    for i, row in enumerate(table["joint"]):
+    for _, i, row in _rows(table, "joint"):
         joint_type, turn = JOINT_TYPES[row["type"]], TURN[table["angle_unit"]]
         if text := joint_type.limits_fault(row.get("limits"), turn):
             raise _fault(table, ("joint", i, "limits"), text)
@@ -233,9 +230,9 @@ def _frames(table: Table) -> list[str]:
     return [table["joint"][0]["parent"], *(j["frame"] for j in table["joint"])]
 
 
-def _rows(table: Table, key: str) -> Sequence[Table]:
-    rows: Sequence[Table] = table.get(key, [])
-    return rows
+def _rows(table: Table, *kinds: str) -> Iterator[tuple[str, int, Table]]:
+    """Yield every table of some lists, with its list's name and its place there."""
+    return ((kind, i, row) for kind in kinds for i, row in enumerate(table.get(kind, [])))
 
 
 def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[JsonPath, Any]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from msgspec import Meta, Struct
@@ -34,6 +34,11 @@ Direction = Annotated[
 class Row(Struct, forbid_unknown_fields=True, omit_defaults=True):
     """A table of a robot file; what has a default may be left out, and is when it is written."""
 
+    @classmethod
+    def of(cls, item: Any) -> Self:
+        """Return the table of something whose attributes are its keys."""
+        return cls(**{key: plain(getattr(item, key)) for key in cls.__struct_fields__})
+
 
 def unit_vector(vector: Sequence[float]) -> NDArray[np.float64]:
     """Give a vector the length 1; one that has it but for rounding stays as it is written."""
@@ -54,7 +59,10 @@ def quotient(value: float, scale: float) -> float:
     return next((x for x in short if x * scale == value), exact)
 
 
-def floats(values: NDArray[Any]) -> list[Any]:
-    """Write an array as lists of floats."""
-    written: list[Any] = np.asarray(values, dtype=float).tolist()
-    return written
+def plain(value: Any) -> Any:
+    """Write an array as lists of floats, a tuple as a list; leave a text and a truth alone."""
+    if isinstance(value, np.ndarray | list):
+        return np.asarray(value, dtype=float).tolist()
+    if isinstance(value, tuple):
+        return list(value)
+    return value if isinstance(value, str | bool) else float(value)

@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
-from qbound.model.rows import Label, Number, Row, Size, Vector, floats
+from qbound.model.rows import Label, Number, Row, Size, Vector
 
 Array = NDArray[Any]
 
@@ -28,9 +28,7 @@ class Point:
 
     def row(self) -> PointRow:
         """Return its table of a file."""
-        return PointRow(
-            name=self.name, frame=self.frame, at=floats(self.at), radius=float(self.radius)
-        )
+        return PointRow.of(self)
 
 
 class PointRow(Row, kw_only=True):
@@ -55,7 +53,7 @@ class Body:
 
     def row(self) -> BodyRow:
         """Return its table of a file."""
-        return BodyRow(frame=self.frame, polygon=floats(self.polygon))
+        return BodyRow.of(self)
 
 
 Corner = Annotated[

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from qbound.boundary.evaluator import Evaluator, evaluator
 from qbound.boundary.functions import position
 from qbound.geometry.bisection import last_before
-from qbound.geometry.polylines import meetings
+from qbound.geometry.polylines import crossing_pieces
 from qbound.model.robot import Robot
-from qbound.model.units import joint_units
 from qbound.paths.traversal import Traversal
 from qbound.region import Region
 from qbound.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
+from qbound.units import joint_units
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
 Floats = NDArray[np.float64]
@@ -238,12 +238,8 @@ def _candidates(curve: Form, legs: int) -> list[tuple[float, float]]:
     """Pairs of parameters near which a polyline of the path crosses itself, or nearly does."""
     n = ROWS_OF_A_LEG - 1
     s = np.arange(legs * n + 1) / n
-    p = curve(s)
-    start, step = p[:-1], np.diff(p, axis=0)
-    t, u = meetings(start, step, start, step)
-    later = np.triu(np.ones(t.shape, dtype=bool), k=2)
-    i, j = np.nonzero(later & (np.abs(t - 0.5) < 1) & (np.abs(u - 0.5) < 1))
-    return [(s[a] + t[a, b] / n, s[b] + u[a, b] / n) for a, b in zip(i, j, strict=True)]
+    i, j, t, u = crossing_pieces(curve(s), beyond=0.5)
+    return list(zip(s[i] + t / n, s[j] + u / n, strict=True))
 
 
 def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:

@@ -118,7 +118,7 @@ def plan_route(
     else:
         raise ValueError(f"no way along {along!r}; there are lines and arcs")
     if deviation is None:
-        deviation = 1e-4 * stretched_length(robot) or 1e-4
+        deviation = 1e-4 * robot.stretched(robot.tool) or 1e-4
     path = follow(robot, [leg for _, leg in named], deviation)
     names = tuple(name for name, _ in named)
     return Route(region, component, tuple(order), along, scale, path, tuple(stops), names)
@@ -130,13 +130,6 @@ def nth_component(region: Region, k: int) -> Component:
     if not 0 <= k < count:
         raise ValueError(f"no component {k}; there are {count}, numbered from 0")
     return region.components[k]
-
-
-def stretched_length(robot: Robot) -> float:
-    """Return the length of the arm stretched out: all links, longest slides, and the tool."""
-    links = [float(np.linalg.norm(joint.origin)) for joint in robot.joints]
-    slides = [joint.farthest for joint in robot.joints]
-    return sum(links) + sum(slides) + float(np.linalg.norm(robot.point(robot.tool).at))
 
 
 def _lines(

@@ -14,17 +14,6 @@ from qbound.boundary.functions import position
 from qbound.geometry.polylines import Curve, flatten, self_crossings
 from qbound.model.robot import Robot
 
-__all__ = [
-    "Leg",
-    "Traversal",
-    "follow",
-    "reach",
-    "self_crossings",
-    "simple_orders",
-    "straight",
-    "traverse",
-]
-
 Floats = NDArray[np.float64]
 
 
@@ -207,11 +196,8 @@ def simple_orders(
     """
     q = np.asarray(vertices, dtype=float)
     orders = (o for o in permutations(range(len(q)), length) if o[0] < o[-1])
-    return [o for o in orders if not len(self_crossings(_tool_path(robot, q, o)[:, plane]))]
-
-
-def _tool_path(robot: Robot, q: Floats, order: Sequence[int]) -> Floats:
-    return traverse(robot, q[list(order)], step=0.03).tool
+    walks = ((o, traverse(robot, q[list(o)], step=0.03).tool[:, plane]) for o in orders)
+    return [order for order, tool in walks if not len(self_crossings(tool))]
 
 
 def _bend(robot: Robot, a: Floats, b: Floats) -> float:

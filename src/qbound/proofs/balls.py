@@ -16,7 +16,11 @@ from numpy.typing import NDArray
 from qbound.extras import require
 
 if TYPE_CHECKING:
-    from flint import arb
+    import flint
+
+    arb = flint.arb
+else:
+    arb = Any  # an extra, which may be missing: here it is for annotations alone
 
 Array = NDArray[Any]
 

@@ -6,12 +6,9 @@ The search here is floating point and untrusted: what it finds is written down, 
 
 from __future__ import annotations
 
-import hashlib
-import json
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -19,6 +16,7 @@ from numpy.typing import NDArray
 
 from qbound import check
 from qbound.boundary.functions import clearance
+from qbound.export.formats import json_text
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
@@ -31,7 +29,7 @@ from qbound.proofs.statements import (
     home_vertices,
     scaled_polygon,
     units,
-    with_extra_clearance,
+    wider,
 )
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness, beyond_limits, deepest, witness
@@ -141,41 +139,31 @@ def certify(
     """
     robot = parse_robot(tomllib.loads(text))
     cells = check.read_cells(statement)
-    _check_margin(statement["margin"])
-    beyond = beyond_limits(text, cells)
-    if beyond is not None:
-        return _refuted(text, robot, statement, cells, beyond, {})
-    for few in (min(most, FIRST_LOOK), most):
-        searches = search_all(robot, statement, cells, few, bound)
-        verdict = _verdict(searches)
-        if verdict is not Verdict.UNDECIDED:
-            break
-    if verdict is Verdict.REFUTED:
+    if check.number(statement["margin"]) < 0:
+        raise ValueError(f"a margin of {statement['margin']}: wanted a length of 0 or more")
+    evidence = beyond_limits(text, cells)
+    verdict, searches = Verdict.REFUTED, dict[str, Search]()
+    if evidence is None:
+        for few in (min(most, FIRST_LOOK), most):
+            searches = search_all(robot, statement, cells, few, bound)
+            verdict = _verdict(searches)
+            if verdict is not Verdict.UNDECIDED:
+                break
+        if verdict is Verdict.UNDECIDED:
+            return Certificate(verdict, "", _left(searches), searches)
+        if verdict is Verdict.PROVED:
+            proof = {name: list(found.trees) for name, found in searches.items()}
+            return _confirmed(text, statement, verdict, searches, proof=proof)
         violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
         evidence = deepest(robot, statement, cells, violated)
-        return _refuted(text, robot, statement, cells, evidence, searches)
-    if verdict is Verdict.UNDECIDED:
-        return Certificate(verdict, "", _left(searches), searches)
-    proof = {name: list(found.trees) for name, found in searches.items()}
-    return _confirmed(_content(text, statement, verdict, proof=proof), searches)
+    answer = _confirmed(text, statement, verdict, searches, **evidence)
+    return replace(answer, witness=witness(robot, statement, cells, evidence))
 
 
 def _verdict(searches: dict[str, Search]) -> Verdict:
     """Return the answer of searches, which nothing has confirmed."""
     refuted = any(found.violation is not None for found in searches.values())
     return Verdict.of(not any(found.left for found in searches.values()), refuted)
-
-
-def _refuted(
-    text: str,
-    robot: Robot,
-    statement: Statement,
-    cells: Sequence[Any],
-    evidence: dict[str, Any],
-    searches: dict[str, Search],
-) -> Certificate:
-    answer = _confirmed(_content(text, statement, Verdict.REFUTED, **evidence), searches)
-    return replace(answer, witness=witness(robot, statement, cells, evidence))
 
 
 def search_all(
@@ -270,43 +258,36 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 
 def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     """Forms of the boundaries in use, by name; without those that nothing can violate."""
-    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
+    asked = wider(robot, statement)
     return {
-        boundary.name: clearance(wider, boundary)
-        for boundary in wider.boundaries
-        if boundary.used and wider.least_distance(boundary) != 0
+        boundary.name: clearance(asked, boundary)
+        for boundary in asked.boundaries
+        if boundary.used and asked.least_distance(boundary) != 0
     }
-
-
-def _check_margin(margin: str) -> None:
-    if check.number(margin) < 0:
-        raise ValueError(f"a margin of {margin}: wanted a length of 0 or more")
 
 
 # --- the file -------------------------------------------------------------------------------------
 
 
-def _content(text: str, statement: Statement, verdict: Verdict, **evidence: Any) -> dict[str, Any]:
-    return {
+def _confirmed(
+    robot: str, statement: Statement, verdict: Verdict, searches: dict[str, Search], **evidence: Any
+) -> Certificate:
+    """Write the file and hand it to the checker: what that does not confirm is not answered."""
+    content = {
         "schema": "qbound/certificate/1",
         "verdict": verdict,
         "statement": statement,
-        "robot": text,
-        "sha256": hashlib.sha256(text.encode()).hexdigest(),
+        "robot": robot,
+        "sha256": check.digest(robot),
         **evidence,
     }
-
-
-def _confirmed(content: dict[str, Any], searches: dict[str, Search]) -> Certificate:
-    """Hand the file to the checker: what it does not confirm is not answered."""
-    text = json.dumps(content, indent=1, ensure_ascii=True) + "\n"
+    text = json_text(content)
     try:
         _, said = check.check(text)
     except ValueError as error:
-        return Certificate(
-            Verdict.UNDECIDED, "", f"not confirmed in exact arithmetic: {error}", searches
-        )
-    return Certificate(content["verdict"], text, said, searches)
+        said = f"not confirmed in exact arithmetic: {error}"
+        return Certificate(Verdict.UNDECIDED, "", said, searches)
+    return Certificate(verdict, text, said, searches)
 
 
 def _left(searches: dict[str, Search]) -> str:

@@ -15,24 +15,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import ball, balls, precision, turns
+from qbound.proofs.balls import arb, ball, balls, precision, turns
 from qbound.proofs.dyadic import BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
 
-if TYPE_CHECKING:
-    from flint import arb
-
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
-Balls = tuple["arb", "arb"]
+Balls = tuple[arb, arb]
 
 BITS = 212
 """Precision of a crossing: 60 digits, twice what is printed."""
@@ -389,11 +386,9 @@ def _turned(problem: ExactProblem, joint: int, q: arb) -> list[arb] | None:
         first, last = (float((end - q) / turns(1)) for end in ends)
         candidates = [q + turns(k) for k in range(int(first) - 2, int(last) + 3)]
     inside = [_between(x, *ends) for x in candidates]
-    return (
-        None
-        if None in inside
-        else [x for x, there in zip(candidates, inside, strict=True) if there]
-    )
+    if None in inside:
+        return None
+    return [x for x, there in zip(candidates, inside, strict=True) if there]
 
 
 def _corners(problem: ExactProblem) -> list[Crossing]:
@@ -401,7 +396,6 @@ def _corners(problem: ExactProblem) -> list[Crossing]:
     ends = list(enumerate(sides(problem), start=len(problem.names)))
     return [
         classify(problem, (one.value, other.value), (one.name, other.name), (i, j))
-        for i, one in ends
-        for j, other in ends
-        if (one.joint, other.joint) == (0, 1)
+        for (i, one), (j, other) in combinations(ends, 2)
+        if one.joint < other.joint
     ]

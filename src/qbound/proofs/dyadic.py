@@ -18,21 +18,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, ball, balls, precision
-
-if TYPE_CHECKING:
-    from flint import arb
+from qbound.proofs.balls import above, arb, ball, balls, precision
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Ends = Sequence[tuple["arb", "arb"]]
+Ends = Sequence[tuple[arb, arb]]
 
 BITS = 100
 """Precision of the balls behind the tables: far above a double's 53."""

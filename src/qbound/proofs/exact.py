@@ -13,19 +13,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.functions import clearance
+from qbound.boundary.evaluator import limit_names, stacked
 from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.robot import Boundary, Joint, Robot
 from qbound.model.robotfile import load_robot, robot_text
-from qbound.proofs.balls import ball, pi, precision
-
-if TYPE_CHECKING:
-    from flint import arb
+from qbound.proofs.balls import arb, ball, pi, precision
 
 Array = NDArray[Any]
 Table = Mapping[str, Any]
@@ -103,7 +100,7 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
     held = {j: ball(value) for j, value in (held or {}).items()}
     free = [joint for j, joint in enumerate(robot.joints) if j not in held]
     used = [boundary for boundary in robot.boundaries if boundary.used]
-    limits = tuple((f"{joint.name}.lower", f"{joint.name}.upper") for joint in free)
+    limits = [limit_names(joint.name) for joint in free]
     return exact_state(robot, used, [joint.limits for joint in free], limits, held)
 
 
@@ -116,10 +113,7 @@ def exact_state(
 ) -> ExactProblem:
     """Gather the exact clearance forms of some boundaries within given ranges."""
     with precision(BITS):
-        stacked = np.zeros((len(used), *(3,) * len(robot.joints)), dtype=object)
-        for i, boundary in enumerate(used):
-            stacked[i] = clearance(robot, boundary).coefficients
-        forms = HarmonicForm(stacked, robot.kinds)
+        forms = stacked(robot, used)
         values: Any = held
         forms = forms.restrict(values) if held else forms
     balls = tuple(None if r is None else (ball(r[0]), ball(r[1])) for r in ranges)

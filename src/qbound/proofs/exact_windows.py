@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from qbound.boundary.functions import pair_vector
 from qbound.model.robot import HalfSpace, Robot
-from qbound.proofs.balls import ball, balls, pi, precision, turns
+from qbound.proofs.balls import arb, ball, balls, pi, precision, turns
 from qbound.proofs.crossings import line_roots
 from qbound.proofs.exact import BITS, ExactProblem, exact_state
 from qbound.region import paper_rule
 from qbound.region.paper_rule import Window
-
-if TYPE_CHECKING:
-    from flint import arb
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:

@@ -10,18 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.proofs.balls import ball, below, precision
+from qbound.proofs.balls import arb, ball, below, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
-
-if TYPE_CHECKING:
-    from flint import arb
 
 MOST_CELLS = 2_000_000
 """Undecided cells at which a paving stops on its own: about a gigabyte of bounds."""

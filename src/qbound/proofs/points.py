@@ -7,8 +7,8 @@ from pathlib import Path
 
 from qbound.check import number
 from qbound.model.robot import Robot
-from qbound.model.units import file_units, parse_joint_value
 from qbound.proofs.statements import Point, decimal, units
+from qbound.units import file_units, parse_joint_value
 
 
 def read_points(robot: Robot, file: str) -> list[Point]:

@@ -9,7 +9,6 @@ samples.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,19 +16,14 @@ from numpy.typing import ArrayLike
 from qbound.boundary.functions import position
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.balls import ball, balls, precision
+from qbound.proofs.balls import Array, arb, ball, balls, precision
 from qbound.proofs.exact import BITS, ExactProblem
 from qbound.proofs.proved_region import BITS as AREA_BITS
 from qbound.proofs.proved_region import ProvedComponent, prove_region
 from qbound.proofs.runs import area_under
 from qbound.region import Problem, solve
 from qbound.workspace import planar
-
-if TYPE_CHECKING:
-    from flint import arb
-
-SINGULAR = "det J"
-"""Name of the singular curve among the boundaries of an aspect."""
+from qbound.workspace.areas import SINGULAR
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +88,10 @@ def proved_images(
     ValueError
         If a part goes round the first joint.
     """
-    found = []
+    found, floats = [], balls(determinant.coefficients).astype(float)
     for side in (1, -1):
-        one, other = _with(exact, determinant, side), _with_floats(problem, determinant, side)
+        one = _with(exact, side * determinant.coefficients)
+        other = problem.with_form(SINGULAR, side * floats)
         for part in prove_region(one, solve(other, home)).components:
             with precision(AREA_BITS):
                 found.append(ProvedImage(part, side, _swept(one, part)))
@@ -114,11 +109,7 @@ def _swept(problem: ExactProblem, part: ProvedComponent) -> arb:
     return total
 
 
-def _with(problem: ExactProblem, determinant: HarmonicForm, side: int) -> ExactProblem:
-    table = np.concatenate([problem.forms.coefficients, side * determinant.coefficients[None]])
+def _with(problem: ExactProblem, coefficients: Array) -> ExactProblem:
+    table = np.concatenate([problem.forms.coefficients, coefficients[None]])
     forms = HarmonicForm(table, problem.kinds)
     return replace(problem, forms=forms, names=(*problem.names, SINGULAR))
-
-
-def _with_floats(problem: Problem, determinant: HarmonicForm, side: int) -> Problem:
-    return problem.with_form(SINGULAR, side * balls(determinant.coefficients).astype(float))

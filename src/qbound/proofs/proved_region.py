@@ -15,14 +15,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import ball, precision, turns
+from qbound.proofs.balls import arb, ball, precision, turns
 from qbound.proofs.crossings import (
     Balls,
     Crossing,
@@ -40,9 +39,6 @@ from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, roo
 from qbound.proofs.verdict import Verdict
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
-
-if TYPE_CHECKING:
-    from flint import arb
 
 Floats = NDArray[np.float64]
 Anchor = tuple[int | None, Balls]

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from qbound.boundary.evaluator import limit_names
+from qbound.export.formats import heading
 from qbound.model.robot import Robot
-from qbound.model.units import file_units
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate
 from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
-from qbound.version import __version__
+from qbound.units import file_units
 
 
 def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
@@ -24,9 +25,7 @@ def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
     """
     inner, outer = paving.bracket
     return {
-        "schema": "qbound/paving/1",
-        "robot": robot.name,
-        "version": __version__,
+        **heading("qbound/paving/1", robot),
         "volume": {"inner": below(inner), "outer": above(outer)},
         "undecided": float(paving.undecided_fraction),
         "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
@@ -58,9 +57,7 @@ def connection_document(
 ) -> dict[str, Any]:
     """Return the JSON form of an answer about two poses, schema qbound/connection/1."""
     return {
-        "schema": "qbound/connection/1",
-        "robot": robot.name,
-        "version": __version__,
+        **heading("qbound/connection/1", robot),
         "joints": [joint.name for joint in robot.joints],
         "poses": poses,
         "answer": found.answer,
@@ -107,7 +104,7 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
 def _depth(robot: Robot, found: Witness) -> str:
     """Write the depth with its unit, a length or that of a joint limit, and the configuration."""
     joints = list(zip(robot.joints, found.q, file_units(robot), strict=True))
-    units = {f"{j.name}.{end}": unit for j, _, unit in joints for end in ("lower", "upper")}
+    units = {name: unit for joint, _, unit in joints for name in limit_names(joint.name)}
     unit = units.get(found.boundary, robot.length_unit)
     place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
     return f"depth {found.depth:.9g} {unit} at {place}"

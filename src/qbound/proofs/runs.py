@@ -10,19 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import whole_turns
 from qbound.forms.factors import FACTORS
-from qbound.proofs.balls import ball, balls, turns
+from qbound.proofs.balls import arb, ball, balls, turns
 from qbound.proofs.crossings import Balls, line_roots, placed_at, sides
 from qbound.proofs.exact import ExactProblem
-
-if TYPE_CHECKING:
-    from flint import arb
 
 Array = NDArray[Any]
 

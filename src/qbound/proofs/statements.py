@@ -6,7 +6,7 @@ the robot file's own unit of angle or length, the inside of a polygon on the lef
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -19,6 +19,7 @@ from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
+from qbound.region.loops import behind
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]
@@ -195,6 +196,11 @@ def with_extra_clearance(robot: Robot, length: float) -> Robot:
     return replace(robot, boundaries=boundaries)
 
 
+def wider(robot: Robot, statement: Statement) -> Robot:
+    """Return a robot whose every boundary asks for the margin of a statement, too."""
+    return with_extra_clearance(robot, float(Fraction(statement["margin"])))
+
+
 def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
     component = find_region(robot, held).home
     if component is None:
@@ -220,7 +226,7 @@ def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -
 
 def _corners(loop: Sequence[Any]) -> Floats:
     """Points of a loop where one boundary gives way to another."""
-    pairs = zip([loop[-1], *loop[:-1]], loop, strict=True)
+    pairs = zip(behind(loop), loop, strict=True)
     found = [arc.points[0] for before, arc in pairs if before.boundary != arc.boundary]
     return np.array(found).reshape(-1, 2)
 
@@ -253,9 +259,4 @@ def _clamped(x: float, limits: tuple[float, float] | None, unit: float) -> str:
 
 def _distinct(points: Sequence[Point]) -> list[Point]:
     """Leave out a point that rounding made equal to the one before it."""
-    return [p for p, before in zip(points, _before(points), strict=True) if p != before]
-
-
-def _before(points: Sequence[Point]) -> Iterator[Point]:
-    yield points[-1]
-    yield from points[:-1]
+    return [p for p, before in zip(points, behind(points), strict=True) if p != before]

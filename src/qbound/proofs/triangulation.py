@@ -32,9 +32,8 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
 
     Notes
     -----
-    Decimals times a power of ten are whole numbers, which doubles hold exactly up to
-    :math:`2^{53}`, more than `statements.DIGITS` need. What longer decimals may spoil the checkers
-    refuse.
+    Decimals times a power of ten are whole numbers, which doubles hold exactly up to ``2**53``,
+    more than `statements.DIGITS` need. What longer decimals may spoil the checkers refuse.
     """
     require("shapely")
     import shapely

@@ -17,7 +17,7 @@ from qbound import check
 from qbound.boundary.functions import clearance, margin_of
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.statements import Statement, units, with_extra_clearance
+from qbound.proofs.statements import Statement, units, wider
 
 Floats = NDArray[np.float64]
 Evidence = dict[str, Any]
@@ -68,13 +68,12 @@ def deepest(
         A cell, and a configuration in it (rad or length) that violates the boundary.
     """
     corners = np.array(cells, dtype=float) * units(robot)
-    wider = with_extra_clearance(robot, float(Fraction(statement["margin"])))
-    found = []
+    asked, found = wider(robot, statement), []
     for name, (start, q) in violated.items():
-        form = clearance(wider, wider.boundary(name))
+        form = clearance(asked, asked.boundary(name))
         cell, weights = _lowest(form, corners, start, q)
         value = float(form(weights @ corners[cell]))
-        found.append((_depth(wider, name, value), name, cell, weights))
+        found.append((_depth(asked, name, value), name, cell, weights))
     _, name, cell, weights = max(found, key=lambda row: row[0])
     return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
 
@@ -85,13 +84,10 @@ def witness(
     """Read the configuration and its depth out of what the file says."""
     corners = np.array(cells[evidence["cell"]], dtype=float)
     q = np.array(evidence["weights"], dtype=float) @ corners
-    name, wider = (
-        evidence["boundary"],
-        with_extra_clearance(robot, float(Fraction(statement["margin"]))),
-    )
-    if any(boundary.name == name for boundary in wider.boundaries):
-        form = clearance(wider, wider.boundary(name))
-        return Witness(name, tuple(q), _depth(wider, name, float(form(q * units(robot)))))
+    name, asked = evidence["boundary"], wider(robot, statement)
+    if any(boundary.name == name for boundary in asked.boundaries):
+        form = clearance(asked, asked.boundary(name))
+        return Witness(name, tuple(q), _depth(asked, name, float(form(q * units(robot)))))
     joint, _, side = name.rpartition(".")
     j = [other.name for other in robot.joints].index(joint)
     limits = robot.joints[j].limits or (q[j], q[j])

@@ -105,6 +105,12 @@ class Arc:
     branch: int | None
     pieces: Pieces
 
+    def __repr__(self) -> str:
+        """Say in a line what it is part of and where it runs."""
+        branch = "" if self.branch is None else f" ({self.branch:+d})"
+        start, end = (", ".join(f"{x:.6g}" for x in q) for q in (self.start, self.end))
+        return f"<Arc of {self.boundary}{branch} from ({start}) to ({end})>"
+
     @property
     def start(self) -> Floats:
         """Joint values at the start, shape (2,)."""

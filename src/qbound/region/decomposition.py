@@ -20,6 +20,7 @@ from qbound.forms.angles import TURN, turns_up_to, turns_within
 from qbound.forms.circle import polar
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import (
+    BEYOND_JUMP,
     BLANK,
     NEAR_CIRCLE,
     NEGLIGIBLE,
@@ -460,8 +461,10 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
 
 def _goes_on(plane: Plane, lines: Floats, at: Ints, pairs: Sequence[tuple[Root, Root]]) -> Bools:
     """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
-    step = UNCHANGED**2 * np.minimum(lines[at] - lines[at - 1], lines[at + 1] - lines[at])
-    t = lines[at][:, None] + step[:, None] * np.array([-1, 0, 1])
+    zero = np.zeros(len(at))
+    widths = np.stack([lines[at] - lines[at - 1], zero, lines[at + 1] - lines[at]], axis=-1)
+    step = np.maximum(UNCHANGED**2 * widths, np.minimum(widths / 2, BEYOND_JUMP))
+    t = lines[at][:, None] + step * np.array([-1, 0, 1])
     bottoms, tops = [lower for lower, _ in pairs], [upper for _, upper in pairs]
     lower, upper = plane.follow(bottoms, t), plane.follow(tops, t)
     smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * (upper - lower).min(axis=1)

@@ -10,21 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance, pair_vector
-from qbound.forms.angles import TURN, first_from, turns_within
-from qbound.forms.circle import CircleRoots, circle_roots
+from qbound.forms.angles import TURN, first_from
+from qbound.forms.circle import circle_roots
 from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.polylines import tangent_corners
-from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.region.problem import Problem, state
-from qbound.tolerances import ON_BOUNDARY, ZERO_AMPLITUDE
+from qbound.tolerances import ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
+AnyBoundary = TypeVar("AnyBoundary", bound=Boundary)
 
 UPPER: Final = 1
 LOWER: Final = 2
@@ -74,14 +74,6 @@ class Box:
         return np.asarray(((q >= self.lower) & (q <= self.upper)).all(axis=-1))
 
 
-@dataclass(frozen=True, eq=False)
-class Vertex:
-    """A corner of the region: joint values (rad) and the two bounds that meet there."""
-
-    q: Floats
-    bounds: tuple[Bound, Bound]
-
-
 def windows(robot: Robot) -> list[Window]:
     """Return the window of every component of every point pair in use that reaches zero (Table 6).
 
@@ -90,14 +82,10 @@ def windows(robot: Robot) -> list[Window]:
     Raises
     ------
     ValueError
-        If a pair has not exactly one joint, a revolute one, between its points.
+        If a pair has not exactly one joint, a revolute one, between its points, or a boundary in
+        use is neither a pair nor a half-space.
     """
-    return [
-        window
-        for boundary in robot.boundaries
-        if isinstance(boundary, Pair) and boundary.used
-        for window in _pair_windows(robot, boundary)
-    ]
+    return [window for pair in _used(robot, Pair) for window in _pair_windows(robot, pair)]
 
 
 def box(robot: Robot) -> Box:
@@ -108,8 +96,7 @@ def box(robot: Robot) -> Box:
     ValueError
         If a joint has no window: the paper's rule then says nothing about it.
     """
-    sides = [_sides(robot, joint) for joint in range(len(robot.joints))]
-    lower, upper = ([side[i] for side in sides] for i in (0, 1))
+    lower, upper = zip(*(_sides(robot, joint) for joint in range(len(robot.joints))), strict=True)
     return Box(
         lower=np.array([w.lower for w in lower]),
         upper=np.array([w.upper for w in upper]),
@@ -121,117 +108,18 @@ def box(robot: Robot) -> Box:
 def feasible(robot: Robot, q: ArrayLike) -> NDArray[np.bool_]:
     """Tell which configurations, shape (..., n), the paper's rule allows."""
     inside = box(robot).contains(q)
-    for _, form in _cuts(robot):
+    for _, form in cuts(robot):
         inside &= form(q) >= 0
     return np.asarray(inside)
 
 
 def problem(robot: Robot) -> Problem:
     """State the paper's rule for the general engine: the box as limits, half-spaces as forms."""
-    region, cuts = box(robot), [half_space for half_space, _ in _cuts(robot)]
+    region = box(robot)
     ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
     sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
     names = [(low.boundary, high.boundary) for low, high in sides]
-    return state(robot, cuts, ranges, names, rule="paper")
-
-
-def geometric_bounds(robot: Robot, boundary: str, q: ArrayLike) -> Floats:
-    """Return both roots of a half-space along the last joint, others held at `q` (Table 6, row 7).
-
-    Returns
-    -------
-    ndarray, shape (2, ...)
-        Lower and upper end of the arc of feasible values, rad, around a centre in (-pi, pi];
-        NaN where the half-space does not cut the circle.
-    """
-    roots = _roots_along_last(robot, boundary, q)
-    return np.where(roots.count > 0, roots.q, np.nan)
-
-
-def bound_curves(robot: Robot, ranges: ArrayLike, n: int = 721) -> list[tuple[Bound, Floats]]:
-    """Return every bound of Table 6 as a curve of two joints, for drawing.
-
-    Windows are straight lines; a half-space is its two roots along the second joint, turned
-    into the range, with NaN where it has none or leaves the range.
-
-    Parameters
-    ----------
-    ranges : array_like, shape (2, 2)
-        Lowest and highest value of each joint, rad.
-
-    Returns
-    -------
-    list of (Bound, ndarray of shape (m, 2))
-    """
-    ranges = np.asarray(ranges, dtype=float)
-    curves = []
-    for window in windows(robot):
-        for k, value in ((UPPER, window.upper), (LOWER, window.lower)):
-            line = ranges.T.copy()
-            line[:, window.joint] = value
-            curves.append((Bound(window.boundary, window.component, k), line))
-    for half_space in robot.boundaries:
-        if isinstance(half_space, HalfSpace):
-            curves += _half_space_curves(robot, half_space, ranges, n)
-    return curves
-
-
-def vertices(robot: Robot) -> list[Vertex]:
-    """Return the corners of the region of two joints in closed form, anticlockwise.
-
-    They are the corners of the box that no half-space removes, and the points where a half-space
-    crosses an edge of the box: Theorem 2 along that edge.
-
-    Raises
-    ------
-    ValueError
-        If the robot has not two joints, or two neighbouring vertices share no bound: a half-space
-        then folds, or meets another, inside the box, and the paper's rule names no vertex there.
-    """
-    if len(robot.joints) != 2:
-        raise ValueError(f"the paper's rule draws two joints; {robot.name} has {len(robot.joints)}")
-    corners = [vertex for edge in _edges(box(robot)) for vertex in _on_edge(robot, *edge)]
-    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
-        if not set(one.bounds) & set(other.bounds):
-            names = [bound.label for vertex in (one, other) for bound in vertex.bounds]
-            raise ValueError(f"neighbouring vertices share no bound: {', '.join(names)}")
-    return corners
-
-
-def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
-    """Replace every edge that cuts across a half-space's curve (Section 4, the first remedy).
-
-    Parameters
-    ----------
-    n : int
-        Points of each curve, its two ends included; at least 2.
-    tangents : bool
-        Whether to put the corners of the tangents at these points in place of the edge, or
-        the points themselves, joined by chords.
-
-    Returns
-    -------
-    ndarray, shape (m, 2)
-        Joint values, rad, anticlockwise; errors as in `vertices`.
-    """
-    corners = vertices(robot)
-    result = []
-    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
-        result.append(one.q)
-        (bound,) = set(one.bounds) & set(other.bounds)
-        if isinstance(robot.boundary(bound.boundary), HalfSpace):
-            curve = _curve_between(robot, bound, one.q, other.q, n)
-            normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
-            result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
-    return np.array(result)
-
-
-def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: int) -> Floats:
-    """Return `n` points of a half-space's bound, evenly spaced in the first joint."""
-    q1 = np.linspace(start[0], end[0], n)
-    lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
-    q2 = np.unwrap(upper if bound.k == UPPER else lower)
-    return np.stack([q1, q2 + start[1] - q2[0]], -1)
+    return state(robot, [wall for wall, _ in cuts(robot)], ranges, names, rule="paper")
 
 
 def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
@@ -261,86 +149,16 @@ def _sides(robot: Robot, joint: int) -> tuple[Window, Window]:
     return max(own, key=lambda w: w.lower), min(own, key=lambda w: w.upper)
 
 
-def _cuts(robot: Robot) -> list[tuple[HalfSpace, HarmonicForm]]:
-    return [
-        (boundary, clearance(robot, boundary))
-        for boundary in robot.boundaries
-        if isinstance(boundary, HalfSpace) and boundary.used
-    ]
+def cuts(robot: Robot) -> list[tuple[HalfSpace, HarmonicForm]]:
+    """Return the half-spaces in use and their forms."""
+    return [(wall, clearance(robot, wall)) for wall in _used(robot, HalfSpace)]
 
 
-def _edges(region: Box) -> Iterator[tuple[Floats, Floats, Bound, Bound]]:
-    """Each edge of the box anticlockwise: start, end, its own bound, the bound before it."""
-    low, high = region.lower, region.upper
-    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
-    (left, bottom), (right, top) = region.lower_bounds, region.upper_bounds
-    bounds = [bottom, right, top, left]
-    for i in range(4):
-        yield corners[i], corners[(i + 1) % 4], bounds[i], bounds[i - 1]
-
-
-def _on_edge(
-    robot: Robot, start: Floats, end: Floats, own: Bound, before: Bound
-) -> Iterator[Vertex]:
-    """Yield the vertices on an edge in its order, the start included and the end not."""
-    cuts = _cuts(robot)
-    found = [(0.0, Vertex(start, (before, own)))]
-    for half_space, form in cuts:
-        for t in _crossings(form, start, end):
-            q = start + t * (end - start)
-            found.append((t, Vertex(q, (own, _half_space_bound(half_space, form, q)))))
-    for _, vertex in sorted(found, key=lambda item: item[0]):
-        if all(
-            form(vertex.q) >= -ON_BOUNDARY * np.abs(form.coefficients).max() for _, form in cuts
-        ):
-            yield vertex
-
-
-def _crossings(form: HarmonicForm, start: Floats, end: Floats) -> list[float]:
-    """Places 0 < t < 1 of an edge at which a form vanishes: Theorem 2 along the edge's joint."""
-    joint = int(np.argmax(np.abs(end - start)))
-    c0, a, b = form.along(joint, start)
-    roots = circle_roots(a, b, -c0)
-    if roots.count <= 0:
-        return []
-    low, high = sorted((start[joint], end[joint]))
-    turned = first_from(low, np.unique(roots.q))
-    return [float((q - start[joint]) / (end - start)[joint]) for q in turned if low < q < high]
-
-
-def _roots_along_last(robot: Robot, boundary: str, q: ArrayLike) -> CircleRoots:
-    form = clearance(robot, robot.boundary(boundary))
-    c0, a, b = np.moveaxis(form.along(len(robot.joints) - 1, q), -1, 0)
-    return circle_roots(a, b, -c0)
-
-
-def _half_space_curves(
-    robot: Robot, half_space: HalfSpace, ranges: Floats, n: int
-) -> Iterator[tuple[Bound, Floats]]:
-    """Yield both roots of a half-space over the first joint's range, once per turn in range."""
-    component = int(np.argmax(np.abs(half_space.normal))) + 1
-    q1 = np.linspace(ranges[0, 0], ranges[0, 1], n)
-    for _ in range(3):  # closer and closer to where the roots appear, so that a curve meets itself
-        there = np.isfinite(geometric_bounds(robot, half_space.name, np.stack([q1, q1], -1))[0])
-        fold = np.nonzero(there[1:] != there[:-1])[0]
-        q1 = np.sort(np.concatenate([q1, np.linspace(q1[fold], q1[fold + 1], 42)[1:-1].ravel()]))
-    roots = _roots_along_last(robot, half_space.name, np.stack([q1, q1], -1))
-    alpha = np.where(roots.count > 0, roots.alpha, np.nan)
-    centre = np.unwrap(roots.theta)  # one curve, not one that jumps by a turn
-    for k, sign in ((LOWER, -1), (UPPER, +1)):
-        for q2 in _copies_within(centre + sign * alpha, *ranges[1]):
-            yield Bound(half_space.name, component, k), np.stack([q1, q2], -1)
-
-
-def _copies_within(q: Floats, low: float, high: float) -> Iterator[Floats]:
-    """Yield a curve of angles once per full turn that brings it into a range, NaN outside."""
-    for turn in turns_within(low, high, q) if not np.isnan(q).all() else ():
-        shifted = q + turn * TURN
-        yield np.where((shifted >= low) & (shifted <= high), shifted, np.nan)
-
-
-def _half_space_bound(half_space: HalfSpace, form: HarmonicForm, q: Floats) -> Bound:
-    """Upper bound of the last joint where the form falls along it, lower where it rises."""
-    component = int(np.argmax(np.abs(half_space.normal))) + 1
-    falls = form.gradient(q)[-1] < 0
-    return Bound(half_space.name, component, UPPER if falls else LOWER)
+def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
+    """Return the boundaries in use of one type, if the paper's rule knows all of them."""
+    used = [boundary for boundary in robot.boundaries if boundary.used]
+    for boundary in used:
+        if not isinstance(boundary, Pair | HalfSpace):
+            found = type(boundary).__name__
+            raise ValueError(f"{boundary.name}: the paper's rule has no bounds for a {found}")
+    return [boundary for boundary in used if isinstance(boundary, kind)]

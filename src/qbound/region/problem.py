@@ -63,6 +63,12 @@ class Problem:
     held: Mapping[int, float] = field(default_factory=dict)
     rule: Rule = "clearance"
 
+    def __repr__(self) -> str:
+        """Say in a line whose joints these are, and by which rule."""
+        of = "" if self.robot is None else f" of {self.robot.name}"
+        joints, count = ", ".join(self.joint_names), len(self.names)
+        return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
+
     @cached_property
     def evaluator(self) -> Evaluator:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""

@@ -40,7 +40,8 @@ class Vertex:
 
     def __repr__(self) -> str:
         """Say in a line where it is and what meets there."""
-        return f"<Vertex {' / '.join(self.boundaries)} at {self.q.tolist()}>"
+        place = ", ".join(f"{x:.6g}" for x in self.q)
+        return f"<Vertex of {' and '.join(self.boundaries)} at ({place})>"
 
 
 @dataclass(frozen=True, eq=False)

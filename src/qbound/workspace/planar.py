@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import position
-from qbound.forms.angles import nearest_turn
+from qbound.forms import angles
+from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import FACTORS, Kind, basis
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
@@ -267,9 +268,7 @@ def turns_within(kind: Kind, q: float, limits: Range) -> list[float]:
         return [q] if limits is None or limits[0] <= q <= limits[1] else []
     if limits is None:
         return [float(nearest_turn(q, 0))]
-    first = math.ceil((limits[0] - q) / math.tau)
-    last = math.floor((limits[1] - q) / math.tau)
-    return [q + math.tau * k for k in range(first, last + 1)]
+    return [q + TURN * k for k in angles.turns_within(*limits, q)]
 
 
 def _plane(r: HarmonicForm) -> Floats:
