@@ -66,6 +66,8 @@ nb_code_prompt_hide = "Hide the code"
 myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 copybutton_selector = "div:not(.output) > div.highlight pre"
+copybutton_prompt_text = r">>> |\.\.\. "  # an example is copied without its prompts and answers
+copybutton_prompt_is_regexp = True
 
 # API: the docstrings state types, shapes and units; the signature stays short.
 autodoc_typehints = "none"

@@ -6,6 +6,7 @@ import inspect
 import re
 from pathlib import Path
 
+import matplotlib
 import pytest
 
 import qbound
@@ -51,6 +52,7 @@ def test_every_method_of_a_region_has_an_example(name) -> None:
 
 
 def test_the_first_calls_of_the_api_page_return_what_it_shows() -> None:
+    matplotlib.use("agg")  # the page calls `plot` without axes: no window shall open
     page = API.read_text(encoding="utf-8").replace("```", "")  # a fence would belong to the output
     examples = doctest.DocTestParser().get_doctest(page, {}, API.name, str(API), 0)
     failed, tried = doctest.DocTestRunner().run(examples)
