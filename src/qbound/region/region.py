@@ -73,7 +73,8 @@ class Component:
     def __repr__(self) -> str:
         """Say in a line how large it is and what bounds it."""
         home = ", with home" if self.contains_home else ""
-        sizes = f"{len(self.vertices)} vertices, {len(self.loops)} loops"
+        loops = f"{len(self.loops)} loop{'s' * (len(self.loops) != 1)}"
+        sizes = f"{len(self.vertices)} vertices, {loops}"
         return f"<Component: area {self.area:.6g}, {sizes}{home}>"
 
 
@@ -347,7 +348,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> region
     <Region of MinervaBotV2: 5 components, with home, area 25.8433 rad^2>
     >>> region.home
-    <Component: area 11.78, 6 vertices, 1 loops, with home>
+    <Component: area 11.78, 6 vertices, 1 loop, with home>
 
     A region may be empty. It is no error, and the region says which boundaries leave no room; here
     the floor is raised above the arm's reach:
