@@ -2,11 +2,13 @@
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
 - `decomposition`: cells in which every form is positive; `cells`: which of them are adjacent;
-- `loops`, `arcs`: the boundary of each component; `region`: the answer, and what it can be asked.
+- `loops`, `arcs`: the boundary of each component; `components`: what else is known of it;
+- `region`: the answer, and what it can be asked.
 """
 
+from qbound.region.components import Component, Vertex
 from qbound.region.problem import Problem, Rule, clearance_problem, state
-from qbound.region.region import Component, Region, Vertex, find_region, margins, solve, violated
+from qbound.region.region import Region, find_region, margins, solve, violated
 
 __all__ = [
     "Component",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import chain, islice
@@ -13,15 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
-from qbound.forms.angles import TURN, nearest_turn
 from qbound.model.robot import Held, Robot
 from qbound.region import paper_rule
-from qbound.region.arcs import NODES, Arc, legendre, ordered
-from qbound.region.cells import CellComplex, Placed
+from qbound.region.cells import CellComplex
+from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import Decomposition, Plane, decompose
-from qbound.region.loops import BoundaryLoop, Layout, Windings, behind
+from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.problem import Problem, Rule, clearance_problem
-from qbound.tolerances import QUADRATURE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,53 +25,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-
-
-@dataclass(frozen=True, eq=False)
-class Vertex:
-    """A point of the boundary where two boundaries meet."""
-
-    q: Floats
-    boundaries: tuple[str, str]
-
-    def __repr__(self) -> str:
-        """Say in a line where it is and what meets there."""
-        place = ", ".join(f"{x:.6g}" for x in self.q)
-        return f"<Vertex of {' and '.join(self.boundaries)} at ({place})>"
-
-
-@dataclass(frozen=True, eq=False)
-class Component:
-    """A connected piece of the region.
-
-    Attributes
-    ----------
-    area : float
-        Product of the two joints' units.
-    centroid : ndarray, shape (2,), or None
-        Of the area; None where the component goes round a joint.
-    wraps : tuple of two bool
-        Whether it goes all the way round each joint.
-    loops : tuple of tuple of Arc
-        The closed loops that bound it, the component on the left.
-    vertices : tuple of Vertex
-        In the order of the loops.
-    contains_home : bool
-    """
-
-    area: float
-    centroid: Floats | None
-    wraps: tuple[bool, bool]
-    loops: tuple[tuple[Arc, ...], ...]
-    vertices: tuple[Vertex, ...]
-    contains_home: bool
-
-    def __repr__(self) -> str:
-        """Say in a line how large it is and what bounds it."""
-        home = ", with home" if self.contains_home else ""
-        loops = f"{len(self.loops)} loop{'s' * (len(self.loops) != 1)}"
-        sizes = f"{len(self.vertices)} vertices, {loops}"
-        return f"<Component: area {self.area:.6g}, {sizes}{home}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,7 +168,7 @@ class Region:
         >>> region.components_of([0.2, 2.5])
         (1,)
         """
-        placed = _closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
+        placed = closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
         return tuple(sorted({self.owner[one.cell] for one in placed}))
 
     def component_of(self, q: ArrayLike) -> int | None:
@@ -405,13 +354,13 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     cells = CellComplex(decompose(plane))
     if not cells.cells:
         return Region((), problem, cells, base, {}, _irreducible(inner, base))
-    found = _measured(cells, problem, home, base)
+    found = measured(cells, problem, home, base)
     bounding = [
         [BoundaryLoop(w, f.windings, f.shift) for w in cells.loops(f.windings)] for f in found
     ]
     loops = iter(Layout(cells, base, inner.names, inner.limits).arcs(list(chain(*bounding))))
     components = [
-        (_component(f, base, list(islice(loops, len(own)))), f.windings)
+        (bounded(f, base, list(islice(loops, len(own)))), f.windings)
         for f, own in zip(found, bounding, strict=True)
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
@@ -470,111 +419,3 @@ def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     []
     """
     return [(name, margin) for name, margin in margins(robot, q) if margin < 0]
-
-
-def _closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list[Placed]:
-    """Return the cells in whose closure a configuration lies.
-
-    One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
-    violated half-way.
-    """
-    if not problem.evaluator.feasible(q):
-        return []
-    return [
-        one
-        for one in cells.placed(ordered(q, base))
-        if problem.evaluator.feasible(q + ordered(one.off, base) / 2)
-    ]
-
-
-# --- from cells to components ---------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """A component before its boundary is laid out; base before lift."""
-
-    windings: Windings
-    wraps: tuple[bool, bool]
-    area: float
-    middle: Floats
-    shift: Floats
-    contains_home: bool
-
-
-def _measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> list[_Found]:
-    """Measure every component, and choose the turns at which it is shown."""
-    moments = _cell_moments(cells)
-    at_home = {one.cell: one for one in _closures(problem, cells, base, home)}
-    home = ordered(home, base)
-    circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
-    found = []
-    for windings, wraps in cells.components():
-        turns = TURN * np.array(list(windings.values()), dtype=float)
-        areas, firsts = moments[list(windings), 0], moments[list(windings), 1:]
-        middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
-        own = next((one for cell, one in at_home.items() if cell in windings), None)
-        shift = np.zeros(2)
-        if own is not None:
-            shift = home - own.place - TURN * np.array(windings[own.cell])
-        elif not any(wraps):
-            shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(_Found(windings, wraps, float(areas.sum()), middle, shift, own is not None))
-    return found
-
-
-def _component(found: _Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
-    centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
-    wraps = found.wraps[base], found.wraps[1 - base]
-    loops = [_from_lowest(loop) for loop in loops]
-    corners = tuple(_vertices(loops))
-    return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
-
-
-def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
-    """Let a loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
-
-    One that goes round a joint is left alone.
-    """
-    starts = [i for i, arc in enumerate(loop) if loop[i - 1].boundary != arc.boundary]
-    closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
-    if not starts or not closes:
-        return loop
-    k = min(starts, key=lambda i: tuple(np.round(loop[i].start[::-1], 9)))
-    return loop[k:] + loop[:k]
-
-
-def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
-    for arcs in loops:
-        for before, arc in zip(behind(arcs), arcs, strict=True):
-            if before.boundary != arc.boundary:
-                yield Vertex(arc.start, (before.boundary, arc.boundary))
-
-
-def _cell_moments(cells: CellComplex) -> Floats:
-    """Return area and first moments about base and lift of each cell, shape (k, 3).
-
-    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
-    those cells whose moments still change.
-    """
-    result = np.full((len(cells.cells), 3), np.inf)
-    left = np.arange(len(cells.cells))
-    for n in NODES:
-        now = _moments(cells, left.tolist(), n)
-        settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
-        result[left] = now
-        left = left[~settled.all(axis=1)]
-        if not len(left):
-            break
-    return result
-
-
-def _moments(cells: CellComplex, chosen: list[int], n: int) -> Floats:
-    nodes, weights = legendre(n)
-    start, end = cells.spans(chosen).T[:, :, None]
-    half, angle = (end - start) / 2, nodes * math.pi / 2
-    t = (start + end) / 2 + half * np.sin(angle)
-    low, high = cells.interval(chosen, t)
-    strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
-    moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)
-    return np.asarray(moments.sum(axis=1))

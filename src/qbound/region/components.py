@@ -1,0 +1,172 @@
+"""From cells to components: closures, areas and centroids, and the loops' vertices."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.forms.angles import TURN, nearest_turn
+from qbound.region.arcs import NODES, Arc, legendre, ordered
+from qbound.region.cells import CellComplex, Placed
+from qbound.region.loops import Windings, behind
+from qbound.region.problem import Problem
+from qbound.tolerances import QUADRATURE
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Vertex:
+    """A point of the boundary where two boundaries meet."""
+
+    q: Floats
+    boundaries: tuple[str, str]
+
+    def __repr__(self) -> str:
+        """Say in a line where it is and what meets there."""
+        place = ", ".join(f"{x:.6g}" for x in self.q)
+        return f"<Vertex of {' and '.join(self.boundaries)} at ({place})>"
+
+
+@dataclass(frozen=True, eq=False)
+class Component:
+    """A connected piece of the region.
+
+    Attributes
+    ----------
+    area : float
+        Product of the two joints' units.
+    centroid : ndarray, shape (2,), or None
+        Of the area; None where the component goes round a joint.
+    wraps : tuple of two bool
+        Whether it goes all the way round each joint.
+    loops : tuple of tuple of Arc
+        The closed loops that bound it, the component on the left.
+    vertices : tuple of Vertex
+        In the order of the loops.
+    contains_home : bool
+    """
+
+    area: float
+    centroid: Floats | None
+    wraps: tuple[bool, bool]
+    loops: tuple[tuple[Arc, ...], ...]
+    vertices: tuple[Vertex, ...]
+    contains_home: bool
+
+    def __repr__(self) -> str:
+        """Say in a line how large it is and what bounds it."""
+        home = ", with home" if self.contains_home else ""
+        loops = f"{len(self.loops)} loop{'s' * (len(self.loops) != 1)}"
+        sizes = f"{len(self.vertices)} vertices, {loops}"
+        return f"<Component: area {self.area:.6g}, {sizes}{home}>"
+
+
+def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list[Placed]:
+    """Return the cells in whose closure a configuration lies.
+
+    One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
+    violated half-way.
+    """
+    if not problem.evaluator.feasible(q):
+        return []
+    return [
+        one
+        for one in cells.placed(ordered(q, base))
+        if problem.evaluator.feasible(q + ordered(one.off, base) / 2)
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A component before its boundary is laid out; base before lift."""
+
+    windings: Windings
+    wraps: tuple[bool, bool]
+    area: float
+    middle: Floats
+    shift: Floats
+    contains_home: bool
+
+
+def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> list[Found]:
+    """Measure every component, and choose the turns at which it is shown."""
+    moments = _cell_moments(cells)
+    at_home = {one.cell: one for one in closures(problem, cells, base, home)}
+    home = ordered(home, base)
+    circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
+    found = []
+    for windings, wraps in cells.components():
+        turns = TURN * np.array(list(windings.values()), dtype=float)
+        areas, firsts = moments[list(windings), 0], moments[list(windings), 1:]
+        middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
+        own = next((one for cell, one in at_home.items() if cell in windings), None)
+        shift = np.zeros(2)
+        if own is not None:
+            shift = home - own.place - TURN * np.array(windings[own.cell])
+        elif not any(wraps):
+            shift = (nearest_turn(middle, 0) - middle) * circles
+        found.append(Found(windings, wraps, float(areas.sum()), middle, shift, own is not None))
+    return found
+
+
+def bounded(found: Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
+    """Return a component with its boundary; each loop begins at its lowest vertex."""
+    centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
+    wraps = found.wraps[base], found.wraps[1 - base]
+    loops = [_from_lowest(loop) for loop in loops]
+    corners = tuple(_vertices(loops))
+    return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
+
+
+def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
+    """Let a loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
+
+    One that goes round a joint is left alone.
+    """
+    starts = [i for i, arc in enumerate(loop) if loop[i - 1].boundary != arc.boundary]
+    closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
+    if not starts or not closes:
+        return loop
+    k = min(starts, key=lambda i: tuple(np.round(loop[i].start[::-1], 9)))
+    return loop[k:] + loop[:k]
+
+
+def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
+    for arcs in loops:
+        for before, arc in zip(behind(arcs), arcs, strict=True):
+            if before.boundary != arc.boundary:
+                yield Vertex(arc.start, (before.boundary, arc.boundary))
+
+
+def _cell_moments(cells: CellComplex) -> Floats:
+    """Return area and first moments about base and lift of each cell, shape (k, 3).
+
+    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
+    those cells whose moments still change.
+    """
+    result = np.full((len(cells.cells), 3), np.inf)
+    left = np.arange(len(cells.cells))
+    for n in NODES:
+        now = _moments(cells, left.tolist(), n)
+        settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
+        result[left] = now
+        left = left[~settled.all(axis=1)]
+        if not len(left):
+            break
+    return result
+
+
+def _moments(cells: CellComplex, chosen: list[int], n: int) -> Floats:
+    nodes, weights = legendre(n)
+    start, end = cells.spans(chosen).T[:, :, None]
+    half, angle = (end - start) / 2, nodes * math.pi / 2
+    t = (start + end) / 2 + half * np.sin(angle)
+    low, high = cells.interval(chosen, t)
+    strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
+    moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)
+    return np.asarray(moments.sum(axis=1))
