@@ -71,7 +71,7 @@ def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
     status, out, _ = run(capsys, "contains", "minervabot-v2", "0", "0")
     lines = out.splitlines()
     assert status == 0
-    assert lines[0] == "feasible, in component 1 of 5, with the home pose"
+    assert lines[0] == "feasible, in component 0 (of 5, counted from 0), with the home pose"
     margins = [float(line.split()[1]) for line in lines if line.startswith("  margin")]
     assert len(margins) == 5
     assert margins == sorted(margins)
@@ -183,3 +183,15 @@ def test_a_bad_place_or_pose_is_one_sentence_and_status_2(capsys, arguments, wor
     status, out, err = run(capsys, "workspace", "minervabot-v2", *arguments)
     assert (status, out) == (2, "")
     assert words in err
+
+
+@pytest.mark.parametrize(
+    ("robot", "values", "wanted"),
+    [
+        ("pp-portal", ("10mm", "20"), "such as 0.2, a plain number of mm"),
+        ("minervabot-v2", ("20cm", "0"), "such as 20deg or 0.35rad"),
+    ],
+)
+def test_a_value_that_is_none_is_answered_with_one_of_its_joint(capsys, robot, values, wanted):
+    assert main(["contains", robot, *values]) == 2
+    assert wanted in capsys.readouterr().err

@@ -51,7 +51,7 @@ def test_commands_json_and_python_agree_on_a_limit(capsys, tmp_path):
     save_robot(robot, file)
     status, out = run(capsys, "contains", str(file), "0deg", "0deg")
     assert status == 0
-    assert out.startswith("feasible, in component 1 of")
+    assert out.startswith("feasible, in component 0 (of")
     status, out = run(capsys, "region", str(file), "--json", "-")
     content = json.loads(out)
     assert status == 0
@@ -222,3 +222,29 @@ def test_vertices_have_one_order_in_python_json_and_commands(capsys):
 def test_components_come_by_falling_area_after_homes():
     areas = [component.area for component in find_region(MINERVA).components[1:]]
     assert all(one >= other for one, other in pairwise(areas))
+
+
+def test_one_configuration_is_asked_for_where_one_is_meant():
+    region = find_region(MINERVA)
+    for door in (region.component_of, region.components_of):
+        with pytest.raises(ValueError, match="one configuration"):
+            door([[0.0, 0.0], [1.0, 1.0]])
+    for robot_door in (margins, violated):
+        with pytest.raises(ValueError, match=r"one configuration.*Region\.margins"):
+            robot_door(MINERVA, [[0.0, 0.0], [1.0, 1.0]])
+
+
+def test_a_fixed_pair_that_must_keep_nothing_blocks_nothing():
+    fixed = [Point(name, MINERVA.base, np.zeros(3)) for name in ("here", "there")]
+    pair = Pair("fixed", ("here", "there"), 0.0)
+    robot = replace(
+        MINERVA, points=(*MINERVA.points, *fixed), boundaries=(*MINERVA.boundaries, pair)
+    )
+    assert_allclose(find_region(robot).area, find_region(MINERVA).area, rtol=1e-12)
+
+
+def test_of_several_boundaries_that_are_violated_everywhere_one_is_reason_enough():
+    base = Point("base", MINERVA.base, np.zeros(3))
+    walls = (replace(still(1.0), name="one"), replace(still(1.0), name="other"))
+    robot = replace(MINERVA, points=(*MINERVA.points, base), boundaries=walls)
+    assert find_region(robot).empty_because == ("one",)

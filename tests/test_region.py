@@ -18,7 +18,7 @@ from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
 from qbound.region import Problem, Region, find_region, paper_rule, solve, violated
-from support.forms import LIMITS, PP, RR, TURN, forms
+from support.forms import LIMITS, PP, PR, RR, TURN, forms
 from support.oracles import circle_zeros, equation_29
 from support.regions import (
     SMALL,
@@ -325,6 +325,35 @@ def main(kind: str, count: int) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("error", RuntimeWarning)
     main(sys.argv[1], int(sys.argv[2]))
+
+
+# --- forms that share a root for every base value -------------------------------------------------
+
+SHARED = {
+    # q (q + 2 cos) and q (q + 1): besides q = 0 they meet where 2 cos = 1
+    "slide": problem_of(PR, ((-2.0, 2.0), None), {"20": 1, "11": 2}, {"20": 1, "10": 1}),
+    # cos q1 (1 + cos q2) + sin q1 sin q2 and 1 + cos q2 + sin q2 / 2: besides q2 = pi once a turn
+    "turn": problem_of(
+        RR, (None, None), {"10": 1, "11": 1, "22": 1}, {"00": 1, "01": 1, "02": 0.5}
+    ),
+    # y (y - x) and y (y - 1 + x)
+    "plane": problem_of(
+        PP, ((-2.0, 2.0), (-2.0, 2.0)), {"02": 1, "11": -1}, {"02": 1, "01": -1, "11": 1}
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SHARED)
+def test_a_root_shared_everywhere_hides_no_crossing(name):
+    """The resultant of two such forms is identically zero; their other roots meet nevertheless."""
+    one, other = (solve(SHARED[name], (0.3, 0.1), base) for base in (0, 1))
+    found, expected = ([c.area for c in r.components] for r in (one, other))
+    assert_allclose(sorted(found), sorted(expected), rtol=1e-9)
+    assert sorted(c.wraps for c in one.components) == sorted(c.wraps for c in other.components)
+    low, high = np.array([ends or (-pi, pi) for ends in SHARED[name].ranges]).T
+    q = np.random.default_rng(5).uniform(low, high, (200_000, 2))
+    drawn = one.contains(q).mean() * np.prod(high - low)
+    assert_allclose(sum(found), drawn, rtol=0.02)
 
 
 # --- what a reader sees --------------------------------------------------------------------------

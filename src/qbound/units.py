@@ -39,8 +39,9 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        name = robot.joints[j].name
-        raise ValueError(f"{name}: {text.strip()!r} is no value, such as 20deg or 0.35rad")
+        name, turns = robot.joints[j].name, robot.joints[j].turns
+        wanted = "20deg or 0.35rad" if turns else f"0.2, a plain number of {robot.length_unit}"
+        raise ValueError(f"{name}: {text.strip()!r} is no value, such as {wanted}")
     return math.radians(value) if unit == "deg" else value
 
 

@@ -67,7 +67,8 @@ def _component(content: dict[str, Any]) -> str:
         touched = [item["boundary"] for item in content["margins"] if item["margin"] == 0]
         return f", but in no component: it touches {', '.join(touched)}"
     home = "with the home pose" if content["contains_home"] else "without the home pose"
-    return f", in component {content['component'] + 1} of {content['components']}, {home}"
+    numbered = f"component {content['component']} (of {content['components']}, counted from 0)"
+    return f", in {numbered}, {home}"
 
 
 def _amount(robot: Robot, item: dict[str, Any]) -> str:

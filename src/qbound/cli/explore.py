@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
@@ -37,6 +38,8 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     region = region_by_rule(robot, options.rule, values)
     write_text(options.output, explorer_page(region))
+    if region.home is None:
+        print("qbound: the home pose is in no component", file=sys.stderr)
     return 0 if region.home is not None else 1
 
 

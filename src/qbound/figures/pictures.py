@@ -108,6 +108,7 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
     """Draw a robot's region with home marked, on axes of one's own or those of the moment."""
+    require("matplotlib")
     if ax is None:
         from matplotlib import pyplot
 

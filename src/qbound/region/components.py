@@ -72,6 +72,8 @@ def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list
     One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
     violated half-way.
     """
+    if q.shape != (2,):
+        raise ValueError(f"one configuration of two joint values is wanted, found shape {q.shape}")
     if not problem.evaluator.feasible(q):
         return []
     return [

@@ -271,7 +271,9 @@ def _circle_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
     sine = _times(a0, b1) - _times(a1, b0)
     parallel = (np.abs(determinant) <= NEGLIGIBLE).all(axis=-1)
     resultant = _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
-    return [resultant[~parallel], cosine[parallel], sine[parallel]]
+    # Two forms that share one root for every base value share the other where they are parallel.
+    sharing = ~parallel & (np.abs(resultant) <= NEGLIGIBLE).all(axis=-1)
+    return [resultant[~parallel], cosine[parallel], sine[parallel], determinant[sharing]]
 
 
 def _line_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
@@ -283,11 +285,20 @@ def _line_resultants(c: Complexes, i: Ints, j: Ints) -> list[Complexes]:
     (a0, a1, a2), (b0, b1, b2) = np.moveaxis(c[i], 1, 0), np.moveaxis(c[j], 1, 0)
     p = _times(a1, b0) - _times(a0, b1)
     q = _times(a2, b0) - _times(a0, b2)
-    both = _times(q, q) - _times(_times(a2, b1) - _times(a1, b2), p)
+    apart = _times(a2, b1) - _times(a1, b2)
+    both = _times(q, q) - _times(apart, p)
+    # Two quadratics that share one root for every base value share the other where sums agree.
+    sharing = square[i] & square[j] & (np.abs(both) <= NEGLIGIBLE).all(axis=-1)
     first = _times(_times(a2, b0), b0) - _times(_times(a1, b0), b1) + _times(_times(a0, b1), b1)
     second = _times(_times(b2, a0), a0) - _times(_times(b1, a0), a1) + _times(_times(b0, a1), a1)
     one, other = square[i], square[j]
-    return [p[~one & ~other], both[one & other], first[one & ~other], second[~one & other]]
+    return [
+        p[~one & ~other],
+        both[one & other],
+        first[one & ~other],
+        second[~one & other],
+        apart[sharing],
+    ]
 
 
 def _univariate(table: Floats, kind: Kind) -> Complexes:

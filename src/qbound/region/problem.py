@@ -112,6 +112,11 @@ class Problem:
             distances=tuple(d for k, d in enumerate(self.distances) if k not in dropped),
         )
 
+    def blocks(self, k: int, value: float) -> bool:
+        """Tell whether a form with this value everywhere leaves no room; d_min = 0 asks none."""
+        asks_nothing = k < len(self.distances) and self.distances[k] == 0
+        return value < 0 or (value == 0 and not asks_nothing)
+
     def constants(self) -> dict[int, float]:
         """Return the forms that depend on neither joint, by index, and their values.
 
@@ -150,7 +155,11 @@ def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
     """Return the two joints that are not held, by index; ValueError if they are not two."""
     free = robot.free(held)
     if len(free) != 2:
-        raise ValueError(f"a region has two joints; {robot.name} has {len(free)} that are not held")
+        names = ", ".join(joint.name for joint in robot.joints)
+        raise ValueError(
+            f"a region has two joints; {robot.name} has {len(free)} that are not held (of {names}):"
+            " hold the others, with held={name: value}, or with --slice"
+        )
     return free[0], free[1]
 
 

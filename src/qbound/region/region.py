@@ -186,7 +186,7 @@ class Region:
         return next(iter(self.components_of(q)), None)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the components and return the axes; matplotlib comes with ``qbound[figures]``.
+        """Draw the components, angles in degrees, and return the axes; needs ``qbound[figures]``.
 
         Examples
         --------
@@ -311,9 +311,9 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
 
     A region has two joints, and all others are held, by name or by index:
 
-    >>> find_region(robot, held={"q2": 0.3})
+    >>> find_region(robot, held={"q2": 0.3})  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: a region has two joints; MinervaBotV2 has 1 that are not held
+    ValueError: a region has two joints; MinervaBotV2 has 1 that are not held ...
     """
     if rule == "clearance":
         return solve(clearance_problem(robot, held))
@@ -346,11 +346,11 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     constants = problem.constants()
     inner = problem.without(list(constants))
-    blocked = tuple(problem.names[k] for k, value in constants.items() if value <= 0)
+    blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base)
     if blocked:
         nothing = CellComplex(Decomposition(plane, np.array(plane.ends), []))
-        return Region((), problem, nothing, base, {}, blocked)
+        return Region((), problem, nothing, base, {}, tuple(blocked[:1]))
     cells = CellComplex(decompose(plane))
     if not cells.cells:
         return Region((), problem, cells, base, {}, _irreducible(inner, base))
@@ -403,6 +403,8 @@ def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     0.0
     """
     compiled = evaluator(robot)
+    if np.ndim(q) != 1:
+        raise ValueError("one configuration is wanted; for many there is Region.margins")
     return list(zip(compiled.names, compiled.margins(q).tolist(), strict=True))
 
 
