@@ -158,7 +158,7 @@ def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
         names = ", ".join(joint.name for joint in robot.joints)
         raise ValueError(
             f"a region has two joints; {robot.name} has {len(free)} that are not held (of {names}):"
-            " hold the others, with held={name: value}, or with --slice"
+            " hold all but two, with held={name: value} or with --slice"
         )
     return free[0], free[1]
 
