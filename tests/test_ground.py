@@ -844,34 +844,6 @@ def test_the_products_are_not_committed(run: ModuleType) -> None:
     assert not [p for p in tracked() if any(place in p.parents for place in products)]
 
 
-def workflows() -> dict[str, dict[object, object]]:
-    folder = ROOT / ".github/workflows"
-    return {p.stem: yaml.safe_load(p.read_text(encoding="utf-8")) for p in folder.glob("*.yml")}
-
-
-def steps(workflow: dict[object, object]) -> list[dict[str, str]]:
-    return [step for job in workflow["jobs"].values() for step in job["steps"]]
-
-
-def test_the_workflows_run_the_commands_of_run_py() -> None:
-    found = {name: [s["run"] for s in steps(w) if "run" in s] for name, w in workflows().items()}
-    check = [f"python3 run.py {command}" for command in ("lint", "book", "test")]
-    assert found["ci"] == check
-    assert found["book"] == check[1:2]
-    assert [line for line in found["release"] if line in check] == check
-    matrix = workflows()["ci"]["jobs"]["check"]["strategy"]["matrix"]
-    assert matrix["python"] == ["3.11", "3.13"]
-
-
-def test_the_workflows_ask_for_little_and_name_the_versions_of_what_they_use() -> None:
-    for name, workflow in workflows().items():
-        assert workflow["permissions"] == {"contents": "read"}, name
-        assert "concurrency" in workflow, name
-        uses = [step["uses"] for step in steps(workflow) if "uses" in step]
-        assert uses, name
-        assert all(re.fullmatch(r"actions/[\w-]+@v\d+", use) for use in uses), uses
-
-
 def test_the_hooks_download_nothing() -> None:
     hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))
     assert {repo["repo"] for repo in hooks["repos"]} == {"local"}
