@@ -1,4 +1,4 @@
-"""Worlds in which an entry of the ledger comes to another verdict: what it is computed from, altered.
+"""Worlds in which an entry of the ledger turns: what it is computed from, altered.
 
 An altered printed value or robot is a world that could be; an altered function is the last resort,
 and then the thing that is judged (for an identity: one sign changed).
