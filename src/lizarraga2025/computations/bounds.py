@@ -14,7 +14,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge, require
 from qbound import HarmonicForm, circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.forms.angles import nearest_turn
@@ -123,7 +123,7 @@ def _value(text: str, reading: paper.Reading, of: Robot) -> float:
 
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})
-def bound_of_a_pair(label: str) -> Finding:
+def bound_of_a_pair(label: str) -> Outcome:
     found, right = pair_bound(label), pair_bound(label, corrected_digit=True)
     placed = found.value > 0 if _side(label) == "upper" else found.value < 0
     is_root = found.residual < RESIDUAL
@@ -140,7 +140,7 @@ def bound_of_a_pair(label: str) -> Finding:
         require(_meets_at_the_other_root(label), f"with the other sign the points of {label} meet")
         text += f" They meet at the root left out, {degrees(found.other)},"
         text += f" {found.other_distance:.4f} cm apart."
-    return Finding(
+    return Outcome(
         judge(
             holds=placed and as_printed and found.meets, under=placed and is_root and right.meets
         ),
@@ -205,12 +205,12 @@ def half_space_bound(label: str, n: int = 7200) -> HalfSpaceBound:
 
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] > 4})
-def bound_of_a_half_space(label: str) -> Finding:
+def bound_of_a_half_space(label: str) -> Outcome:
     found, is_upper = half_space_bound(label), _side(label) == "upper"
     right_side = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
     if not right_side:
         require(_is_lower_end(label), f"with the other sign {label} is the lower end of the arc")
-    return Finding(
+    return Outcome(
         judge(
             holds=found.part == 100 and right_side, under=found.residual < RESIDUAL and right_side
         ),

@@ -10,7 +10,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import half_spaces, pairs, robot
 from lizarraga2025.evidence.joint_region import square, vertices
-from lizarraga2025.verdicts import Finding, judge, require, undetermined
+from lizarraga2025.verdicts import Outcome, judge, require, undetermined
 from qbound import clearance, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Robot
@@ -18,7 +18,7 @@ from qbound.region import find_region, paper_rule
 
 
 @computes("E-9")
-def sign_of_a_component() -> Finding:
+def sign_of_a_component() -> Outcome:
     import sympy as sp
 
     q = np.array([-np.pi / 2, 0.0])  # cos and sin are 0 and -1: the values are exact
@@ -37,7 +37,7 @@ def sign_of_a_component() -> Finding:
     ]
     B, d = sp.symbols("B d", nonnegative=True)
     require(sp.expand((B - d) * (B + d) - B**2 + d**2) == 0, "|B|² - d² = (|B| - d)(|B| + d)")
-    return Finding(
+    return Outcome(
         judge(holds=not (inside and x < 0 and share > 0)),
         "At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
         f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} %"
@@ -47,19 +47,19 @@ def sign_of_a_component() -> Finding:
 
 
 @computes("E-9.1")
-def sign_of_a_half_space() -> Finding:
+def sign_of_a_half_space() -> Outcome:
     allowed = square()[paper_rule.feasible(robot(), square())]
     below = {w.name: 100 * (clearance(robot(), w)(allowed) < 0).mean() for w in half_spaces()}
     used = [w.name for w in half_spaces() if w.used]
     shares = ", ".join(f"{name} in {share:.1f} %" for name, share in below.items())
-    return Finding(
+    return Outcome(
         judge(holds=not any(below.values()), under=not any(below[name] for name in used)),
         f"Negative within the selected region: {shares}. So it holds for the wall that bounds it.",
     )
 
 
 @computes("E-10")
-def joint_limits() -> Finding:
+def joint_limits() -> Outcome:
     printed = [o.label for o in paper.OFFSETS if o.label.startswith("q")]
     box = np.degrees([paper_rule.box(robot()).lower, paper_rule.box(robot()).upper])
     area = {}
@@ -68,7 +68,7 @@ def joint_limits() -> Finding:
         area[name], _ = _home(replace(robot(), joints=joints))
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
     verdict = undetermined({name: not printed and fits for name, fits in same.items()})
-    return Finding(
+    return Outcome(
         verdict,
         f"{len(printed)} limits are printed. The windows of Table 6 end at {box[0, 0]:.2f}° and"
         f" {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and {box[1, 1]:.2f}° for"
@@ -79,7 +79,7 @@ def joint_limits() -> Finding:
 
 
 @computes("E-11")
-def least_distance() -> Finding:
+def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
     seen, fits = [], {}
     for d in (0.01, 0.1, 0.5):
@@ -90,7 +90,7 @@ def least_distance() -> Finding:
         bounding = sum(gap < d for gap in gaps)
         fits[str(d)] = bounding == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
-    return Finding(
+    return Outcome(
         undetermined(fits),
         f"The pairs come as close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no"
         f" wall at all; every pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}.",
@@ -104,12 +104,12 @@ def _home(arm: Robot) -> tuple[float, int]:
 
 
 @computes("E-12")
-def limits_in_space() -> Finding:
+def limits_in_space() -> Outcome:
     least = {w.name: float(np.min(clearance(robot(), w)(vertices()))) for w in half_spaces()}
     inside = {name: x > -1e-9 for name, x in least.items()}
     depths = ", ".join(f"{name} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     upper = [o.label for o in paper.OFFSETS if "max" in o.label]
-    return Finding(
+    return Outcome(
         judge(holds=all(inside.values()), under=inside["B7"]),
         f"{len(upper)} upper limits and two lower ones for x are printed. Least margins at the six"
         f" points of the region: {depths}. Only the floor is kept.",

@@ -23,7 +23,7 @@ from lizarraga2025.evidence.tool_paths import (
     simple_neighbours,
     workspace,
 )
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge, require
 from qbound import clearance, components
 from qbound.boundary.functions import closest_approach, position
 from qbound.region import clearance_problem, solve
@@ -31,13 +31,13 @@ from qbound.symbols import joint_symbols, with_symbols
 
 
 @computes("S-43")
-def slides_enter_linearly() -> Finding:
+def slides_enter_linearly() -> Outcome:
     import sympy as sp
 
     arm, _ = with_symbols(sliding())
     q = joint_symbols(arm)
     curvature = [sp.diff(x, q[2], 2) for x in position(arm, "3").symbolic(q)]
-    return Finding(
+    return Outcome(
         judge(holds=all(sp.simplify(x) == 0 for x in curvature)),
         "The second derivative of the tool's place along a slide is zero by identity, with lengths"
         " as symbols.",
@@ -45,11 +45,11 @@ def slides_enter_linearly() -> Finding:
 
 
 @computes("S-44")
-def same_structure() -> Finding:
+def same_structure() -> Outcome:
     forms = [components(sliding(), b) for b in sliding().boundaries]
     shapes = {form.shape for form in forms}
     depend = sum(2 in form.joints() for form in forms)
-    return Finding(
+    return Outcome(
         judge(holds=shapes == {(3,)} and depend > 0),
         f"All {len(forms)} boundary functions of the arm with a slide are again vectors of three"
         f" forms in the same basis; {depend} of them depend on the slide.",
@@ -57,7 +57,7 @@ def same_structure() -> Finding:
 
 
 @computes("S-45")
-def affine_constraints() -> Finding:
+def affine_constraints() -> Outcome:
     import sympy as sp
 
     arm, _ = with_symbols(sliding())
@@ -70,7 +70,7 @@ def affine_constraints() -> Finding:
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
     require(square == 1, "the clearance is quadratic in a slide, with leading coefficient 1")
-    return Finding(
+    return Outcome(
         judge(holds=bool(mixed == 0 and square == 0), under=along and jointly),
         "A component or a wall is affine in each slide by itself; with slides alone it is affine in"
         " all of them. With a turning joint before the slide the mixed derivative is not zero, and"
@@ -93,12 +93,12 @@ def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @computes("S-46")
-def hypersurfaces() -> Finding:
+def hypersurfaces() -> Outcome:
     places, _ = surface(41)
     height = clearance(sliding(), sliding().boundary("B7"))
     steep = float(np.linalg.norm(height.gradient(places), axis=-1).min())
     both = closest_approach(robot(), pairs()[0])[1]
-    return Finding(
+    return Outcome(
         judge(holds=steep > 0 and both < SMALL, under=steep > 0),
         "True of one component or one wall: the gradient of B7 does not vanish on its zero set (at"
         f" least {steep:.3f} cm per unit of joint). A point pair's vector is zero where all"
@@ -108,11 +108,11 @@ def hypersurfaces() -> Finding:
 
 
 @computes("S-47")
-def isosurfaces() -> Finding:
+def isosurfaces() -> Outcome:
     height = clearance(sliding(), sliding().boundary("B7"))
     off = {n: float(np.abs(height(surface(n)[0])).max()) for n in (21, 41, 81)}
     order = float(np.log2(off[41] / off[81]))
-    return Finding(
+    return Outcome(
         judge(holds=order > 1.5),
         "Marching cubes on the arm with a slide: the vertices of the surface miss B7 = 0 by at most"
         f" {off[21]:.3f}, {off[41]:.3f} and {off[81]:.3f} cm on grids of 21, 41 and 81 points a"
@@ -121,7 +121,7 @@ def isosurfaces() -> Finding:
 
 
 @computes("S-48")
-def slices_are_enough() -> Finding:
+def slices_are_enough() -> Outcome:
     held = {2: 4.0}
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
     q = np.random.default_rng(8).uniform(-np.pi, np.pi, (200_000, 2))
@@ -130,7 +130,7 @@ def slices_are_enough() -> Finding:
     part = float(np.all([form(three) > 0 for form in used], axis=0).mean())
     exact = whole.area / (2 * np.pi) ** 2
     off = abs(part - exact) / np.sqrt(part * (1 - part) / len(q))
-    return Finding(
+    return Outcome(
         judge(holds=bool(off < 3)),
         "With the slide held at 4 cm the slice is a region of two joints, found exactly and without"
         f" a sample: {len(whole.components)} pieces of {whole.area:.6f} rad² together; {len(q)}"
@@ -139,7 +139,7 @@ def slices_are_enough() -> Finding:
 
 
 @computes("S-49")
-def slices_stay_symbolic() -> Finding:
+def slices_stay_symbolic() -> Outcome:
     import sympy as sp
 
     form = clearance(sliding(), sliding().boundary("B7"))
@@ -147,7 +147,7 @@ def slices_stay_symbolic() -> Finding:
     held = form.restrict({2: 4.0}).symbolic(q[:2])
     difference = sp.expand(form.symbolic(q).subs(q[2], sp.Float(4.0)) - held)
     left = max((abs(float(c)) for c in difference.as_coefficients_dict().values()), default=0.0)
-    return Finding(
+    return Outcome(
         judge(holds=left < SMALL),
         "The form with the slide held is a form of two joints in closed form, equal to the whole"
         " with the value put in.",
@@ -155,10 +155,10 @@ def slices_stay_symbolic() -> Finding:
 
 
 @computes("S-50")
-def boundary_by_connecting_points() -> Finding:
+def boundary_by_connecting_points() -> Outcome:
     areas, region = workspace(), by_windows()
     part = areas["enclosed"] / areas["union"]
-    return Finding(
+    return Outcome(
         judge(holds=part > 0.999, under=len(region.loops) == 1 and len(region.vertices) == 6),
         f"Of the joint region it does: one closed curve through {len(region.vertices)} points. Of"
         f" the tool's places that curve's image encloses {100 * part:.2f} %; the rest, reached by"
@@ -167,7 +167,7 @@ def boundary_by_connecting_points() -> Finding:
 
 
 @computes("S-51")
-def explicit_constraints() -> Finding:
+def explicit_constraints() -> Outcome:
     import sympy as sp
 
     arm, _ = symbolic_robot()
@@ -177,7 +177,7 @@ def explicit_constraints() -> Finding:
         sp.expand(f - paper.expression(text)) == 0
         for f, text in zip(derived, paper.EQUATION_29.values(), strict=True)
     ]
-    return Finding(
+    return Outcome(
         judge(holds=all(same)),
         f"All {len(same)} components that are not zero are closed formulas of offsets and joint"
         " values, derived from the chain and equal to the print.",
@@ -185,10 +185,10 @@ def explicit_constraints() -> Finding:
 
 
 @computes("S-52")
-def scaling_resolves_singularities() -> Finding:
+def scaling_resolves_singularities() -> Outcome:
     through = [is_cut_by_the_singular_line(scaled(s)) for s in (SCALE, 0.5, 0.1, 0.01)]
     require(all(through), "stretched poses inside at scales down to 0.01")
-    return Finding(
+    return Outcome(
         judge(holds=not any(through)),
         "The singular line crosses the scaled polygon at scales 0.95, 0.5, 0.1 and 0.01 alike: it"
         " passes within a degree of the point about which the region is scaled.",
@@ -196,11 +196,11 @@ def scaling_resolves_singularities() -> Finding:
 
 
 @computes("S-53")
-def structured_without_scaling() -> Finding:
+def structured_without_scaling() -> Outcome:
     free = {s: simple_neighbours(s) for s in (1.0, SCALE, 0.9, 0.8)}
     require(len(set(map(tuple, free.values()))) == 1, "the same sequences at every scale")
     number = len(free[1.0])
-    return Finding(
+    return Outcome(
         judge(holds=number == 0),
         f"The same {number} of {len(neighbour_sequences())} sequences of neighbours are free of"
         " crossings at scales 1, 0.95, 0.9 and 0.8: without scaling as with it.",
@@ -208,11 +208,11 @@ def structured_without_scaling() -> Finding:
 
 
 @computes("S-54")
-def strong_dependence() -> Finding:
+def strong_dependence() -> Outcome:
     ends = np.array([path_through(o).final_pose for o in neighbour_sequences()])
     reach = np.array([path_through(o).reach[-1] for o in neighbour_sequences()])
     spread = np.degrees(np.ptp(ends, axis=0))
-    return Finding(
+    return Outcome(
         judge(holds=bool(spread.min() > 90 and np.ptp(reach) / reach.max() > 0.2)),
         f"Over the {len(reach)} sequences of neighbours the final joint values spread over"
         f" {spread[0]:.2f}° and {spread[1]:.2f}° and the final reach from {reach.min():.4f} to"
@@ -221,12 +221,12 @@ def strong_dependence() -> Finding:
 
 
 @computes("S-55")
-def causes_of_asymmetry() -> Finding:
+def causes_of_asymmetry() -> Outcome:
     exact = asymmetry_of_the_symmetric()
     printed = asymmetry(robot(), SCALE)
     other = [path_through(o, SCALE, symmetric()) for o in (RIGHT, LEFT[::-1])]
     require(exact < SMALL, "symmetric paths of the symmetric arm")
-    return Finding(
+    return Outcome(
         judge(holds=exact > SMALL),
         f"The symmetric arm, scaled and nonlinear, has symmetric paths (to {SMALL:g} cm); the"
         f" printed offsets move them {printed:.4f} cm apart. A pair of sequences that are no mirror"
@@ -236,7 +236,7 @@ def causes_of_asymmetry() -> Finding:
 
 
 @computes("S-56")
-def spatial_manipulators() -> Finding:
+def spatial_manipulators() -> Outcome:
     first = replace(robot().joints[0], axis=np.array([0.0, 0.0, 1.0]))
     arm = replace(robot(), joints=(first, robot().joints[1]))
     q = np.random.default_rng(9).uniform(-3, 3, (200, 2))
@@ -247,7 +247,7 @@ def spatial_manipulators() -> Finding:
         apart = np.sqrt(clearance(arm, pair)(q) + pair.clearance**2)
         worst = max(worst, float(np.abs(apart - np.linalg.norm(seen, axis=-1)).max()))
     leaves = float(np.abs(position(arm, "3")(q)[:, 1]).max())
-    return Finding(
+    return Outcome(
         judge(holds=worst < 1e-6 and leaves > 1),
         f"With the first joint turned about z the tool leaves its plane by up to {leaves:.2f} cm;"
         " the clearances from eq. (16) still are the distances in space, to 1e-6 cm.",

@@ -24,19 +24,19 @@ from lizarraga2025.evidence.tool_paths import (
     stretched,
     workspace,
 )
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge, require
 from qbound.region import paper_rule
 from qbound.sampling import sample
 
 
 @computes("S-30")
-def greatest_reach() -> Finding:
+def greatest_reach() -> Outcome:
     q2 = np.linspace(-np.pi, np.pi, 7201)
     places = tool_form()(np.stack([0 * q2, q2], -1)) - robot().joints[0].origin
     reach = np.linalg.norm(places, axis=-1)
     best, at = float(reach.max()), float(q2[reach.argmax()])
     links = np.linalg.norm(robot().joints[1].origin) + np.linalg.norm(robot().point("3").at)
-    return Finding(
+    return Outcome(
         judge(holds=bool(abs(at - stretched()) < 1e-3 and best <= links + SMALL)),
         f"The distance of the tool from joint 1 is greatest at q2 = {np.degrees(stretched()):.4f}°,"
         f" where it is {links:.4f} cm, the sum of both links.",
@@ -44,10 +44,10 @@ def greatest_reach() -> Finding:
 
 
 @computes("S-31")
-def stretched_is_singular() -> Finding:
+def stretched_is_singular() -> Outcome:
     q = np.array([[0.3, stretched()], [-1.0, stretched()], [0.3, stretched() + 0.1]])
     det = det_jacobian(q)
-    return Finding(
+    return Outcome(
         judge(holds=bool(np.abs(det[:2]).max() < SMALL < abs(det[2]))),
         f"det J vanishes on the line q2 = {np.degrees(stretched()):.4f}° for every q1 (to {SMALL:g}"
         f" cm²) and is {det[2]:.2f} cm² a tenth of a radian beside it.",
@@ -55,12 +55,12 @@ def stretched_is_singular() -> Finding:
 
 
 @computes("S-32")
-def scaling_settles_nothing() -> Finding:
+def scaling_settles_nothing() -> Outcome:
     side = {s: aspect(scaled(s)) for s in (1.0, 0.96, SCALE, 0.9, 0.5, 0.1)}
     parts = {s: (int((x < 0).sum()), int((x > 0).sum())) for s, x in side.items()}
     require(set(parts.values()) == {(3, 3)}, "three points on either side of the singular line")
     passing = sum(is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences())
-    return Finding(
+    return Outcome(
         judge(holds=passing == 0),
         "At every scale tried, 1 to 0.1, three points lie on either side of the singular line, so"
         f" any five of them lie on both: all walks cross it, among them the {passing} sequences of"
@@ -69,12 +69,12 @@ def scaling_settles_nothing() -> Finding:
 
 
 @computes("S-33")
-def two_ways() -> Finding:
+def two_ways() -> Outcome:
     free = simple_neighbours()
     mirror = (3, 4, 5, 0, 1, 2)
     paired = {o for o in free if tuple(mirror[i] for i in o) in free}
     forward = {min(o, o[::-1]) for o in paired}
-    return Finding(
+    return Outcome(
         judge(holds=len(simple_sequences()) == 2, under=len(forward) == 2),
         f"{len(simple_sequences())} orders of five points do not cross themselves. If the five are"
         f" to be neighbours and the two ways mirror images, {len(forward)} are left (and their"
@@ -83,22 +83,22 @@ def two_ways() -> Finding:
 
 
 @computes("S-34")
-def choice_decides_the_pose() -> Finding:
+def choice_decides_the_pose() -> Outcome:
     ends = [np.degrees(path_through(o).final_pose) for o in (RIGHT, LEFT)]
     text = " and ".join(f"({a:.4f}°, {b:.4f}°)" for a, b in ends)
-    return Finding(
+    return Outcome(
         judge(holds=bool(np.abs(ends[0] - ends[1]).max() > 1)),
         f"The right-hand and the left-hand way end at {text}.",
     )
 
 
 @computes("S-35")
-def choice_decides_the_reach() -> Finding:
+def choice_decides_the_reach() -> Outcome:
     reach = {arm: [float(path_through(o, SCALE, arm).reach[-1]) for o in (RIGHT, LEFT)]
              for arm in (robot(), symmetric())}  # fmt: skip
     printed, exact = reach.values()
     spread = [float(path_through(o).reach[-1]) for o in neighbour_sequences()]
-    return Finding(
+    return Outcome(
         judge(holds=abs(exact[0] - exact[1]) > SMALL, under=max(spread) - min(spread) > 1),
         f"Among all sequences the final reach runs from {min(spread):.4f} to {max(spread):.4f} cm."
         f" Between right and left it differs by the rounded data alone: {printed[0]:.4f} and"
@@ -107,7 +107,7 @@ def choice_decides_the_reach() -> Finding:
 
 
 @computes("S-36")
-def mirrored_pose_on_one_trajectory() -> Finding:
+def mirrored_pose_on_one_trajectory() -> Outcome:
     p = scaled(SCALE, symmetric())
     turned = np.radians([-60.0, -120.0]) - p[0]  # the arm mirrored at the z axis
     straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
@@ -116,7 +116,7 @@ def mirrored_pose_on_one_trajectory() -> Finding:
     apart = aspect(p[[0, 3]], symmetric())
     require(apart[0] * apart[1] < 0, "mirrored poses on either side of the singular line")
     right = path_through(RIGHT)
-    return Finding(
+    return Outcome(
         judge(holds=not (allowed and mirrored)),
         "On the symmetric arm point 4 is the mirror image of point 1, and the straight joint path"
         f" between them is feasible throughout ({len(straight)} poses checked). The book's"
@@ -126,10 +126,10 @@ def mirrored_pose_on_one_trajectory() -> Finding:
 
 
 @computes("S-37")
-def figure_10_for_11() -> Finding:
+def figure_10_for_11() -> Outcome:
     number, subject = paper.NAMED_FIGURE
     showing = [figure for figure, shows in paper.CAPTIONS.items() if shows == subject]
-    return Finding(
+    return Outcome(
         judge(holds=showing == [number], corrected=len(showing) == 1),
         f"The sentence names Figure {number}, whose caption announces {paper.CAPTIONS[number]};"
         f" {subject} are announced by the caption of Figure {showing[0]} alone.",
@@ -137,13 +137,13 @@ def figure_10_for_11() -> Finding:
 
 
 @computes("S-38")
-def sampling_is_costly() -> Finding:
+def sampling_is_costly() -> Outcome:
     rows = []
     for k in (2, 3, 6):
         error = 10.0**-k
         rows.append((k, effort.samples_needed(error), effort.closed_form_evaluations(error)))
     text = "; ".join(f"1e-{k}: {drawn:.3g} against {solved}" for k, drawn, solved in rows)
-    return Finding(
+    return Outcome(
         judge(holds=all(drawn > 100 * solved for _, drawn, solved in rows)),
         "At equal accuracy, configurations judged against solutions of Theorem 2, for a relative"
         f" error of the area of {text}. At the accuracy of a picture the cost is no obstacle.",
@@ -151,12 +151,12 @@ def sampling_is_costly() -> Finding:
 
 
 @computes("S-39")
-def no_continuous_boundary() -> Finding:
+def no_continuous_boundary() -> Outcome:
     errors = {n: effort.contour_error(n) for n in (50, 100, 200, 400)}
     closed = all(effort.contour_is_closed(n) for n in errors)
     text = ", ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
     on_it = (paper_rule.box(robot()).lower == drawn().q).any()
-    return Finding(
+    return Outcome(
         judge(holds=not closed, under=not on_it),
         "True of drawn points. The same predicate on a grid gives one closed contour by marching"
         f" squares; error of its area by evaluations: {text}.",
@@ -164,7 +164,7 @@ def no_continuous_boundary() -> Finding:
 
 
 @computes("S-40")
-def efficiency_and_volume() -> Finding:
+def efficiency_and_volume() -> Outcome:
     part = share_of_square()
     sizes = np.array([100, 1000, 10_000])
     free = [
@@ -173,7 +173,7 @@ def efficiency_and_volume() -> Finding:
     ]
     errors = np.sqrt(np.mean((np.array(free) / part - 1) ** 2, axis=1))
     slope = float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
-    return Finding(
+    return Outcome(
         judge(holds=-0.6 < slope < -0.4),
         f"The error of the area falls as the number of samples to the power {slope:.3f} (40 draws"
         " each of 100, 1000 and 10,000): one more digit costs a hundredfold.",
@@ -181,13 +181,13 @@ def efficiency_and_volume() -> Finding:
 
 
 @computes("S-41")
-def overlap_comes_from_postures() -> Finding:
+def overlap_comes_from_postures() -> Outcome:
     areas, draw = workspace(), drawn()
     free = draw.q[draw.free]
     alone = ~paper_rule.feasible(robot(), other_posture(free))
     weight = np.abs(det_jacobian(free))
     drawn_area = float((weight * alone).sum() / len(draw.q) * (2 * np.pi) ** 2)
-    return Finding(
+    return Outcome(
         judge(holds=abs(drawn_area / areas["once"] - 1) < 0.05),
         "A place shows both colours exactly where one of its two postures is safe:"
         f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² of safe places, without"
@@ -196,10 +196,10 @@ def overlap_comes_from_postures() -> Finding:
 
 
 @computes("S-42")
-def lobes_show() -> Finding:
+def lobes_show() -> Outcome:
     areas = workspace()
     same = abs(areas["enclosed"] - areas["once"]) < 1e-3
-    return Finding(
+    return Outcome(
         judge(holds=same),
         f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in two lobes, is"
         f" just the part with one safe posture ({areas['once']:.2f} cm²): the lateral shapes are"

@@ -12,7 +12,7 @@ from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot, symbolic_robot
 from lizarraga2025.evidence.proofs import UNTURNED, General, general, quarter_turn, vanishes
 from lizarraga2025.evidence.rounding import contact, degrees, radii
-from lizarraga2025.verdicts import Finding, judge
+from lizarraga2025.verdicts import Outcome, judge
 from qbound import components, pair_vector
 from qbound.boundary.functions import closest_approach, observer
 from qbound.model.frames import Frame, Frames
@@ -20,11 +20,11 @@ from qbound.symbols import joint_symbols
 
 
 @computes("E-13")
-def null_between() -> Finding:
+def null_between() -> Outcome:
     chain = general().chain
     ends = [chain.position("0", name, "0") for name in ("a+n", "b+m")]
     holds = vanishes(chain.position("a+n", "b+m", "0") - (ends[1] - ends[0]))
-    return Finding(
+    return Outcome(
         judge(holds=holds),
         "The vector is the difference of the two places, identically, so it is null exactly where"
         " they are one. A collision here means that points coincide, not that bodies touch.",
@@ -32,13 +32,13 @@ def null_between() -> Finding:
 
 
 @computes("E-14")
-def null_length() -> Finding:
+def null_length() -> Outcome:
     import sympy as sp
 
     x, y, z = parts = sp.symbols("x y z", real=True)
     squared = x**2 + y**2 + z**2
     holds = all((squared - part**2).is_nonnegative for part in parts)
-    return Finding(
+    return Outcome(
         judge(holds=holds and squared.subs({x: 0, y: 0, z: 0}) == 0),
         "Of real components each square is at most the sum of all, so a zero sum leaves three"
         " zeros; the converse is immediate.",
@@ -46,11 +46,11 @@ def null_length() -> Finding:
 
 
 @computes("E-15")
-def relative_position() -> Finding:
+def relative_position() -> Outcome:
     g, small = general(), quarter_turn()
     from_a, from_0 = (g.chain.position("a+n", "b+m", o) for o in ("a", "0"))
     seen = [tuple(int(x) for x in small.position("a", "b", o)) for o in ("a", "0")]
-    return Finding(
+    return Outcome(
         judge(holds=vanishes(from_0 - g.B), under=vanishes(from_a - g.B) and seen[0] != seen[1]),
         "Seen from a it is an identity at every configuration, not under a collision only. Seen"
         f" from the base it is false: with frame a turned a quarter about y the vector {seen[0]}"
@@ -59,7 +59,7 @@ def relative_position() -> Finding:
 
 
 @computes("E-16")
-def boundary_function() -> Finding:
+def boundary_function() -> Outcome:
     import sympy as sp
 
     symbolic, _ = symbolic_robot()
@@ -71,7 +71,7 @@ def boundary_function() -> Finding:
         seen = sp.Matrix(frames.position(*pair.points, observer(symbolic, pair)))
         left.append(sp.simplify(derived - seen) == sp.zeros(3, 1))
         joints.append(len(derived.free_symbols & set(q)))
-    return Finding(
+    return Outcome(
         judge(holds=all(left) and set(joints) == {1}),
         f"For all {len(left)} pairs of the robot the form derived from the file is the vector of"
         " forward kinematics seen from frame a, identically; each depends on one joint.",
@@ -79,11 +79,11 @@ def boundary_function() -> Finding:
 
 
 @computes("E-17")
-def collision_condition() -> Finding:
+def collision_condition() -> Outcome:
     g = general()
     between = g.chain.position("a+n", "b+m", "0")
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
-    return Finding(
+    return Outcome(
         judge(holds=vanishes(between @ between - g.B @ g.B)),
         "The vector between the points and B have the same length, identically, so both are null"
         " together. With the printed offsets no pair of the robot ever meets: the gaps that stay"
@@ -92,14 +92,14 @@ def collision_condition() -> Finding:
 
 
 @computes_each({f"E-17.{number}": number for number in (1, 2, 3, 4)})
-def pair_meets(number: int) -> Finding:
+def pair_meets(number: int) -> Outcome:
     pair = pairs()[number - 1]
     q, gap = closest_approach(robot(), pair)
     a, b = radii(robot(), pair)
     limit = contact(pair)
     with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
     slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm." if with_9_09 != gap else ""
-    return Finding(
+    return Outcome(
         judge(holds=gap == 0, under=gap <= limit, corrected=with_9_09 <= limit),
         f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
         f" {gap:.4f} cm, at {degrees(q)}. Offsets rounded to hundredths allow {limit:.4f}"
@@ -111,7 +111,7 @@ def pair_meets(number: int) -> Finding:
 
 
 @computes("E-18")
-def chain_rule() -> Finding:
+def chain_rule() -> Outcome:
     g = general()
     whole, first = (g.chain.position("0", name, "0") for name in ("b", "a"))
     own, common = (whole - first - g.R_0a @ g.chain.position("a", "b", o) for o in ("a", "0"))
@@ -119,7 +119,7 @@ def chain_rule() -> Finding:
     R = small.rotation("0", "a")
     wrong = tuple(int(x) for x in R @ small.position("a", "b", "0"))
     right = tuple(int(x) for x in small.position("a", "b", "0"))
-    return Finding(
+    return Outcome(
         judge(holds=vanishes(own) and vanishes(common), under=vanishes(own)),
         "With each vector seen from its first index it is an identity. With one common observer, as"
         " rule 5 has it, it is false: with a turned a quarter about y and b one unit along x of a"
@@ -166,10 +166,10 @@ STEPS: Mapping[str, tuple[str, Step]] = {
 
 
 @computes_each(STEPS)
-def step_of_the_proof(step: tuple[str, Step]) -> Finding:
+def step_of_the_proof(step: tuple[str, Step]) -> Outcome:
     seen, difference = step
     left = np.ravel(np.asarray(difference(general())))
-    return Finding(
+    return Outcome(
         judge(holds=vanishes(left)),
         f"An identity {seen}: none of {left.size} components leaves a remainder in general"
         " rotations and vectors.",
@@ -189,11 +189,11 @@ def _R_0b(g: General) -> Any:
 
 
 @computes("E-25")
-def rotation_taken_out() -> Finding:
+def rotation_taken_out() -> Outcome:
     g = general()
     from_0, from_a = (g.chain.position("a+n", "b+m", o) for o in ("0", "a"))
     under = vanishes(from_0 - g.R_0a @ g.B)
-    return Finding(
+    return Outcome(
         judge(holds=under and vanishes(from_a - g.R_0a @ g.B), under=under),
         "An identity seen from the base. The left side has the label of eq. (15), which holds seen"
         " from a: one arrow, two observers, and two equal columns only where R_{0,a} leaves B as"
@@ -202,12 +202,12 @@ def rotation_taken_out() -> Finding:
 
 
 @computes("E-26")
-def bracket_null() -> Finding:
+def bracket_null() -> Outcome:
     g = general()
     back = vanishes(g.R_0a.T @ _between(g) - g.B)
     flat, up = np.diag([1, 1, 0]), np.array([0, 0, 1])
     needed = not (flat @ up).any() and bool(up.any())
-    return Finding(
+    return Outcome(
         judge(holds=back and needed),
         "The transpose of R_{0,a} times the vector is B, identically. This is the reason that"
         " the step needs and leaves out: R_{0,a} is invertible. With a projection, which is not,"
@@ -216,9 +216,9 @@ def bracket_null() -> Finding:
 
 
 @computes("E-27")
-def boundary_function_again() -> Finding:
+def boundary_function_again() -> Outcome:
     g = general()
-    return Finding(
+    return Outcome(
         judge(holds=vanishes(g.chain.position("a+n", "b+m", "a") - g.B)),
         "The same right side as eq. (16): the vector between the points seen from a, for every"
         " rotation and vector.",
@@ -226,10 +226,10 @@ def boundary_function_again() -> Finding:
 
 
 @computes("E-28")
-def collision_condition_again() -> Finding:
+def collision_condition_again() -> Outcome:
     g = general()
     there, back = vanishes(_between(g) - g.R_0a @ g.B), vanishes(g.R_0a.T @ _between(g) - g.B)
-    return Finding(
+    return Outcome(
         judge(holds=there and back),
         "Both directions: the vector is R_{0,a} B, and B is the transpose of R_{0,a} times the"
         " vector, identically. The first gives 'if', the second 'only if'.",
@@ -237,7 +237,7 @@ def collision_condition_again() -> Finding:
 
 
 @computes("TH-1")
-def theorem_1() -> Finding:
+def theorem_1() -> Outcome:
     g = general()
     printed = Frames(  # the labels in the printed order: b grows from the point a+n
         "0",
@@ -250,7 +250,7 @@ def theorem_1() -> Finding:
     )
     same_order = vanishes(printed.position("a+n", "b+m", "a") - g.B)
     both = vanishes(_between(g) - g.R_0a @ g.B) and vanishes(g.R_0a.T @ _between(g) - g.B)
-    return Finding(
+    return Outcome(
         judge(holds=both and same_order),
         "Proved in two general rotations and four general vectors, both directions. Whether b is"
         " chained to a or to the point a+n, as the printed order has it, makes no difference.",
@@ -277,11 +277,11 @@ def _differs(name: str) -> Any:
 
 
 @computes("E-29")
-def eleven_components() -> Finding:
+def eleven_components() -> Outcome:
     names = {f"beta_{{{b.name[1:]},{j}}}" for b in robot().boundaries for j in (1, 2, 3)}
     equal = [_differs(name) == 0 for name in paper.EQUATION_29]
     rest = [_derived(name) == 0 for name in names - set(paper.EQUATION_29)]
-    return Finding(
+    return Outcome(
         judge(holds=all(equal) and all(rest)),
         f"{sum(equal)} of {len(equal)} printed components equal the derived ones by identity, and"
         f" the {len(rest)} that are not printed are zero.",
@@ -289,11 +289,11 @@ def eleven_components() -> Finding:
 
 
 @computes_each({"E-29.{}.{}".format(*paper.indices(name)): name for name in paper.EQUATION_29})
-def component(name: str) -> Finding:
+def component(name: str) -> Outcome:
     import sympy as sp
 
     printed = sp.expand(paper.expression(paper.EQUATION_29[name]))
-    return Finding(
+    return Outcome(
         judge(holds=_differs(name) == 0),
         f"The component derived from the chain has {len(sp.Add.make_args(printed))} terms; printed"
         f" minus derived is {_differs(name)}, symbol by symbol.",

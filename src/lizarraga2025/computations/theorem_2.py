@@ -10,7 +10,7 @@ import numpy as np
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot
 from lizarraga2025.evidence.proofs import theorem_2
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge, require
 from qbound import circle_arc, circle_roots, components, pair_vector
 from qbound.forms.circle import ALL
 from qbound.region import paper_rule
@@ -117,9 +117,9 @@ def _is_of_the_form(form: sympy.Expr, q: sympy.Symbol) -> bool:
 
 @computes("E-30")
 @computes("E-32")
-def form_of_the_components() -> Finding:
+def form_of_the_components() -> Outcome:
     total, of_the_form = _forms_of_the_robot()
-    return Finding(
+    return Outcome(
         judge(holds=total == of_the_form > 0),
         f"{of_the_form} of {total} components of eq. (29) are of this form in every joint they"
         " depend on, identically in the offsets, the other joint held.",
@@ -127,13 +127,13 @@ def form_of_the_components() -> Finding:
 
 
 @computes("E-31")
-def bounds_as_printed() -> Finding:
+def bounds_as_printed() -> Outcome:
     theta, alpha = symbols()
     interval, at = printed_interval(), smallest()
     passed = interval.inside(theta + alpha, at)
     _require_theorem()
     ends = tuple(x.subs(at) for x in (interval.lower, interval.upper))
-    return Finding(
+    return Outcome(
         judge(holds=interval.excludes, under=passed == 0),
         f"Its length is {plain(interval.length)}, at least a full turn, so it excludes no angle."
         f" Smallest case: cos q = 0 gives [{plain(ends[0])}, {plain(ends[1])}], which holds every"
@@ -143,10 +143,10 @@ def bounds_as_printed() -> Finding:
 
 
 @computes("E-33")
-def one_cosine() -> Finding:
+def one_cosine() -> Outcome:
     steps = theorem_2()
     (identity,) = (name for name in steps if "θ = atan2" in name)
-    return Finding(
+    return Outcome(
         judge(holds=steps[identity]),
         f"There is such a d and θ for all real a, b: {identity} leaves nothing after"
         " simplification. Which θ that is, eq. (34) says.",
@@ -154,7 +154,7 @@ def one_cosine() -> Finding:
 
 
 @computes("E-34")
-def amplitude_and_phase() -> Finding:
+def amplitude_and_phase() -> Outcome:
     import sympy as sp
 
     b, q = sp.symbols("b q", real=True)
@@ -173,7 +173,7 @@ def amplitude_and_phase() -> Finding:
         if _cosine(window) < 0
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
-    return Finding(
+    return Outcome(
         judge(holds=right and left, under=right and corrected),
         "d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 the arctangent"
         f" turns it round: a = -1, b = 0 at q = 0 gives {at} for -1. For a = 0 the quotient does"
@@ -183,7 +183,7 @@ def amplitude_and_phase() -> Finding:
 
 
 @computes("E-35")
-def divided() -> Finding:
+def divided() -> Outcome:
     import sympy as sp
 
     c, d, x = sp.symbols("c d x", real=True)
@@ -191,21 +191,21 @@ def divided() -> Finding:
     same = sp.solveset(nonzero * x - c, x) == sp.FiniteSet(c / nonzero)
     lost = (d * x - c).subs({c: 0, d: 0}) == 0
     count = int(circle_roots(0.0, 0.0, 0.0).count)
-    return Finding(
+    return Outcome(
         judge(holds=not lost, under=same and count == ALL),
         "Equivalent for d > 0. For a = b = c = 0 every q is a solution and c / d does not exist.",
     )
 
 
 @computes("E-36")
-def condition_for_roots() -> Finding:
+def condition_for_roots() -> Outcome:
     steps = theorem_2()
     exact = all(steps.values())
     cases = {"|c| > d": (3, 4, 6), "|c| = d": (3, 4, 5), "|c| < d": (3, 4, 2)}
     counts = {name: int(circle_roots(*map(float, abc)).count) for name, abc in cases.items()}
     everywhere = int(circle_roots(0.0, 0.0, 0.0).count) == ALL
     numbers = ", ".join(f"{count} for {name}" for name, count in counts.items())
-    return Finding(
+    return Outcome(
         judge(holds=not everywhere, under=exact and list(counts.values()) == [0, 1, 2]),
         "d² - (a cos q + b sin q)² is the square (a sin q - b cos q)², so for d > 0 the condition"
         " is needed, and θ + arccos(c / d) shows that it suffices. Roots for a = 3, b = 4:"
@@ -214,7 +214,7 @@ def condition_for_roots() -> Finding:
 
 
 @computes("E-37")
-def inverse_cosine() -> Finding:
+def inverse_cosine() -> Outcome:
     import sympy as sp
 
     k = sp.Symbol("k", integer=True)
@@ -224,7 +224,7 @@ def inverse_cosine() -> Finding:
     printed = bool(turns)
     _require_theorem()
     fraction = sp.solve(sp.Eq(q, sp.acos(0) + 2 * sp.pi * sp.Symbol("x")), sp.Symbol("x"))[0]
-    return Finding(
+    return Outcome(
         judge(holds=not solves or printed),
         f"cos q = 0 has the solution q = {plain(q)}, which would need k = {fraction}: it is not"
         " among the printed ones. The cosine is even, so both signs solve it, and it falls strictly"
@@ -233,7 +233,7 @@ def inverse_cosine() -> Finding:
 
 
 @computes("E-38")
-def one_root() -> Finding:
+def one_root() -> Outcome:
     turn = np.linspace(-np.pi, np.pi, 73)[:-1]
     a, b = np.cos(turn), np.sin(turn)
     c = np.linspace(-0.99, 0.99, 45)[:, None]
@@ -245,7 +245,7 @@ def one_root() -> Finding:
     share = 100 * wrong.mean()
     behind = np.array_equal(wrong, (a < 0) & (np.abs(c) > 1e-12))
     which = "those with a < 0 and c not 0" if behind else "others than those with a < 0 too"
-    return Finding(
+    return Outcome(
         judge(holds=not wrong.any(), under=not left.any() and bool(falls)),
         f"A root, but not with every a: of {wrong.size} equations with d = 1 all round the circle"
         f" the arctangent misses {share:.1f} %, {which}; with atan2 all are solved, always at the"
@@ -255,11 +255,11 @@ def one_root() -> Finding:
 
 
 @computes("E-39")
-def interval_between_roots() -> Finding:
+def interval_between_roots() -> Outcome:
     theta, alpha = symbols()
     interval, at = interval_of_the_proof(), smallest()
     falling, rising = (interval.inside(theta + sign * alpha, at) for sign in (1, -1))
-    return Finding(
+    return Outcome(
         judge(holds=interval.excludes, under=falling == 0),
         f"Its length is {plain(interval.length)}, so it excludes no angle modulo a turn. Its ends"
         f" are two copies of the falling root and {falling} lie between, so a motion that keeps off"
@@ -269,7 +269,7 @@ def interval_between_roots() -> Finding:
 
 
 @computes("TH-2")
-def theorem_as_printed() -> Finding:
+def theorem_as_printed() -> Outcome:
     theta, alpha = symbols()
     intervals = {
         "eq. (31)": printed_interval(),
@@ -283,7 +283,7 @@ def theorem_as_printed() -> Finding:
     positive = round(2 * np.degrees(float(circle_arc(1.0, 0.0, 0.0).half_width)))
     _require_theorem()
     lengths = ", ".join(f"{name} {x}°" for name, x in degrees.items())
-    return Finding(
+    return Outcome(
         judge(holds=degrees["eq. (31)"] == positive),
         f"For cos q ≥ 0 the lengths are: {lengths}. The cosine is positive on {positive}°. Its"
         f" proof has {len(theorem_2())} steps, each an identity checked by computer algebra.",
