@@ -74,6 +74,15 @@ TABLE_2: Final = (
 )
 """Rows of Table 2 as printed; frames a and b, position and orientation of b seen from a (LaTeX)."""
 
+SELECTION: Final = {
+    "S_x": ((1, 0, 0), (0, 0, 0), (0, 0, 0)),
+    "S_z": ((0, 0, 0), (0, 0, 0), (0, 0, 1)),
+}
+"""The matrices of Table 5."""
+
+TABLE_5: Final = {5: ("S_x", "x_{min,1}"), 6: ("S_x", "x_{min,2}"), 7: ("S_z", "z_{min,1}")}
+"""B_i = S r_{0,3} less a vector with one limit, in the place that S selects: S and limit by i."""
+
 EQUATION_29: Final = {
     "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
     "beta_{1,3}": "z_0_1 - z_0_6 + z_1_7*cos(q1) - x_1_7*sin(q1)",
