@@ -9,6 +9,7 @@ arctan and atan2, can be computed.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     import sympy
 
 
-Reading = Literal["arctan", "atan2", "printed"]
+Reading = Literal["arctan", "atan2"]
 
 
 @dataclass(frozen=True)
@@ -159,16 +160,32 @@ FIGURE_4_BOUNDS: Final = (
 
 
 CAPTIONS: Final = {
+    2: "a kinematic chain, a simplified example of a planar robot",
+    3: "the kinematic chain of MinervaBotV2",
     7: "the path of six points",
     8: "a path of five points",
     9: "a path of five points",
     10: "an overlay of two paths",
     11: "random configurations",
 }
-"""What the captions of Section 4's last figures announce."""
+"""What captions announce."""
+
+NAMED_VIEW: Final = (2, "isometric")
+"""The figure that the case study's first paragraph names, and the view that it announces."""
+
 
 NAMED_FIGURE: Final = (10, "random configurations")
 """The figure that the text on numerical methods names, and what it says is seen there."""
+
+
+ORDERS: Final[Mapping[int, tuple[int, ...] | None]] = {6: None, 7: None, 8: None, 9: None}
+"""In which order a figure visits the points, from 1: what the text says of it, nothing."""
+
+SCALING: Final[Mapping[str, float | str | None]] = {"factor": None, "centroid": None}
+"""By what, and about which centroid, Figure 6 is scaled: what the text says of it, nothing."""
+
+SAMPLES: Final[Mapping[str, int | str | None]] = {"number": None, "range": None, "test": None}
+"""How the configurations of Figure 11 are drawn and judged: what the text says of it, nothing."""
 
 
 def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
@@ -190,16 +207,14 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     ----------
     text : str
         An entry of `EQUATION_29` or `TABLE_6`.
-    arctan : {"arctan", "atan2", "printed"}
-        How to read the printed :math:`\tan^{-1}` of a quotient; "printed" leaves the sign, to be
-        shown.
+    arctan : {"arctan", "atan2"}
+        How to read the printed :math:`\tan^{-1}` of a quotient.
     """
     import sympy
 
     readings = {
         "arctan": lambda n, d: sympy.atan(n / d),
         "atan2": sympy.atan2,
-        "printed": lambda n, d: sympy.Function(r"\tan^{-1}")(n / d),
     }
     names: dict[str, Any] = {
         name: sympy.Symbol(label(name), real=True)
