@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from math import prod
@@ -30,9 +31,16 @@ from lizarraga2025.evidence.arms import (
     robot,
     symbolic_robot,
 )
-from lizarraga2025.evidence.joint_region import vertices
 from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL, contact, degrees, radii
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import (
+    FAVOUR,
+    VERDICTS,
+    Outcome,
+    Verdict,
+    judge,
+    strongest,
+    undetermined,
+)
 from qbound import circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
 from qbound.forms.angles import TURN
@@ -210,12 +218,18 @@ def vector_of_a_pair(number: int) -> Outcome:
 @computes("T-3")
 def table_3() -> Outcome:
     rows = [row(n) for row in (offsets_of_a_pair, vector_of_a_pair) for n in (1, 2, 3)]
-    right = sum(row.verdict == "confirmed" for row in rows)
-    return Outcome(
-        judge(holds=right == len(rows)),
-        f"{right} of {len(rows)} rows are confirmed: three pairs of points whose radii agree to the"
-        " printed digits, and three vectors that follow from the chain.",
-    )
+    return Outcome(_of_a_table(rows), f"{_in_words(rows)}.")
+
+
+def _of_a_table(rows: Iterable[Outcome]) -> Verdict:
+    """Return the verdict on a table: the least favourable of its rows."""
+    return max((row.verdict for row in rows), key=FAVOUR.index)
+
+
+def _in_words(rows: Sequence[Outcome]) -> str:
+    """Return how many rows have each verdict, such as "Of 3 rows 1 confirmed, 2 misprint"."""
+    counts = Counter(row.verdict for row in rows)
+    return f"Of {len(rows)} rows " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
 
 
 def _roots_of_b4(of: Robot) -> int:
@@ -230,11 +244,8 @@ def _roots_of_b4(of: Robot) -> int:
 @computes("T-4")
 def table_4() -> Outcome:
     rows = (unit_of_table_4(), offsets_of_a_pair(4), vector_of_a_pair(4))
-    slips = sum(row.verdict == "misprint" for row in rows)
     return Outcome(
-        judge(holds=not slips, corrected=rows[2].verdict == "confirmed"),
-        f"{slips} slips in {len(rows)} rows: the unit (T-4.1) and one digit (T-4.2). The vector"
-        " itself follows from the chain (T-4.3).",
+        _of_a_table(rows), f"{_in_words(rows)}: the unit (T-4.1), one digit (T-4.2), the vector."
     )
 
 
@@ -270,14 +281,7 @@ def _with_floor(height: float) -> Robot:
 def table_5() -> Outcome:
     rows = [unit_of_the_floor(), unit_of_the_side_limits(), selection()]
     rows += [vector_of_a_half_space(number) for number in (5, 6, 7)]
-    counts = {
-        verdict: sum(row.verdict == verdict for row in rows)
-        for verdict in ("confirmed", "misprint", "not determined by the text")
-    }
-    return Outcome(
-        judge(holds=counts["confirmed"] == len(rows), corrected=counts["misprint"] > 0),
-        f"Of {len(rows)} rows " + ", ".join(f"{n} {v}" for v, n in counts.items()) + ".",
-    )
+    return Outcome(_of_a_table(rows), f"{_in_words(rows)}; the units are those of T-5.1 and T-5.2.")
 
 
 @computes("T-5.1")
@@ -294,13 +298,14 @@ def unit_of_the_floor() -> Outcome:
 
 @computes("T-5.2")
 def unit_of_the_side_limits() -> Outcome:
+    region = _corners(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
     fits, seen = {}, []
     for unit in ("mm", "cm"):
         cm = paper.offsets_in_cm(mm_means=unit)
         offsets = (cm["x_{min,1}"], cm["x_{min,2}"])
         sides = (replace(w, offset=x) for w, x in zip(half_spaces(), offsets, strict=False))
         corners = _corners(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
-        fits[unit] = len(corners) == len(vertices()) and np.allclose(corners, vertices())
+        fits[unit] = len(corners) == len(region) and np.allclose(corners, region)
         seen.append(f"x = ±{cm['x_{min,1}']:g} cm")
     base = abs(float(robot().point("6").at[0]))
     return Outcome(
