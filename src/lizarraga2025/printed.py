@@ -148,6 +148,29 @@ TABLE_6: Final = {
 }
 """Bounds of Table 6; k = 1 is the right (upper) bound, k = 2 the left (lower) one."""
 
+CAPTIONS_AS_PRINTED: Final = {
+    7: "Trajectory of the six intersection points in the geometric space, including the simplified"
+    " diagram of the planar robot in its final pose.",
+    8: "Nonclosed trajectory consisting of five points. The first plot represents the joint space"
+    " sequence, while the second illustrates the planar robot in its final pose after completing"
+    " the trajectory. Despite following an ordered sequence, the trajectory remains open.",
+    9: "Alternative feasible trajectory. The first plot depicts a five-point joint space path,"
+    " while the second shows its corresponding geometric trajectory.",
+    10: "Overlay of the feasible geometric regions from Figures 8 and 9, highlighting their"
+    " asymmetry due to centroid-based scaling and trajectory nonlinearities.",
+    11: "Numerical collision detection results. The first plot shows joint space sampling with red"
+    " points for collisions and blue points for noncollisions. The second plot illustrates the"
+    " corresponding geometric space, highlighting overlapping regions and the lateral shapes of the"
+    " feasible workspace.",
+}
+"""Captions of Section 4's last figures, quoted."""
+
+ON_NUMERICAL_METHODS: Final = (
+    10,
+    ("numerical", "collision", "red point", "blue point"),
+)
+"""The figure named where the text turns to numerical methods, and words that say what it shows."""
+
 FIGURE_4_BOUNDS: Final = (
     "beta_{1,3,1}",
     "beta_{2,1,2}",

@@ -44,8 +44,9 @@ def vertices(of: Robot | None = None) -> Floats:
 
 
 @cache
-def scaled(factor: float = SCALE, of: Robot | None = None) -> Floats:
-    """Return the polygon scaled about the centroid of its area, rad."""
+def scaled(factor: float | None = None, of: Robot | None = None) -> Floats:
+    """Return the polygon scaled about the centroid of its area, rad; by `SCALE` if no factor."""
+    factor = SCALE if factor is None else factor
     return polygon.scaled(vertices(of), factor, polygon.centroid(vertices(of)))
 
 
@@ -72,6 +73,23 @@ def body_gap(q: Floats, of: Robot | None = None) -> Floats:
     """Return the least gap of any two bodies at configurations of shape (..., 2), cm."""
     found = bodies.gaps(of or robot(), q)
     return np.asarray(np.min(list(found.values()), axis=0))
+
+
+def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
+    """Return the least gap of base and link 2 on a grid over the windows, and its error, cm.
+
+    Between grid points the gap falls by at most what a corner of link 2 moves on the way there.
+    """
+    box, arm = paper_rule.box(robot()), robot()
+    q = np.stack(
+        np.meshgrid(*np.linspace(box.lower, box.upper, n).T, indexing="ij"),
+        axis=-1,
+    )
+    between = float(bodies.gaps(arm, q)["0", "2"].min())
+    last = next(body for body in arm.bodies if body.frame == "2")
+    length = float(np.linalg.norm(last.polygon, axis=-1).max())
+    radii = np.array([np.linalg.norm(arm.joints[1].origin) + length, length])
+    return between, float(radii @ (box.upper - box.lower) / (n - 1) / 2)
 
 
 def bodies_allow(q: Floats) -> Bools:

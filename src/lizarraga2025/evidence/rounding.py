@@ -21,6 +21,11 @@ def degrees(angle: Any) -> str:
     return f"{np.degrees(float(angle)):.4f}°"
 
 
+def counted(number: int, noun: str) -> str:
+    """Write how many there are of something: one curve, 2 curves."""
+    return f"one {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def _arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     """Return the vectors from the joint between a pair's points to the points, cm, home pose."""
     near, far = (of.point(name) for name in pair.points)
