@@ -54,6 +54,11 @@ def area_error(*areas: float) -> float:
     return 1e-12 * float(np.sum(np.abs(areas)))
 
 
+def last_place(*numbers: str) -> float:
+    """Return a unit of the last decimal place of numbers that are written out."""
+    return float(max(10.0 ** -len(number.partition(".")[2]) for number in numbers))
+
+
 class Results:
     """The numbers that one chapter states.
 
