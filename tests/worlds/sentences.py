@@ -54,7 +54,7 @@ def with_contacts(q1: tuple[float, float], q2: tuple[float, float]) -> Robot:
 
 
 def without_bounds() -> Robot:
-    """Return a robot whose windows are all one and the same full turn, with a limit out of reach."""
+    """Return a robot whose windows are all one full turn, the same, and whose limit is far off."""
     r = -10.0
     points = {"p7": (r, 0, 0), "p9": (r, 0, 0), "p11": (r, 0, 0), "p13": (r, 0, 0)}
     near = ARM.joints[0].origin - [r, 0, 0], ARM.joints[1].origin - [r, 0, 0]
@@ -167,7 +167,9 @@ LOW_LIMIT = arm(with_boundaries(ARM, B7={"offset": -100.0}))
 CEILING = arm(with_boundaries(ARM, B7={"normal": np.array([0.0, 0.0, -1.0]), "offset": -70.0}))
 """The tool has to stay below 70 cm: a hole in the region."""
 ONE_ASPECT = arm(with_contacts((-136.0, 76.0), (-50.0, 44.0)))
-LITTLE_OF_THE_OTHER = arm(with_contacts((-136.0, 76.0), (-62.0, 44.0)))
+"""The region ends before the singular line."""
+LITTLE_OF_THE_OTHER = arm(with_contacts((-136.0, 76.0), (-58.0, 44.0)))
+"""The region ends at q2 = -61.5 deg, just beyond the singular line."""
 UNBOUNDED = arm(without_bounds())
 SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
 SLIDES = arm(sliding_in_place_of_turning())

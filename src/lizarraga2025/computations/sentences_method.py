@@ -9,18 +9,14 @@ import numpy as np
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence import effort, joint_region
-from lizarraga2025.evidence.arms import (
-    pairs,
-    robot,
-    symbolic_robot,
-    tool_form,
-)
+from lizarraga2025.evidence import effort
+from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
     body_gap,
     by_clearances,
     by_windows,
     depth_below_edges,
+    distance_of_the_draw,
     drawn,
     gap_of_base_and_link_2,
     largest_scale,
@@ -31,20 +27,18 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
-    feasible_neighbours,
     is_cut_by_the_singular_line,
     neighbour_sequences,
     path_through,
     scale_without_singular_poses,
     stretched,
-    stretched_poses,
     workspace,
 )
-from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import components, find_region
 from qbound.boundary.functions import pair_vector
+from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace, Pair
-from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
 
 # --- abstract -------------------------------------------------------------------------------------
@@ -65,37 +59,6 @@ def intersections_give_a_continuous_boundary() -> Outcome:
         f" close a curve too; {outside} of them leave the region, for which the paper gives two"
         " remedies.",
     )
-
-
-def stretched_on_the_path() -> Outcome:
-    """Judge what the scaling does where a path passes the stretched, singular pose."""
-    least = {s: float(np.min(heights)) for s, heights in _heights_where_stretched().items()}
-    all_pass = all(is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences())
-    at_once = least[1.0] < 0 < least[0.99] and len(feasible_neighbours(0.99)) > 0
-    scaled_down = least[1.0] < 0 < least[joint_region.SCALE]
-    passed = judge(holds=at_once, under=scaled_down and len(feasible_neighbours()) > 0)
-    return strongest(
-        {
-            "a path planned in joint space that passes the stretched pose safely": passed,
-            "a path that keeps off the stretched pose": judge(holds=not all_pass),
-        },
-        "On the outline of the six points the tool is below its limit in both stretched poses, by"
-        f" up to {-least[1.0]:.4f} cm; at scale {joint_region.SCALE:g} it is"
-        f" {least[joint_region.SCALE]:.4f} cm or more above, and all of"
-        f" {len(feasible_neighbours())} sequences of five neighbours are feasible throughout, as"
-        f" from scale {largest_scale().scale:.6f} down. Each still passes the stretched pose.",
-    )
-
-
-def _heights_where_stretched() -> dict[float, np.ndarray]:
-    """Return the tool's height above its limit in the stretched poses of scaled outlines, cm."""
-    heights = joint_region.floor()
-    return {s: heights(stretched_poses(s)) for s in (1.0, 0.99, joint_region.SCALE)}
-
-
-@computes("S-2")
-def scaling_addresses_singularity() -> Outcome:
-    return stretched_on_the_path()
 
 
 @computes("S-3")
@@ -123,39 +86,30 @@ def final_pose_depends_on_the_path() -> Outcome:
 
 @computes("S-5")
 def nonlinear_workspace() -> Outcome:
-    joints = np.linspace(*scaled()[:2], 2001)
-    places = tool_form()(joints)
-    even = np.linspace(places[0], places[-1], len(places))
-    bend = float(np.linalg.norm(places - even, axis=-1).max())
+    start, end = scaled()[:2]
+    even = np.linspace(0, 1, 2001)[:, None]
+    places = tool_form()(start + even * (end - start))
+    straight = places[0] + even * (places[-1] - places[0])
+    bend = float(np.linalg.norm(places - straight, axis=-1).max())
     return Outcome(
         judge(holds=bend > 1),
-        "The workspace is nonlinear: on the straight joint path from point 1 to point 2 the tool"
-        f" is up to {bend:.2f} cm from where a linear map would put it. (That the end depends on"
-        " the path would hold of a linear map too, so it shows the map rather than proves it.)",
+        "On the straight joint path from point 1 to point 2 the tool is up to"
+        f" {bend:.2f} cm from where a linear map with the same ends would put it.",
     )
 
 
 @computes("S-6")
 def numerical_methods_and_a_boundary() -> Outcome:
-    near = float(_distance_to_the_boundary().min())
     closed = effort.contour_is_closed(200)
     return strongest(
         {
-            "the random draws that the paper evaluates": judge(holds=near > 0),
+            "the random draws that the paper evaluates": judge(holds=distance_of_the_draw() > 0),
             "every numerical method": judge(holds=not closed),
         },
         f"None of {len(drawn().q)} random configurations lies on the boundary, so they draw no"
         " boundary curve. A contour of the same functions on a grid of 200 by 200 is one closed"
         f" curve, and the area in it is off by {100 * effort.contour_error(200):.2g} %.",
     )
-
-
-def _distance_to_the_boundary() -> np.ndarray:
-    """Return how far the drawn configurations are from any bound: rad to sides, cm to the limit."""
-    q = drawn().q
-    box = paper_rule.box(robot())
-    limit = joint_region.floor()(q)
-    return np.abs(np.stack([*(q - box.lower).T, *(box.upper - q).T, limit])).min(axis=0)
 
 
 # --- introduction ---------------------------------------------------------------------------------
@@ -174,36 +128,26 @@ def accuracy_and_effort() -> Outcome:
 
 
 @computes("S-8")
+@computes("S-50")
 def boundary_of_the_workspace() -> Outcome:
-    region, corners = by_windows(), vertices()
-    exact = sorted(vertex.q.tolist() for vertex in region.vertices)
-    same = len(exact) == len(corners) and np.allclose(exact, sorted(corners.tolist()), atol=SMALL)
+    region, areas = by_windows(), workspace()
+    found = sorted(vertex.q.tolist() for vertex in region.vertices)
+    wanted = sorted(vertices().tolist())
+    same = len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
+    whole, rest = (
+        bool(np.isclose(areas["enclosed"] + more, areas["union"], rtol=1e-6))
+        for more in (0.0, areas["twice"])
+    )
     return strongest(
         {
             "the workspace in joint space": judge(holds=len(region.loops) == 1 and same),
-            "the workspace in the plane of the tool": image_of_the_boundary(),
+            "the workspace in the plane of the tool": judge(holds=whole, under=rest),
         },
-        f"In joint space the boundary is {counted(len(region.loops), 'closed curve')} of"
-        f" {len(region.loops[0])} arcs of Theorem 2, its corners in closed form equal to those of"
-        f" a complete decomposition. {on_the_image_of_the_boundary()}",
-    )
-
-
-def image_of_the_boundary() -> Verdict:
-    """Judge the image of the region's boundary as boundary of the places that the tool reaches."""
-    areas = workspace()
-    whole = bool(np.isclose(areas["enclosed"], areas["union"], rtol=1e-6))
-    rest = bool(np.isclose(areas["enclosed"] + areas["twice"], areas["union"], rtol=1e-6))
-    return judge(holds=whole, under=rest)
-
-
-def on_the_image_of_the_boundary() -> str:
-    """Say what the image of the region's boundary encloses in the plane of the tool."""
-    areas = workspace()
-    return (
-        f"Its image in the plane of the tool encloses {areas['enclosed']:.2f} of"
+        f"In joint space the boundary is {counted(len(region.loops), 'closed curve')} through"
+        f" {len(found)} points, which Theorem 2 gives in closed form as a complete decomposition"
+        f" finds them. Its image in the plane of the tool encloses {areas['enclosed']:.2f} of"
         f" {areas['union']:.2f} cm² that are reached; the rest, reached in both postures, ends"
-        " outside at the image of the singular line, which has to be added."
+        " outside at the image of the singular line, which has to be added.",
     )
 
 
@@ -233,7 +177,7 @@ def safety_margin() -> Outcome:
     scales = (0.96, 0.95, 0.9)
     heights = [least_height(s) for s in scales]
     t = np.linspace(0, 1, 501)
-    apart = [float(body_gap(_along_edges(s, t)).min()) for s in scales]
+    apart = [float(body_gap(polygon.along_edges(scaled(s), t)).min()) for s in scales]
     text = "; ".join(
         f"{s:g}: {h:.4f} and {a:.4f} cm" for s, h, a in zip(scales, heights, apart, strict=True)
     )
@@ -244,10 +188,6 @@ def safety_margin() -> Outcome:
     )
 
 
-def _along_edges(factor: float, t: np.ndarray) -> np.ndarray:
-    return joint_region.polygon.along_edges(scaled(factor), t)
-
-
 @computes("S-10.1")
 def singular_poses_are_avoided() -> Outcome:
     least = scale_without_singular_poses()
@@ -255,7 +195,7 @@ def singular_poses_are_avoided() -> Outcome:
     return Outcome(
         judge(holds=least >= 1, under=not any(used)),
         f"The singular line q2 = {np.degrees(stretched()):.4f}° passes close to the centroid, at q2"
-        f" = {np.degrees(joint_region.polygon.centroid(vertices())[1]):.4f}°: a region scaled about"
+        f" = {np.degrees(polygon.centroid(vertices())[1]):.4f}°: a region scaled about"
         f" it leaves the line outside only below scale {least:.6f}. At scales 0.96, 0.95 and 0.9"
         f" it is {'in' if all(used) else 'not always in'}side.",
     )

@@ -6,17 +6,14 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.computations.sentences_method import (
-    image_of_the_boundary,
-    on_the_image_of_the_boundary,
-)
 from lizarraga2025.evidence.arms import of_slides, pairs, robot, sliding, symbolic_robot, symmetric
-from lizarraga2025.evidence.joint_region import SCALE, by_windows, largest_scale, scaled
+from lizarraga2025.evidence.joint_region import SCALE, largest_scale, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
-from lizarraga2025.evidence.rounding import SMALL, counted
+from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     asymmetry,
     feasible_neighbours,
@@ -162,20 +159,6 @@ def slices_stay_symbolic() -> Outcome:
     )
 
 
-@computes("S-50")
-def boundary_by_connecting_points() -> Outcome:
-    region = by_windows()
-    six = len(region.loops) == 1 and len(region.vertices) == 6
-    return strongest(
-        {
-            "the workspace in joint space": judge(holds=six),
-            "the workspace in the plane of the tool": image_of_the_boundary(),
-        },
-        f"In joint space the boundary is {counted(len(region.loops), 'closed curve')} through"
-        f" {len(region.vertices)} points. {on_the_image_of_the_boundary()}",
-    )
-
-
 @computes("S-51")
 def explicit_constraints() -> Outcome:
     import sympy as sp
@@ -219,9 +202,9 @@ def scaling_resolves_singularities() -> Outcome:
     )
 
 
-def _away() -> np.ndarray:
+def _away() -> NDArray[np.float64]:
     """Return how far each of the unscaled points is from the singular line in q2, rad."""
-    return np.abs(scaled(1.0)[:, 1] - stretched())
+    return np.asarray(np.abs(scaled(1.0)[:, 1] - stretched()))
 
 
 @computes("S-53")

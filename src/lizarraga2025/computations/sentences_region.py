@@ -185,7 +185,7 @@ def _bound(label: str, q1: Floats) -> Floats:
     formula = paper.expression(paper.TABLE_6[label]).subs(symbolic_robot()[1])
     with np.errstate(invalid="ignore"):
         value = sp.lambdify(joint_symbols(robot())[0], formula, "numpy")(q1)
-    return np.nan_to_num(np.broadcast_to(value, q1.shape))
+    return np.asarray(np.nan_to_num(np.broadcast_to(value, q1.shape)))
 
 
 @computes("S-22")
@@ -276,8 +276,8 @@ def tangents_mend_it() -> Outcome:
     return Outcome(
         judge(holds=min(least.values()) > -SMALL),
         f"Corners of tangents at five points of each curve keep every bound and {kept:.3f} % of the"
-        " region's area, without a margin. (Points on the curve itself, joined by chords, do not:"
-        f" with {len(chord)} points the tool is still {deep:.4f} cm too low.)",
+        " region's area, without a margin. Points on the curve itself, joined by chords, do not:"
+        f" with {len(chord)} points the tool is still {deep:.4f} cm too low.",
     )
 
 

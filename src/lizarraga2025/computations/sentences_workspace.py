@@ -6,13 +6,14 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.computations.sentences_method import stretched_on_the_path
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     body_gap,
+    distance_of_the_draw,
     drawn,
+    largest_scale,
     scaled,
     share_of_square,
     vertices,
@@ -24,12 +25,15 @@ from lizarraga2025.evidence.tool_paths import (
     crossings,
     det_jacobian,
     enclosed,
+    feasible_neighbours,
+    is_cut_by_the_singular_line,
     is_feasible,
     neighbour_sequences,
     other_posture,
     path_through,
     simple_sequences,
     stretched,
+    stretched_poses,
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
@@ -64,8 +68,7 @@ def why_the_path_stays_open() -> Outcome:
         "The outer edge of what the tool reaches is the image of the singular line, which no path"
         f" through the points draws: the path round the region encloses {areas['enclosed']:.2f} of"
         f" {areas['union']:.2f} cm², and the rest, reached in both postures, ends at the stretched"
-        " arm. (That a path of five different points ends elsewhere than it begins is another"
-        " matter, F-8.2.)",
+        " arm. That a path of five different points ends elsewhere than it begins is F-8.2.",
     )
 
 
@@ -80,9 +83,27 @@ def stretched_is_singular() -> Outcome:
     )
 
 
+@computes("S-2")
 @computes("S-32")
-def scaling_settles_singularity_indirectly() -> Outcome:
-    return stretched_on_the_path()
+def scaling_settles_the_stretched_pose() -> Outcome:
+    least = {s: float(floor()(stretched_poses(s)).min()) for s in (1.0, 0.99, SCALE)}
+    feasible = {s: len(feasible_neighbours(s)) for s in least}
+    passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
+    return strongest(
+        {
+            "a path planned in joint space that passes the stretched pose safely": judge(
+                holds=least[1.0] < 0 < least[0.99] and feasible[0.99] > 0,
+                under=least[1.0] < 0 < least[SCALE] and feasible[SCALE] > 0,
+            ),
+            "a path that keeps off the stretched pose": judge(holds=not all(passing)),
+        },
+        "Where the outline of the six points passes the stretched pose, the tool's height above"
+        f" its limit is {least[1.0]:.4f} cm at the least; at scale {SCALE:g} it is"
+        f" {least[SCALE]:.4f} cm. {feasible[SCALE]} of {len(passing)} sequences of five neighbours"
+        f" are feasible there, unscaled {feasible[1.0]}; the limit is scale"
+        f" {largest_scale().scale:.6f}. With the scale, {sum(passing)} of them pass the stretched"
+        " pose.",
+    )
 
 
 @computes("S-33")
@@ -198,18 +219,17 @@ def sampling_is_costly() -> Outcome:
 def no_continuous_boundary() -> Outcome:
     errors = {n: effort.contour_error(n) for n in (50, 100, 200, 400)}
     closed = all(effort.contour_is_closed(n) for n in errors)
-    text = ", ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
-    box, q = paper_rule.box(robot()), drawn().q
-    limit = np.abs(floor()(q))
-    apart = np.abs(np.stack([*(q - box.lower).T, *(box.upper - q).T, limit])).min()
+    text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
     return strongest(
         {
-            "the random draws of which the sentence speaks": judge(holds=bool(apart > 0)),
+            "the random draws of which the sentence speaks": judge(
+                holds=distance_of_the_draw() > 0
+            ),
             "every numerical method": judge(holds=not closed),
         },
-        f"None of {len(q)} random configurations lies on the boundary. The same predicate on a grid"
-        " gives one closed contour by marching squares; relative error of its area by evaluations:"
-        f" {text}.",
+        f"None of {len(drawn().q)} random configurations lies on the boundary. The same predicate"
+        " on a grid gives one closed contour by marching squares; relative error of its area by"
+        f" evaluations: {text}.",
     )
 
 

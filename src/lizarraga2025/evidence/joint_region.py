@@ -110,6 +110,12 @@ def drawn() -> Sample:
     return sample(robot(), 100_000, paper_rule.feasible, seed=11)
 
 
+def distance_of_the_draw() -> float:
+    """Return how near the draw comes to a bound: rad to a side of the box, cm to the limit."""
+    q, box = drawn().q, paper_rule.box(robot())
+    return float(np.abs(np.stack([*(q - box.lower).T, *(box.upper - q).T, floor()(q)])).min())
+
+
 def share_of_square() -> float:
     """Return the part of one turn of both joints that the paper's rule leaves free."""
     return by_windows().area / (2 * np.pi) ** 2

@@ -55,7 +55,7 @@ def _of_table_6(name: str) -> Change | None:
         return None
     printed, proposed = (
         "; ".join(rf"$\{label} = {latex(sign(paper.TABLE_6[label]))}$" for label in labels)
-        for sign in (str, lambda text: text.replace("- acos", "+ acos"))
+        for sign in (str, _with_the_other_sign)
     )
     return printed, proposed
 

@@ -42,18 +42,13 @@ def grouped(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
     return found
 
 
-def errata_table(ledger: Iterable[Claim]) -> str:
-    """Return printed, proposed and why for some entries: a row for each finding.
+def errata_list(ledger: Iterable[Claim]) -> str:
+    """Return place, printed, proposed and why for some entries: one part for each finding.
 
-    Each row names the entries that rest on the finding, and the command that repeats it.
+    Each part names the entries that rest on the finding, and the command that repeats it.
     """
-    rows = "\n".join(_erratum(entries) for entries in grouped(ledger).values())
-    names = ("Place", "Printed", "Proposed", "Why")
-    head = "".join(f'<th scope="col">{name}</th>' for name in names)
-    return (
-        f'<table class="ledger-table errata-table">\n<thead><tr>{head}</tr></thead>\n'
-        f"<tbody>\n{rows}\n</tbody>\n</table>"
-    )
+    parts = "\n".join(_erratum(entries) for entries in grouped(ledger).values())
+    return f'<div class="errata">\n{parts}\n</div>'
 
 
 def badge(verdict: str) -> str:
@@ -133,14 +128,14 @@ def _erratum(entries: Sequence[Claim]) -> str:
     printed, proposed = errata.change(carrier.id) or (carrier.says, carrier.corrected)
     page = cite.page().rpartition("/")[2]
     links = ", ".join(f'<a href="{page}#{one.anchor}">{one.id}</a>' for one in entries)
-    words = (f"qbound claims {carrier.id}", "--recompute")
-    again = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
+    command = f"<code>qbound claims {carrier.id} --recompute</code>"
     return (
-        f'<tr><th scope="row">{typeset(carrier.where)}<p class="ledger-finding">{links}</p>'
-        f"{badge(carrier.verdict)}</th>"
-        f"<td>{typeset(printed)}</td><td>{typeset(proposed)}</td>"
-        f'<td>{typeset(carrier.found)}<p class="ledger-evidence">{link_to_chapter(carrier)};'
-        f" <code>{again}</code></p></td></tr>"
+        f'<dl class="erratum"><dt class="erratum-place">{typeset(carrier.where)}</dt>\n'
+        f"<dd>{badge(carrier.verdict)} {links}</dd>\n"
+        f"<dt>Printed</dt><dd>{typeset(printed)}</dd>\n"
+        f"<dt>Proposed</dt><dd>{typeset(proposed)}</dd>\n"
+        f"<dt>Why</dt><dd>{typeset(carrier.found)}"
+        f'<p class="ledger-evidence">{link_to_chapter(carrier)}; {command}</p></dd></dl>'
     )
 
 
