@@ -53,11 +53,13 @@ def _of_table_6(name: str) -> Change | None:
         labels = labels[1:]  # of a wall the upper bound stands
     if not labels:
         return None
-    printed, proposed = (
-        "; ".join(rf"$\{label} = {latex(sign(paper.TABLE_6[label]))}$" for label in labels)
-        for sign in (str, _with_the_other_sign)
-    )
-    return printed, proposed
+    printed = _in_tex({label: paper.TABLE_6[label] for label in labels})
+    other = {label: paper.TABLE_6[label].replace("- acos", "+ acos") for label in labels}
+    return printed, _in_tex(other)
+
+
+def _in_tex(bounds: Mapping[str, str]) -> str:
+    return "; ".join(rf"$\{label} = {latex(text)}$" for label, text in bounds.items())
 
 
 def _bound(label: str) -> str:
