@@ -207,14 +207,7 @@ WORLDS: dict[str, World] = {
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
     "S-16": SIGN_OF_16,
-    "S-17": world(
-        printed={
-            "OFFSETS": tuple(
-                replace(o, table=100 + paper.OFFSETS.index(o) // 4) if o.table in (3, 4) else o
-                for o in paper.OFFSETS
-            )
-        }
-    ),
+    "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),

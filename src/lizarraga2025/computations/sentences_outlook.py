@@ -70,12 +70,18 @@ def affine_constraints() -> Outcome:
     square = sp.simplify(sp.diff(pair, q[2], 2) / 2)
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
-    return Outcome(
-        judge(holds=bool(mixed == 0 and square == 0), under=along and jointly),
-        "A component is affine in each slide by itself, and with slides alone in all of them"
-        " together. With a turning joint before the slide it is not affine in both: the mixed"
-        " derivative is not zero. The distance of eq. (11) is not affine in a slide between its"
-        f" points: its square is quadratic, with leading coefficient {square}.",
+    return strongest(
+        {
+            "the components β of an arm of slides": judge(holds=jointly),
+            "the components β of an arm that turns and slides": judge(
+                holds=bool(mixed == 0), under=along
+            ),
+            "the distances of eq. (11)": judge(holds=bool(square == 0)),
+        },
+        "With slides alone a component is affine in all of them together. With a turning joint"
+        " before it, it is affine along the slide, but not in both joints: the mixed derivative is"
+        " not zero. The square of a distance between points with a slide between them is quadratic"
+        f" in the slide, with leading coefficient {square}.",
     )
 
 
