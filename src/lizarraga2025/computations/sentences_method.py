@@ -255,13 +255,13 @@ def adjacent_links_suffice() -> Outcome:
 @computes("S-13")
 def distance_of_points_and_of_links() -> Outcome:
     others = by_clearances().components[1:]
-    overlaps = [-float(body_gap(np.array(c.centroid))) for c in others]
+    overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
     apart = least_gap_in_home_region() > 0
     return Outcome(
         judge(holds=apart and not others, under=apart),
         "In the region of the home pose it does: no bodies overlap in it. In the"
         f" {len(others)} other regions that the clearances allow they do, at the centroids by"
-        f" {min(overlaps, default=0.0):.2f} to {max(overlaps, default=0.0):.2f} cm. No path from home leads there (S-23).",
+        f" {min(overlaps):.2f} to {max(overlaps):.2f} cm. No path from home leads there (S-23).",
     )
 
 
