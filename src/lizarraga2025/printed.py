@@ -9,6 +9,7 @@ arctan and atan2, can be computed.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -73,6 +74,47 @@ TABLE_2: Final = (
     ("0", "3", r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}", "R_{0,2}R_{2,3}"),
 )
 """Rows of Table 2 as printed; frames a and b, position and orientation of b seen from a (LaTeX)."""
+
+THEOREM_1: Final = {
+    14: "x**2 + y**2 + z**2",
+    15: "r_ab + R_ab @ r_bm - r_an",
+    16: "r_ab + R_ab @ r_bm - r_an",
+    18: "r_1 + R_1 @ r_2",
+    19: "r_0bm - r_0an",
+    20: "r_0a + R_0a @ r_an",
+    21: "r_0b + R_0b @ r_bm",
+    22: "(r_0b + R_0b @ r_bm) - (r_0a + R_0a @ r_an)",
+    23: "(r_0b - r_0a) + R_0b @ r_bm - R_0a @ r_an",
+    24: "R_0a @ r_ab + R_0a @ R_ab @ r_bm - R_0a @ r_an",
+    25: "R_0a @ (r_ab + R_ab @ r_bm - r_an)",
+    26: "r_ab + R_ab @ r_bm - r_an",
+    27: "r_ab + R_ab @ r_bm - r_an",
+}
+"""Right sides of eqs. (15) to (27), and the square of the norm in eq. (14).
+
+The points a+n and b+m are written by their last letter (``r_an``, ``r_0an``). Eq. (18) adds a step:
+its vector and matrix up to b-1 are ``r_1`` and ``R_1``, the step from there is ``r_2``.
+"""
+
+UNIT_VECTOR: Final = "r/sqrt(x**2 + y**2 + z**2)"
+"""Right side of eq. (8)."""
+
+THEOREM_2: Final = {
+    "30": "a*cos(q) + b*sin(q)",
+    "31 upper": "arctan(b, a) + acos(c/sqrt(a**2 + b**2)) + 2*pi*k",
+    "31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k - 2*pi",
+    "33": "d*cos(q - theta)",
+    "34 d": "sqrt(a**2 + b**2)",
+    "34 theta": "arctan(b, a)",
+    "35": "c/d",
+    "36 lower": "-1",
+    "36 upper": "1",
+    "37": "+acos(c/d) + 2*pi*k",
+    "38": "arctan(b, a) + acos(c/d) + 2*pi*k",
+    "39 lower": "arctan(b, a) + acos(c/d) + 2*pi*k - 2*pi",
+    "39 upper": "arctan(b, a) + acos(c/d) + 2*pi*k",
+}
+"""Sides of the equations of Theorem 2 and its proof; a sign of both values is ``pm``."""
 
 EQUATION_29: Final = {
     "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
@@ -203,7 +245,7 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     Parameters
     ----------
     text : str
-        An entry of `EQUATION_29` or `TABLE_6`.
+        An entry of `THEOREM_2`, `EQUATION_29` or `TABLE_6`.
     arctan : {"arctan", "atan2", "printed"}
         How to read the printed :math:`\tan^{-1}` of a quotient; "printed" leaves the sign, to be
         shown.
@@ -217,9 +259,16 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     }
     names: dict[str, Any] = {
         name: sympy.Symbol(label(name), real=True)
-        for name in re.findall(r"\b[xz]_\w+|\bq\d\b", text)
+        for name in re.findall(r"\b(?:[xz]_\w+|q\d?|[abcdk]|theta|pm)\b", text)
     }
     return sympy.parse_expr(text, local_dict=names | {"arctan": readings[arctan]})
+
+
+def work_out(text: str, values: Mapping[str, Any]) -> Any:
+    """Work out an entry of `THEOREM_1` with numbers, symbols or arrays of them for its names."""
+    import sympy
+
+    return sympy.parse_expr(text, local_dict=dict(values))
 
 
 def indices(label: str) -> tuple[int, ...]:
@@ -229,7 +278,9 @@ def indices(label: str) -> tuple[int, ...]:
 
 def label(name: str) -> str:
     """Return the paper's label of a name in a formula, such as ``x_{1,10}`` of ``x_1_10``."""
-    if name.startswith("q"):
+    if re.fullmatch(r"q\d", name):
         return f"q_{name[1:]}"
+    if "_" not in name:
+        return name
     letter, a, b = name.split("_")
     return f"{letter}_{{{a},{b}}}"

@@ -41,8 +41,8 @@ def world(
     robots : mapping, optional
         What `lizarraga2025.evidence.arms` loads, by the name it asks for.
     replaced : mapping, optional
-        New values by dotted name, such as ``lizarraga2025.evidence.proofs.general``; seen by every
-        module that imported the old one by name.
+        New values by dotted name, such as ``lizarraga2025.evidence.proofs.general`` or
+        ``qbound.model.frames.Frames.position``; seen by every module that imported the old one.
     """
 
     @contextmanager
@@ -51,7 +51,7 @@ def world(
         if robots:
             changes.append((arms, "load_robot", lambda name: robots.get(name) or load_robot(name)))
         for name, value in (replaced or {}).items():
-            changes += [(*place, value) for place in _places(resolve_name(name))]
+            changes += [(*place, value) for place in _places(name)]
         forget()
         try:
             with ExitStack() as stack:
@@ -103,8 +103,13 @@ def _merged(name: str, value: Any) -> Any:
     return {**old, **value} if isinstance(old, Mapping) else value
 
 
-def _places(value: Any) -> Iterator[tuple[ModuleType, str]]:
-    """Yield every module and name of the project that holds a value."""
+def _places(dotted: str) -> Iterator[tuple[Any, str]]:
+    """Yield the class that has an attribute, or every module of the project that holds a value."""
+    owner, _, attribute = dotted.rpartition(".")
+    if isinstance(resolve_name(owner), type):
+        yield resolve_name(owner), attribute
+        return
+    value = resolve_name(dotted)
     for module in (*_modules("lizarraga2025"), *_modules("qbound")):
         yield from ((module, name) for name, held in vars(module).items() if held is value)
 

@@ -6,6 +6,7 @@ from itertools import permutations
 
 import numpy as np
 
+from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.proofs import UNTURNED, general, vanishes
 from lizarraga2025.verdicts import Outcome, judge
@@ -106,13 +107,14 @@ def directional_cosines() -> Outcome:
 def unit_vector() -> Outcome:
     import sympy as sp
 
-    r = sp.Matrix(sp.symbols("x y z", real=True))
-    length = sp.sqrt(r.dot(r))
-    unit = sp.simplify((r / length).dot(r / length)) == 1
-    parallel = (r / length).cross(r).applyfunc(sp.simplify) == sp.zeros(3, 1)
-    limits = {sp.limit((r / length)[0].subs({r[1]: 0, r[2]: 0}), r[0], 0, s) for s in "+-"}
+    x, y, z = sp.symbols("x y z", real=True)
+    r = np.array([x, y, z])
+    u = sp.Matrix(paper.work_out(paper.UNIT_VECTOR, {"r": r, "x": x, "y": y, "z": z}))
+    unit = sp.simplify(u.dot(u)) == 1
+    parallel = u.cross(sp.Matrix(r)).applyfunc(sp.simplify) == sp.zeros(3, 1)
+    limits = {sp.limit(u[0].subs({y: 0, z: 0}), x, 0, side) for side in "+-"}
     return Outcome(
-        judge(holds=len(limits) == 1, under=unit and parallel),
+        judge(holds=unit and parallel),
         "Length 1 and the direction of r, identically, where r is not null. At r = 0, where points"
         f" collide, there is none: along x the limits from the two sides are {max(limits)} and"
         f" {min(limits)}.",
