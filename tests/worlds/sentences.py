@@ -193,7 +193,7 @@ WORLDS: dict[str, World] = {
     "S-10": HIGH_LIMIT,
     "S-10.1": LITTLE_OF_THE_OTHER,
     "S-11": world(replaced={"qbound.model.frames.axis_rotation": skew_rotation}),
-    "S-11.1": SIGN_OF_16,
+    "S-11.1": world(printed={"THEOREM_1": {15: "r_ab + R_ab @ r_bm + r_an"}}),
     "S-12": arm(
         replace(
             ARM,

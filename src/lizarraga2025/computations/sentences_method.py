@@ -25,7 +25,7 @@ from lizarraga2025.evidence.joint_region import (
     scaled,
     vertices,
 )
-from lizarraga2025.evidence.proofs import general, vanishes
+from lizarraga2025.evidence.proofs import general, is_identity, vanishes
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     is_cut_by_the_singular_line,
@@ -223,17 +223,14 @@ def orthonormal_directions() -> Outcome:
 
 @computes("S-11.1")
 def one_observer() -> Outcome:
-    g = general()
-    from_a, from_0 = (g.chain.position("a+n", "b+m", observer) for observer in "a0")
-    within = vanishes(from_a - g.B) and vanishes(from_0 - g.R_0a @ g.B)
-    return strongest(
-        {
-            "one frame for the terms of an equation": judge(holds=within),
-            "one frame for all equations": judge(holds=vanishes(from_0 - from_a)),
-        },
-        "Once the printed matrices have turned what they stand before, the terms of eqs. (15) to"
-        " (18) are all seen from a, and those of eqs. (19) to (25) all from the base. From one"
-        " equation to the next the frame changes: eqs. (15) and (25) have the same left side.",
+    ends = ("a+n", "b+m")
+    literally = {n: is_identity(n, ends, seen, seen) for n, seen in ((15, "a"), (19, "0"))}
+    turned = is_identity(15, ends, "a") and is_identity(25, ends, "0")
+    return Outcome(
+        judge(holds=all(literally.values()), under=literally[19] and turned),
+        "Where no matrix stands, as in eq. (19), it holds. A vector behind a matrix is seen from"
+        " its own first index: seen from a instead, eq. (15) fails. Once the matrix has turned it,"
+        " all terms of an equation are seen from one frame: a in eq. (15), the base in eq. (25).",
     )
 
 
