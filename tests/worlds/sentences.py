@@ -97,7 +97,7 @@ def linear_tool() -> HarmonicForm:
 
 
 def third_joint(**changes: Any) -> Callable[[], Robot]:
-    """Return the arm with a slide, other boundaries or another tool's frame, as a function."""
+    """Return the arm with a slide and other boundaries, as a function."""
     return lambda: with_boundaries(SLIDING(), **changes)
 
 

@@ -95,10 +95,8 @@ def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
     Between grid points the gap falls by at most what a corner of link 2 moves on the way there.
     """
     box, arm = paper_rule.box(robot()), robot()
-    q = np.stack(
-        np.meshgrid(*np.linspace(box.lower, box.upper, n).T, indexing="ij"),
-        axis=-1,
-    )
+    axes = np.linspace(box.lower, box.upper, n).T
+    q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     between = float(bodies.gaps(arm, q)["0", "2"].min())
     last = next(body for body in arm.bodies if body.frame == "2")
     length = float(np.linalg.norm(last.polygon, axis=-1).max())
