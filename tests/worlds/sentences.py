@@ -97,7 +97,7 @@ def linear_tool() -> HarmonicForm:
 
 
 def third_joint(**changes: Any) -> Callable[[], Robot]:
-    """Return the arm with a slide, other boundaries or another tool's frame, as a function."""
+    """Return the arm with a slide and other boundaries, as a function."""
     return lambda: with_boundaries(SLIDING(), **changes)
 
 
@@ -193,7 +193,7 @@ WORLDS: dict[str, World] = {
     "S-10": HIGH_LIMIT,
     "S-10.1": LITTLE_OF_THE_OTHER,
     "S-11": world(replaced={"qbound.model.frames.axis_rotation": skew_rotation}),
-    "S-11.1": SIGN_OF_16,
+    "S-11.1": world(printed={"THEOREM_1": {15: "r_ab + R_ab @ r_bm + r_an"}}),
     "S-12": arm(
         replace(
             ARM,
@@ -207,14 +207,7 @@ WORLDS: dict[str, World] = {
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
     "S-16": SIGN_OF_16,
-    "S-17": world(
-        printed={
-            "OFFSETS": tuple(
-                replace(o, table=100 + paper.OFFSETS.index(o) // 4) if o.table in (3, 4) else o
-                for o in paper.OFFSETS
-            )
-        }
-    ),
+    "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),

@@ -20,11 +20,12 @@ from lizarraga2025.evidence.joint_region import (
     drawn,
     gap_of_base_and_link_2,
     largest_scale,
+    least_gap_in_home_region,
     least_height,
     scaled,
     vertices,
 )
-from lizarraga2025.evidence.proofs import general, vanishes
+from lizarraga2025.evidence.proofs import general, is_identity, vanishes
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     is_cut_by_the_singular_line,
@@ -222,15 +223,14 @@ def orthonormal_directions() -> Outcome:
 
 @computes("S-11.1")
 def one_observer() -> Outcome:
-    g = general()
-    from_a, from_0 = (g.chain.position("a+n", "b+m", observer) for observer in "a0")
-    within = vanishes(from_a - g.B) and vanishes(from_0 - g.R_0a @ g.B)
+    ends = ("a+n", "b+m")
+    literally = {n: is_identity(n, ends, seen, seen) for n, seen in ((15, "a"), (19, "0"))}
+    turned = is_identity(15, ends, "a") and is_identity(25, ends, "0")
     return Outcome(
-        judge(holds=vanishes(from_0 - from_a), under=within),
-        "Within an equation it holds, once the printed matrices have turned what they stand"
-        " before: the terms of eqs. (15) to (18) are then all seen from a, those of eqs. (19) to"
-        " (25) all from the base. From one equation to the next the observer changes: eqs. (15)"
-        " and (25) have the same left side, seen from a and from the base.",
+        judge(holds=all(literally.values()), under=literally[19] and turned),
+        "Where no matrix stands, as in eq. (19), it holds. A vector behind a matrix is seen from"
+        " its own first index: seen from a instead, eq. (15) fails. Once the matrix has turned it,"
+        " all terms of an equation are seen from one frame: a in eq. (15), the base in eq. (25).",
     )
 
 
@@ -251,22 +251,14 @@ def adjacent_links_suffice() -> Outcome:
 
 @computes("S-13")
 def distance_of_points_and_of_links() -> Outcome:
-    home, *others = by_clearances().components
-    overlaps = np.array([float(body_gap(np.array(c.centroid))) for c in others])
-    middle = np.array(home.centroid, dtype=float)
-    ring = np.concatenate([arc.points for arc in home.loops[0]])
-    factors = np.linspace(0, 0.999, 40)[:, None, None]
-    least = float(body_gap(middle + factors * (ring - middle)).min())
-    rest = (
-        f"In the {len(others)} other regions that the clearances allow the bodies overlap, at the"
-        f" centroids by {-overlaps.max():.2f} to {-overlaps.min():.2f} cm."
-        if (overlaps < 0).any()
-        else "No other region has bodies that overlap."
-    )
+    others = by_clearances().components[1:]
+    overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
+    apart = least_gap_in_home_region() > 0
     return Outcome(
-        judge(holds=least > 0 and bool((overlaps > 0).all()), under=least > 0),
-        "In the region of the home pose it does: its key points are those in which the links meet"
-        f" first. {rest} A path from home cannot come there.",
+        judge(holds=apart and not others, under=apart),
+        "In the region of the home pose it does: no bodies overlap in it. In the"
+        f" {len(others)} other regions that the clearances allow they do, at the centroids by"
+        f" {min(overlaps):.2f} to {max(overlaps):.2f} cm. No path from home leads there (S-23).",
     )
 
 
@@ -317,11 +309,13 @@ def necessary_for_a_collision() -> Outcome:
     return strongest(
         {
             "the conditions for the chosen points to meet": judge(holds=seen and turned),
-            "conditions for the whole links to touch": judge(holds=deep <= 0, under=apart > 0),
+            "the conditions for whole links to meet": judge(
+                holds=deep <= 0, under=least_gap_in_home_region() > 0
+            ),
         },
-        "Two points meet exactly where B = 0, by identity and for all rotations. Of whole links it"
-        " tells the first contact on a path from home: past it, at q1 ="
-        f" {np.degrees(pose[0]):.1f}°, q2 = {np.degrees(pose[1]):.1f}°, bodies overlap by"
+        "Two points meet exactly where B = 0, by identity and for all rotations. Of whole links the"
+        " points tell enough in the region of the home pose. Elsewhere they need not: at q1 ="
+        f" {np.degrees(pose[0]):.1f}°, q2 = {np.degrees(pose[1]):.1f}° bodies overlap by"
         f" {deep:.2f} cm and no pair of points is closer than {apart:.2f} cm.",
     )
 
@@ -329,9 +323,12 @@ def necessary_for_a_collision() -> Outcome:
 @computes("S-17")
 def four_tables() -> Outcome:
     tables = {o.table for o in paper.OFFSETS if o.table > 1 and "min" not in o.label}
-    return Outcome(
-        judge(holds=len(tables) == 4, corrected=len(pairs()) == 4),
-        f"The offsets of the {len(pairs())} pairs stand in {len(tables)} tables, as the same"
-        f" section says two paragraphs on; the parts of these tables, one a pair, are"
-        f" {len(pairs())}.",
+    number = len(pairs())
+    return strongest(
+        {
+            "four tabulated functions, each with its diagram": judge(holds=number == 4),
+            "four tables with a number": judge(holds=len(tables) == 4, corrected=number == 4),
+        },
+        f"The offsets of the {number} pairs stand in {number} parts of {len(tables)} numbered"
+        " tables, as the same section says two paragraphs on.",
     )

@@ -173,8 +173,8 @@ def right_is_upper_and_left_is_lower() -> Outcome:
     return Outcome(
         judge(holds=all(ordered), under=any(ordered)),
         f"In {sum(ordered)} of {len(ordered)} rows of Table 6 the value with k = 1 is the larger,"
-        " whichever arctangent is meant: both stand in the same quadrant. Whether they bound the"
-        " angles at which the points keep apart is judged row by row (T-6).",
+        " whichever arctangent is meant, as both columns have the same one. The caption of Figure 4"
+        " names an upper side by k = 2 (F-4.2).",
     )
 
 

@@ -86,7 +86,7 @@ def stretched_is_singular() -> Outcome:
 @computes("S-2")
 @computes("S-32")
 def scaling_settles_the_stretched_pose() -> Outcome:
-    least = {s: float(floor()(stretched_poses(s)).min()) for s in (1.0, 0.99, SCALE)}
+    least = {s: float(floor()(stretched_poses(s)).min(initial=np.inf)) for s in (1.0, 0.99, SCALE)}
     feasible = {s: len(feasible_neighbours(s)) for s in least}
     passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
     return strongest(
@@ -99,10 +99,9 @@ def scaling_settles_the_stretched_pose() -> Outcome:
         },
         "Where the outline of the six points passes the stretched pose, the tool's height above"
         f" its limit is {least[1.0]:.4f} cm at the least; at scale {SCALE:g} it is"
-        f" {least[SCALE]:.4f} cm. {feasible[SCALE]} of {len(passing)} sequences of five neighbours"
-        f" are feasible there, unscaled {feasible[1.0]}; the limit is scale"
-        f" {largest_scale().scale:.6f}. With the scale, {sum(passing)} of them pass the stretched"
-        " pose.",
+        f" {least[SCALE]:.4f} cm, and {feasible[SCALE]} of {len(passing)} sequences of five"
+        f" neighbours are feasible, unscaled {feasible[1.0]}; the limit is scale"
+        f" {largest_scale().scale:.6f}. {sum(passing)} of them pass the stretched pose.",
     )
 
 

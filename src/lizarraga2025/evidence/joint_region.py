@@ -75,16 +75,28 @@ def body_gap(q: Floats, of: Robot | None = None) -> Floats:
     return np.asarray(np.min(list(found.values()), axis=0))
 
 
+@cache
+def least_gap_in_home_region() -> float:
+    """Return the least gap of two bodies in forty copies of the home region's outline, cm.
+
+    The copies are shrunk about the centroid, the largest by a thousandth: on the outline itself
+    bodies may touch.
+    """
+    home = by_clearances().components[0]
+    middle = np.array(home.centroid, dtype=float)
+    outline = np.concatenate([arc.points for arc in home.loops[0]])
+    factors = np.linspace(0, 0.999, 40)[:, None, None]
+    return float(body_gap(middle + factors * (outline - middle)).min())
+
+
 def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
     """Return the least gap of base and link 2 on a grid over the windows, and its error, cm.
 
     Between grid points the gap falls by at most what a corner of link 2 moves on the way there.
     """
     box, arm = paper_rule.box(robot()), robot()
-    q = np.stack(
-        np.meshgrid(*np.linspace(box.lower, box.upper, n).T, indexing="ij"),
-        axis=-1,
-    )
+    axes = np.linspace(box.lower, box.upper, n).T
+    q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     between = float(bodies.gaps(arm, q)["0", "2"].min())
     last = next(body for body in arm.bodies if body.frame == "2")
     length = float(np.linalg.norm(last.polygon, axis=-1).max())
