@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib import resources
 
@@ -19,19 +19,36 @@ Change = tuple[str, str]
 """What is printed and what is proposed; TeX between dollar signs."""
 
 
-def errata(ledger: Iterable[Claim]) -> list[Claim]:
-    """Return the entries that a second printing would change, in the order of the ledger.
+def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
+    """Return what a second printing would change: the entries of each part, by the one that leads.
 
-    They are misprints, refuted statements, statements that say nothing where another would, and all
-    that rest on a finding for which ``errata.toml`` has a change.
+    They are misprints, refuted statements, statements that say nothing where another would, and
+    conditions that ``errata.toml`` would put into print. A part is a finding; a row of
+    Table 6 that changes is a part of its own, with its bounds.
     """
-    return [one for one in ledger if _is_erratum(one)]
+    parts: dict[str, list[Claim]] = {}
+    for one in ledger:
+        if _is_erratum(one):
+            parts.setdefault(_part(one), []).append(one)
+    return {_leader(name, entries): entries for name, entries in parts.items()}
 
 
 def _is_erratum(one: Claim) -> bool:
-    if one.verdict in ("misprint", "refuted") or one.finding in _typed():
+    if one.verdict in ("misprint", "refuted"):
         return True
-    return one.verdict == "true but says nothing" and bool(one.corrected)
+    if one.verdict == "true but says nothing":
+        return bool(one.corrected)
+    return one.verdict == "confirmed with a condition" and one.finding in _typed()
+
+
+def _part(one: Claim) -> str:
+    rows = {_row(label) for label in paper.TABLE_6 if one.id in (_bound(label), _row(label))}
+    return rows.pop() if rows and one.verdict == "true but says nothing" else one.finding
+
+
+def _leader(part: str, entries: Sequence[Claim]) -> str:
+    """Return the entry after which a part is named, or its first where that one changes nothing."""
+    return part if part in {one.id for one in entries} else entries[0].id
 
 
 def change(name: str) -> Change | None:
@@ -46,16 +63,16 @@ def _typed() -> Mapping[str, Change]:
     return {name: (entry["printed"], entry["proposed"]) for name, entry in found.items()}
 
 
-def _of_table_6(name: str) -> Change | None:
-    """Return a bound, or those of a row that change, with the arccosine's sign turned round."""
-    labels = [label for label in paper.TABLE_6 if name in (_bound(label), _row(label))]
-    if name.startswith("T-") and labels and paper.indices(labels[0])[0] > 4:
-        labels = labels[1:]  # of a wall the upper bound stands
+def _of_table_6(row: str) -> Change | None:
+    """Return the bounds of a row that change, with the other sign before the arccosine."""
+    labels = [label for label in paper.TABLE_6 if row == _row(label)]
     if not labels:
         return None
-    printed = _in_tex({label: paper.TABLE_6[label] for label in labels})
-    other = {label: paper.TABLE_6[label].replace("- acos", "+ acos") for label in labels}
-    return printed, _in_tex(other)
+    if paper.indices(labels[0])[0] > 4:
+        labels = labels[1:]  # of a wall the upper bound stands
+    printed = {label: paper.TABLE_6[label] for label in labels}
+    other = {label: text.replace("- acos", "+ acos") for label, text in printed.items()}
+    return _in_tex(printed), _in_tex(other)
 
 
 def _in_tex(bounds: Mapping[str, str]) -> str:

@@ -23,7 +23,7 @@ def ledger_table(ledger: Sequence[Claim]) -> str:
     that rest on the same finding and to the chapter that shows the evidence, the test, and the
     BibTeX entry to unfold.
     """
-    by_finding = grouped(ledger)
+    by_finding = _by_finding(ledger)
     rows = "\n".join(_row(one, by_finding[one.finding]) for one in ledger)
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     return (
@@ -34,7 +34,7 @@ def ledger_table(ledger: Sequence[Claim]) -> str:
     )
 
 
-def grouped(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
+def _by_finding(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
     """Return the entries by the finding that they rest on, each finding where it first occurs."""
     found: dict[str, list[Claim]] = defaultdict(list)
     for one in ledger:
@@ -42,13 +42,13 @@ def grouped(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
     return found
 
 
-def errata_list(ledger: Iterable[Claim]) -> str:
-    """Return place, printed, proposed and why for some entries: one part for each finding.
+def errata_list(parts: Mapping[str, Sequence[Claim]]) -> str:
+    """Return place, printed, proposed and why for parts of the `errata`, by the entry that leads.
 
-    Each part names the entries that rest on the finding, and the command that repeats it.
+    Each names the entries that it is about, and the command that repeats the computation.
     """
-    parts = "\n".join(_erratum(entries) for entries in grouped(ledger).values())
-    return f'<div class="errata">\n{parts}\n</div>'
+    shown = "\n".join(_erratum(leader, entries) for leader, entries in parts.items())
+    return f'<div class="errata">\n{shown}\n</div>'
 
 
 def badge(verdict: str) -> str:
@@ -123,19 +123,19 @@ def _citation(one: Claim) -> str:
     )
 
 
-def _erratum(entries: Sequence[Claim]) -> str:
-    carrier = next((one for one in entries if one.id == one.finding), entries[0])
-    printed, proposed = errata.change(carrier.id) or (carrier.says, carrier.corrected)
+def _erratum(leader: str, entries: Sequence[Claim]) -> str:
+    one = next(entry for entry in entries if entry.id == leader)
+    printed, proposed = errata.change(leader) or (one.says, one.corrected)
     page = cite.page().rpartition("/")[2]
-    links = ", ".join(f'<a href="{page}#{one.anchor}">{one.id}</a>' for one in entries)
-    command = f"<code>qbound claims {carrier.id} --recompute</code>"
+    links = ", ".join(f'<a href="{page}#{other.anchor}">{other.id}</a>' for other in entries)
+    command = f"<code>qbound claims {leader} --recompute</code>"
     return (
-        f'<dl class="erratum"><dt class="erratum-place">{typeset(carrier.where)}</dt>\n'
-        f"<dd>{badge(carrier.verdict)} {links}</dd>\n"
+        f'<dl class="erratum"><dt class="erratum-place">{typeset(one.where)}</dt>\n'
+        f"<dd>{badge(one.verdict)} {links}</dd>\n"
         f"<dt>Printed</dt><dd>{typeset(printed)}</dd>\n"
         f"<dt>Proposed</dt><dd>{typeset(proposed)}</dd>\n"
-        f"<dt>Why</dt><dd>{typeset(carrier.found)}"
-        f'<p class="ledger-evidence">{link_to_chapter(carrier)}; {command}</p></dd></dl>'
+        f"<dt>Why</dt><dd>{typeset(one.found)}"
+        f'<p class="ledger-evidence">{link_to_chapter(one)}; {command}</p></dd></dl>'
     )
 
 
