@@ -16,7 +16,7 @@ from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.typeset import latex
 
 Change = tuple[str, str]
-"""What is printed and what is proposed; TeX between dollar signs."""
+"""What is printed and what is proposed: lines of text, TeX between dollar signs."""
 
 
 def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
@@ -76,7 +76,7 @@ def _of_table_6(row: str) -> Change | None:
 
 
 def _in_tex(bounds: Mapping[str, str]) -> str:
-    return "; ".join(rf"$\{label} = {latex(text)}$" for label, text in bounds.items())
+    return "\n".join(rf"$\{label} = {latex(text)}$" for label, text in bounds.items())
 
 
 def _bound(label: str) -> str:

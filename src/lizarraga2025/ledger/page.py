@@ -102,8 +102,12 @@ def _finding(one: Claim, sharing: Sequence[Claim]) -> str:
     if not others:
         return ""
     others.sort(key=lambda other: other.id != one.finding)
-    links = ", ".join(f'<a href="#{other.anchor}">{other.id}</a>' for other in others)
-    return f'<p class="ledger-finding">One finding with {links}</p>'
+    return f'<p class="ledger-finding">One finding with {_links(others)}</p>'
+
+
+def _links(entries: Iterable[Claim], page: str = "") -> str:
+    links = (f'<a class="unbroken" href="{page}#{one.anchor}">{one.id}</a>' for one in entries)
+    return ", ".join(links)
 
 
 def _corrected(one: Claim) -> str:
@@ -127,16 +131,21 @@ def _erratum(leader: str, entries: Sequence[Claim]) -> str:
     one = next(entry for entry in entries if entry.id == leader)
     printed, proposed = errata.change(leader) or (one.says, one.corrected)
     page = cite.page().rpartition("/")[2]
-    links = ", ".join(f'<a href="{page}#{other.anchor}">{other.id}</a>' for other in entries)
-    command = f"<code>qbound claims {leader} --recompute</code>"
+    links = _links(entries, page)
+    words = (f"qbound claims {leader}", "--recompute")
+    command = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     return (
         f'<dl class="erratum"><dt class="erratum-place">{typeset(one.where)}</dt>\n'
         f"<dd>{badge(one.verdict)} {links}</dd>\n"
-        f"<dt>Printed</dt><dd>{typeset(printed)}</dd>\n"
-        f"<dt>Proposed</dt><dd>{typeset(proposed)}</dd>\n"
+        f"<dt>Printed</dt><dd>{_lines(printed)}</dd>\n"
+        f"<dt>Proposed</dt><dd>{_lines(proposed)}</dd>\n"
         f"<dt>Why</dt><dd>{typeset(one.found)}"
-        f'<p class="ledger-evidence">{link_to_chapter(one)}; {command}</p></dd></dl>'
+        f'<p class="ledger-evidence">{link_to_chapter(one)}; <code>{command}</code></p></dd></dl>'
     )
+
+
+def _lines(text: str) -> str:
+    return "".join(f"<div>{typeset(line)}</div>" for line in text.splitlines())
 
 
 def _controls() -> str:
