@@ -66,6 +66,7 @@ def test_entry_says_what_was_found_and_where(name: str) -> None:
         assert text.strip() == text
         assert not re.search(r"\\|\$|\bnan\b|\binf\b", text), "plain text, finite numbers"
         assert text.endswith(".")
+    assert found.reading != "As printed.", "say how"
     assert bool(found.corrected) or found.verdict not in ("misprint", "refuted")
 
 

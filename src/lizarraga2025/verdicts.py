@@ -88,15 +88,3 @@ def strongest(readings: Mapping[str, Verdict], found: str) -> Outcome:
         each = "; ".join(f"{name}: {its}" for name, its in readings.items())
         found = f"{found} Read as {each}."
     return Outcome(verdict, found)
-
-
-def require(outcome: bool, statement: str) -> None:
-    """Stop where a corrected statement is not proved: it may not stand in the ledger.
-
-    Raises
-    ------
-    ArithmeticError
-        If the outcome is false.
-    """
-    if not outcome:
-        raise ArithmeticError(f"not proved: {statement}")

@@ -18,6 +18,7 @@ from unittest.mock import patch
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.computations import registry
 from lizarraga2025.evidence import arms
 from qbound import load_robot
 from qbound.model.robot import Robot
@@ -47,6 +48,7 @@ def world(
 
     @contextmanager
     def altered() -> Iterator[None]:
+        registry.by_id()  # entries are registered by what our world prints
         changes = [(paper, name, _merged(name, value)) for name, value in (printed or {}).items()]
         if robots:
             changes.append((arms, "load_robot", lambda name: robots.get(name) or load_robot(name)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -23,25 +23,34 @@ from qbound.symbols import joint_symbols, with_symbols
 
 @computes("E-9")
 def sign_of_a_component() -> Outcome:
-    q = np.array([-np.pi / 2, 0.0])
-    path = np.linspace(robot().home, q, 1001)
+    inside, outside = np.radians([-90.0, 0.0]), np.radians([-140.0, 0.0])
+    path = np.linspace(robot().home, inside, 1001)
     free = all((clearance(robot(), b)(path) > 0).all() for b in robot().boundaries if b.used)
-    inside = bool(paper_rule.feasible(robot(), q)) and free
+    allowed = free and bool(paper_rule.feasible(robot(), inside))
+    beyond = not paper_rule.feasible(robot(), outside)
     bounding = {label.rpartition(",")[0] + "}" for label in paper.FIGURE_4_BOUNDS}
-    there = {name: float(_printed(name)(*q)) for name in paper.EQUATION_29}
-    negative = {name: value for name, value in there.items() if value < 0}
-    values = ", ".join(f"{_greek(name)} = {value:.2f} cm" for name, value in negative.items())
+    pairs = [name for name in paper.EQUATION_29 if paper.indices(name)[0] < 5]
+    negative = {name: x for name in pairs if (x := float(_printed(name)(*inside))) < 0}
+    of_2 = {name: float(_printed(name)(*outside)) for name in pairs if name.startswith("beta_{2")}
     sides = [_greek(name) for name in negative if name in bounding]
     return strongest(
         {
-            "every component": judge(holds=not (inside and negative)),
-            "the components that bound the selected region": judge(holds=not (inside and sides)),
+            "a rule for every component": judge(holds=not (allowed and negative)),
+            "a rule for those that bound the selected region": judge(holds=not (allowed and sides)),
+            "a rule for all components of a pair at once": judge(
+                holds=not (beyond and any(x > 0 for x in of_2.values()))
+            ),
         },
         "The pose q = (-90°, 0°) lies in the selected region and is reached from home without"
-        f" touching a boundary, and yet {values}. Of these {' and '.join(sides)} bounds the region"
-        " (caption of Figure 4). A pair is in contact only where all its components vanish, so the"
-        " sign of one cannot tell on which side the pair is.",
+        f" touching a boundary, and yet {_values(negative)}. Of these {' and '.join(sides)} bounds"
+        " the region (caption of Figure 4). The pose (-140°, 0°) lies outside, and yet"
+        f" {_values(of_2)} have two signs. A pair is in contact only where all its components"
+        " vanish, so no sign of theirs tells on which side it is.",
     )
+
+
+def _values(components: Mapping[str, float]) -> str:
+    return " and ".join(f"{_greek(name)} = {value:.2f} cm" for name, value in components.items())
 
 
 def _printed(name: str) -> Callable[..., Any]:
@@ -116,10 +125,10 @@ def joint_limits() -> Outcome:
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
     return Outcome(
         judge(holds=True) if stated else undetermined(same),
-        f"{len(stated)} limits are printed. The windows of Table 6 end at {box[0, 0]:.2f}° and"
-        f" {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and {box[1, 1]:.2f}° for"
-        " the second, so limits beyond these fit all that is printed and change nothing: the area"
-        " around home is "
+        f"{len(stated) or 'No'} limits are printed. The windows of Table 6 end at"
+        f" {box[0, 0]:.2f}° and {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and"
+        f" {box[1, 1]:.2f}° for the second, so limits beyond these fit all that is printed and"
+        " change nothing: the area around home is "
         + ", ".join(f"{a:.6f} rad² with limits {name}" for name, a in area.items())
         + ".",
     )
@@ -162,9 +171,9 @@ def limits_in_space() -> Outcome:
             "the limit that bounds the selected region (caption of Figure 4)": judge(
                 holds=kept["B7"]
             ),
-            "all limits of Table 5 at once": judge(holds=all(kept.values()), under=kept["B7"]),
+            "all limits of Table 5 at once": judge(holds=all(kept.values())),
         },
-        f"{len(upper)} upper limits, two lower ones for x and one for z are printed. Least margins"
-        f" at the six points of the selected region: {depths}. Only the floor is kept there, as the"
-        " caption has it.",
+        f"{len(upper) or 'No'} upper limits, two lower ones for x and one for z are printed."
+        f" Margins at the six points of the selected region: {depths}. Only the floor is kept"
+        " there, as the caption has it.",
     )

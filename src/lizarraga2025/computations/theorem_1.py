@@ -172,7 +172,7 @@ STEPS: Mapping[int, Step] = {
     24: (
         ENDS,
         (("0", ""),),
-        "seen from the base; it takes r_{0,b} - r_{0,a} = R_{0,a} r_{a,b} too",
+        "seen from the base, by r_{0,b} - r_{0,a} = R_{0,a} r_{a,b} too",
     ),
 }
 """Steps of the proof: the vector on the left, who sees the left and the right side, in words."""
@@ -222,8 +222,8 @@ def no_observer_named() -> Outcome:
                 holds=all(one_frame.values())
             ),
         },
-        f"In every equation from (15) to (25) that adds vectors the terms have one observer:"
-        f" the base in {from_base}; frame a in {from_a}. A vector under a rotation matrix is seen"
+        "In eqs. (15) and (19) to (25) the terms have one observer, with which each is an identity:"
+        f" frame a in {from_a}, the base in {from_base}. A vector under a rotation matrix is seen"
         " from the frame that the matrix transforms.",
     )
 

@@ -142,7 +142,7 @@ def bounds_as_printed() -> Outcome:
     low, high = (plain(end.subs(smallest())) for end in (printed.lower, printed.upper))
     return Outcome(
         _judge(printed),
-        f"It is {plain(printed.length)} long, a full turn or more: with either arctangent every"
+        f"It is {plain(printed.length)} long, a full turn or more: with arctan or atan2, every"
         " solution has a copy in it, full turns away, for some k, and so has every other angle."
         f" Smallest case: cos q = 0 has the interval from {low} to {high}. Without the -2π of the"
         f" second line, and with {ATAN2}, it is {plain(arc.length)} long and exactly the set where"
@@ -307,10 +307,10 @@ def interval_between_roots() -> Outcome:
     return Outcome(
         _judge(printed),
         f"It is {plain(printed.length)} long: every solution has a copy in it, full turns away, for"
-        " some k, and so has every other angle. Its ends are two copies of the falling root and"
-        f" {between[0]} lie between, so as a limit of a motion with q counted on the real line it"
-        f" says more: whoever keeps off that root stays inside. The rising root lies {between[1]}"
-        " time between, and there the sign of a cos q + b sin q - c changes.",
+        " some k, and so has every other angle. Its ends are two copies of the falling root, with"
+        f" {between[0]} more between them, so of a motion with q counted on the real line it says"
+        f" more: one that keeps off that root stays inside. {between[1]} copy of the rising root"
+        " lies between, and there the sign of a cos q + b sin q - c changes.",
     )
 
 
