@@ -14,6 +14,9 @@ from typing import Any
 
 LEDGER = "claims.json"
 
+HEAD = ("chapter", "version", "robots")
+"""What an entry takes over from its file."""
+
 
 def folder() -> Traversable:
     """Return the folder of the recorded results.
@@ -32,10 +35,13 @@ def folder() -> Traversable:
 
 
 def results() -> list[dict[str, Any]]:
-    """Return every recorded number: the entries of all chapters, each with its ``chapter``."""
+    """Return every recorded number: all chapters' entries, each with its chapter's head.
+
+    That is ``chapter``, ``version`` and ``robots``, a hash each.
+    """
     files = sorted((file for file in folder().iterdir() if _holds_results(file)), key=_name)
     content = [json.loads(file.read_text(encoding="utf-8")) for file in files]
-    return [{"chapter": c["chapter"], **entry} for c in content for entry in c["results"]]
+    return [{**{key: c[key] for key in HEAD}, **entry} for c in content for entry in c["results"]]
 
 
 def claims() -> list[dict[str, Any]]:
