@@ -9,6 +9,8 @@ from typing import Any
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
 
+ABOUT_THE_FILE = ("version", "robots")
+
 
 def add_to(commands: Any) -> None:
     """Describe the command."""
@@ -20,7 +22,7 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="vertex.1, region/vertex.1, region/")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="as in results/, with the file's head")
+    form.add_argument("--json", action="store_true", help="as in results/, with the chapter")
     form.add_argument("--bibtex", action="store_true", help="how to cite paper, package, results")
     parser.set_defaults(run=run)
 
@@ -34,7 +36,8 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"no result {lost[0]!r}; `qbound results` lists all")
     chosen = [entry for entry in entries if any(_is_named(entry, name) for name in names)]
     if options.json:
-        print(json.dumps(chosen, indent=1, ensure_ascii=False))
+        plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
+        print(json.dumps(plain, indent=1, ensure_ascii=False))
     elif options.bibtex:
         once = {entry["id"]: cite.result(entry) for entry in chosen}
         print("\n\n".join([cite.PAPER, cite.package(), *once.values()]))

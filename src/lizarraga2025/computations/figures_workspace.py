@@ -18,7 +18,7 @@ from lizarraga2025.evidence.joint_region import (
     share_of_square,
     vertices,
 )
-from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
@@ -107,7 +107,7 @@ def a_second_sequence() -> Finding:
 @computes("F-10.1")
 def the_regions_are_not_symmetric() -> Finding:
     printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), corrected()))
-    rounding = 2 * np.hypot(0.005, 0.005)
+    rounding = 2 * np.hypot(HALF_DIGIT, HALF_DIGIT)
     return Finding(
         judge(holds=printed > rounding),
         f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
