@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import re
+import sys
 from collections import defaultdict
 from decimal import Decimal
 from itertools import combinations
@@ -14,6 +15,7 @@ from typing import Any
 import jupytext
 import mpmath as mp
 import pytest
+from bs4 import BeautifulSoup
 from pybtex.database import parse_string
 
 from lizarraga2025 import printed as paper
@@ -28,7 +30,7 @@ from qbound.symbols import with_symbols
 
 ROOT = Path(__file__).resolve().parent.parent
 ENTRIES = recorded.results()
-RESULTS: dict[str, dict[str, Any]] = {entry["id"]: entry for entry in ENTRIES}
+RESULTS: dict[str, dict[str, Any]] = {entry["id"]: entry for entry in recorded.distinct(ENTRIES)}
 HEAD = {"chapter", "version", "robots"}
 
 Entry = dict[str, Any]
@@ -100,6 +102,12 @@ def code(file: Path) -> str:
         return file.read_text(encoding="utf-8")
     cells = jupytext.read(file).cells
     return "\n".join(cell.source for cell in cells if cell.cell_type == "code")
+
+
+def test_chapters_stand_in_the_order_of_the_book() -> None:
+    notebooks = sorted((ROOT / "notebooks").glob("*.md"))
+    names = [re.search(r'Results\(\s*"(\w+)"', code(file)) for file in notebooks]
+    assert [name[1] for name in names if name] == list(recorded.CHAPTERS)
 
 
 # --- errors and digits ----------------------------------------------------------------------------
@@ -313,3 +321,40 @@ def test_a_claim_with_greek_is_cited_in_ascii() -> None:
     text = cite.entry(from_content(content))
     assert text.isascii()
     assert r"$\beta$" in text
+
+
+# --- the page -------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def page() -> BeautifulSoup:
+    """Return the tables that the directive writes."""
+    sys.path.insert(0, str(ROOT / "book" / "_ext"))
+    import result_pages
+
+    tables = [result_pages.table(entries) for _, entries in result_pages.chapters()]
+    return BeautifulSoup("".join(tables), "html.parser")
+
+
+def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: BeautifulSoup) -> None:
+    assert len(page.select("tbody tr")) == len(RESULTS)
+    for name, entry in RESULTS.items():
+        (row,) = page.select(f"tr#{cite.anchor(name)}")
+        head, value, unit, error, _ = row.find_all(["th", "td"])
+        assert head.get_text() == name
+        assert value.get_text() == cite.value_text(entry["value"])
+        assert unit.get_text() == ("" if entry["unit"] == "1" else entry["unit"])
+        assert error.get_text() == (f"{entry['error']:g}" if entry["error"] else "exact")
+
+
+def test_every_citation_can_be_read_without_a_script(page: BeautifulSoup) -> None:
+    cited = [block.get_text() for block in page.select("details.citation pre")]
+    assert cited == [cite.result(entry) for entry in RESULTS.values()]
+
+
+def test_an_id_of_a_stranger_stays_text() -> None:
+    import result_pages
+
+    entry = RESULTS["paper.area"] | {"id": "<b>&", "value": "<script>"}
+    row = BeautifulSoup(result_pages.row(entry), "html.parser")
+    assert row.find(["b", "script"]) is None

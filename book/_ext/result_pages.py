@@ -34,10 +34,8 @@ class ResultTables(SphinxDirective):
 
 def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
     """Return the results by chapter; one that two chapters state is listed at the first."""
-    once: dict[str, dict[str, Any]] = {}
-    for entry in recorded.results():
-        once.setdefault(entry["id"], entry)
-    return [(name, list(own)) for name, own in groupby(once.values(), lambda e: e["chapter"])]
+    entries = recorded.distinct(recorded.results())
+    return [(name, list(own)) for name, own in groupby(entries, lambda entry: entry["chapter"])]
 
 
 def section(chapter: str, entries: list[dict[str, Any]]) -> nodes.section:

@@ -39,8 +39,8 @@ def run(options: argparse.Namespace) -> int:
         plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
         print(json.dumps(plain, indent=1, ensure_ascii=False))
     elif options.bibtex:
-        once = {entry["id"]: cite.result(entry) for entry in chosen}
-        print("\n\n".join([cite.PAPER, cite.package(), *once.values()]))
+        cited = [cite.result(entry) for entry in recorded.distinct(chosen)]
+        print("\n\n".join([cite.PAPER, cite.package(), *cited]))
     else:
         for entry in chosen:
             print(_line(entry))

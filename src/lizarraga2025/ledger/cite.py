@@ -64,7 +64,7 @@ def entry(claim: Claim) -> str:
 
 
 def result(recorded: Mapping[str, Any]) -> str:
-    """Return the BibTeX entry of a recorded result: value, error, chapter, robots, version."""
+    """Return the BibTeX entry of a recorded result: value, error, robots, version, place."""
     robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in recorded["robots"].items())
     unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
     error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
@@ -73,7 +73,7 @@ def result(recorded: Mapping[str, Any]) -> str:
     return f"""@misc{{qbound-{anchor(recorded["id"])},
   author       = {{{{qbound maintainers}}}},
   title        = {{{{Result {escaped(recorded["id"])}}}}},
-  howpublished = {{qbound {recorded["version"]}, results/{escaped(recorded["chapter"])}.json}},
+  howpublished = {{qbound {recorded["version"]}, results.html\\#{anchor(recorded["id"])}}},
   year         = {{{YEAR}}},
   note         = {{{escaped(". ".join(words))}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""
