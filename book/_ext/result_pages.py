@@ -51,7 +51,7 @@ def table(entries: list[dict[str, Any]]) -> str:
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     rows = "\n".join(map(row, entries))
     return (
-        '<div class="pst-scrollable-table-container"><table class="results-table">\n'
+        '<div class="pst-scrollable-table-container"><table class="ledger-table results-table">\n'
         f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>"
     )
 
