@@ -1,4 +1,4 @@
-"""The errata: which entries they list, in which parts, and their formulas as the paper prints them."""
+"""The errata: which entries they list, in which parts, formulas as the paper prints them."""
 
 from __future__ import annotations
 

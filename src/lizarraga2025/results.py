@@ -72,8 +72,12 @@ class Results:
 
     def __init__(self, chapter: str, *robots: str | Path) -> None:
         self.chapter = chapter
-        self.robots = {Path(robot).stem: _sha256(robot) for robot in robots}
+        self.robots = {Path(robot).stem: _sha256(robot_text(robot)[0]) for robot in robots}
         self.entries: list[dict[str, Any]] = []
+
+    def about(self, name: str, text: str) -> None:
+        """Name one more robot, one whose file the chapter itself writes, by its text."""
+        self.robots[name] = _sha256(text)
 
     def add(
         self,
@@ -148,9 +152,9 @@ def _folder(folder: str | Path | None) -> Path:
     return next(roots, here) / "results"
 
 
-def _sha256(robot: str | Path) -> str:
+def _sha256(text: str) -> str:
     """Return the hash of a robot's file, as a certificate states it."""
-    return hashlib.sha256(robot_text(robot)[0].encode()).hexdigest()
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 # --- numbers and their digits ---------------------------------------------------------------------

@@ -20,7 +20,7 @@ from lizarraga2025.evidence.joint_region import (
     drawn,
     scaled,
 )
-from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
@@ -183,7 +183,7 @@ def opposite_paths() -> Outcome:
 @computes("F-10.1")
 def the_regions_are_not_symmetric() -> Outcome:
     printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), corrected()))
-    rounding = 2 * np.hypot(0.005, 0.005)
+    rounding = 2 * np.hypot(HALF_DIGIT, HALF_DIGIT)
     return Outcome(
         judge(holds=printed > rounding),
         f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
