@@ -118,6 +118,7 @@ def environment() -> dict[str, str]:
         "MPLCONFIGDIR": str(VENV / "matplotlib"),
         "OMP_NUM_THREADS": "1",  # sums of matrix products in one order, whatever the cores
         "OPENBLAS_NUM_THREADS": "1",
+        "PYTHONHASHSEED": "0",  # tests/test_hash_seeds.py executes the chapters under another
         "PYTHONNOUSERSITE": "1",
     }
 

@@ -46,6 +46,7 @@ extensions = [
     "ledger_links",
     "explorer_pages",
     "recorded_numbers",
+    "result_pages",
 ]
 exclude_patterns = ["_build", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]
@@ -91,7 +92,7 @@ html_theme = "sphinx_book_theme"
 html_title = PYPROJECT["tool"]["qbound"]["title"]
 html_static_path = ["_static", mathjax_file()]
 html_css_files = ["book.css"]
-html_js_files = ["book.js", ("ledger.js", {"defer": "defer"})]
+html_js_files = ["book.js", ("ledger.js", {"defer": "defer"}), ("results.js", {"defer": "defer"})]
 html_favicon = "_static/logo.svg"
 html_context = {"default_mode": "auto"}
 html_domain_indices = False

@@ -196,3 +196,35 @@ def test_printed_intervals_are_longer_than_the_arc() -> None:
     assert 2 * arc.half_width < length_39 < length_31
     opposite = arc.centre - pi  # in both printed intervals
     assert a * cos(opposite) + b * sin(opposite) < c
+
+
+@pytest.fixture(scope="module")
+def solved() -> dict[str, np.ndarray]:
+    """Equations at random with a solution of each, and other angles."""
+    a, b, q, other = np.random.default_rng(31).normal(size=(4, 200_000))
+    c = a * np.cos(q) + b * np.sin(q)
+    return {"a": a, "b": b, "c": c, "q": q, "other": other, "alpha": np.arccos(c / np.hypot(a, b))}
+
+
+@pytest.mark.parametrize("reading", [np.arctan2, lambda b, a: np.arctan(b / a)])
+@pytest.mark.parametrize("angle", ["q", "other"])
+@pytest.mark.parametrize("first", [-1, 1], ids=["eq. 31", "eq. 39"])
+def test_a_solution_has_a_copy_in_the_printed_interval_and_so_has_any_angle(
+    solved, reading, angle, first
+) -> None:
+    theta = reading(solved["b"], solved["a"])
+    low, high = theta + first * solved["alpha"] - 2 * pi, theta + solved["alpha"]
+    copy = low + (solved[angle] - low) % (2 * pi)
+    assert (copy <= high + 1e-12).all()
+
+
+def test_without_the_turn_the_interval_is_the_arc_with_atan2_alone(solved) -> None:
+    a, b, other = solved["a"], solved["b"], solved["other"]
+    reaches = a * np.cos(other) + b * np.sin(other) >= solved["c"]
+
+    def inside(theta: np.ndarray) -> np.ndarray:
+        return np.abs((other - theta + pi) % (2 * pi) - pi) <= solved["alpha"]
+
+    assert_array_equal(inside(np.arctan2(b, a)), reaches)
+    assert_array_equal(inside(np.arctan(b / a))[a > 0], reaches[a > 0])
+    assert (inside(np.arctan(b / a)) != reaches)[a < 0].mean() > 0.1

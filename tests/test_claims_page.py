@@ -12,8 +12,9 @@ from bs4 import BeautifulSoup
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import from_content
+from lizarraga2025.ledger.claims import counts, from_content
 from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
 from support.browser import HTML, open_page, refuse_remote
 
@@ -52,7 +53,8 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     assert not row.has_attr("hidden")
     text = row.get_text()
     assert all(
-        flat(part) in text for part in (one.id, one.where, one.says, one.found, one.corrected)
+        flat(part) in text
+        for part in (one.id, one.where, one.says, one.reading, one.found, one.corrected)
     )
     assert row.select_one(".verdict").get_text() == one.verdict
     assert row.select_one("details pre").get_text() == cite.entry(one)
@@ -99,15 +101,36 @@ def test_every_control_has_a_label_and_waits_for_the_script() -> None:
         assert [option["value"] for option in options] == ["", *values]
 
 
-def test_the_errata_are_what_the_ledger_finds_wrong() -> None:
-    wrong = {one.id: one for one in LEDGER if one.verdict in ("misprint", "refuted")}
-    rows = read(ERRATA).select("table.errata-table tbody tr")
-    assert sorted(row.a.get_text() for row in rows) == sorted(wrong)
-    for row in rows:
-        one = wrong[row.a.get_text()]
-        assert row.a["href"] == f"15_what_holds.html#{one.anchor}"
-        assert all(flat(part) in row.get_text() for part in (one.says, one.corrected, one.found))
-        assert f"qbound claims {one.id} --recompute" in row.get_text()
+@every_entry
+def test_entries_that_rest_on_one_finding_link_each_other(one) -> None:
+    links = by_id(PAGE)[one.anchor].select(".ledger-finding a")
+    others = {other.anchor for other in LEDGER if other.finding == one.finding} - {one.anchor}
+    assert {link["href"] for link in links} == {f"#{anchor}" for anchor in others}
+    assert not others or one.id == one.finding or links[0].get_text() == one.finding
+
+
+def test_the_errata_are_what_the_ledger_would_change() -> None:
+    parts = errata(LEDGER)
+    shown = read(ERRATA).select("dl.erratum")
+    found = {part.code.get_text().split()[2]: part for part in shown}
+    assert sorted(found) == sorted(parts)
+    for leader, part in found.items():
+        links = [link for link in part.select("a") if "15_what_holds.html#" in link["href"]]
+        assert [link.get_text() for link in links] == [one.id for one in parts[leader]]
+        (one,) = (one for one in parts[leader] if one.id == leader)
+        text = part.get_text()
+        assert flat(one.where) in text
+        assert flat(one.found) in text
+        if change(leader) is None:
+            assert flat(one.says) in text
+            assert flat(one.corrected) in text
+
+
+def test_the_table_of_verdicts_counts_entries_and_findings() -> None:
+    table = read(PAGE).select_one("#tab-verdicts table")
+    rows = [[cell.get_text(strip=True) for cell in row.select("td")] for row in table.select("tr")]
+    numbers = {row[0]: tuple(map(int, row[-2:])) for row in rows if row}
+    assert numbers == {v: (c.entries, c.findings) for v, c in counts(LEDGER).items()}
 
 
 # --- in a browser ---------------------------------------------------------------------------------

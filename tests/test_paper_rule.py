@@ -138,6 +138,21 @@ def test_rows_5_and_6_of_table_6_lack_a_root() -> None:
         assert one - two == pytest.approx(2 * pi)
 
 
+def test_ten_rows_of_table_6_are_one_root_a_turn_apart_and_one_row_has_both_roots() -> None:
+    q1 = np.linspace(-pi, pi, 721)
+    bounds = table_6(np.arctan2, q1)
+    apart = {}
+    for label in list(bounds)[::2]:
+        upper, lower = (bounds[label[:-2] + f"{k}}}"] for k in (1, 2))
+        length = np.atleast_1d(upper - lower)
+        apart[label[6:9]] = length[np.isfinite(length)]
+    assert len(apart) == 11
+    assert all((length > 0).all() for length in apart.values()), "k = 1 is the upper bound"
+    turns = [row for row, length in apart.items() if np.allclose(length, 2 * pi)]
+    assert set(apart) - set(turns) == {"7,3"}
+    assert apart["7,3"].max() < 2 * pi
+
+
 def test_all_22_bounds_are_computed() -> None:
     assert len(BOUNDS) == 22 == len(paper.TABLE_6)
     named = {bound.label for bound, _ in bound_curves(MINERVA, [[-2 * pi, 2 * pi]] * 2)}

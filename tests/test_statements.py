@@ -22,6 +22,7 @@ from qbound.geometry import polygon
 from qbound.measures import bodies
 from qbound.region import paper_rule
 from support.oracles import OFFSETS, equation_29
+from support.worlds import with_joints
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")
@@ -73,6 +74,19 @@ def test_a_scale_of_nine_thousandths_leaves_them_out() -> None:
     assert det.min() > 0 or det.max() < 0
 
 
+def test_scaling_makes_the_pass_through_the_stretched_pose_safe() -> None:
+    """The outline of the six points crosses the singular line below the floor, the scaled not."""
+    lowest = {}
+    for scale in (1.0, 0.95):
+        q = legs((0, 1, 2, 3, 4, 5, 0), scale)
+        sides = np.sign(determinant(q))
+        at = np.flatnonzero(np.diff(sides))
+        assert len(at) == 2
+        lowest[scale] = equation_29(*q[at].T)["beta_{7,3}"]
+    assert lowest[1.0].max() < 0
+    assert lowest[0.95].min() > 4
+
+
 def test_every_walk_of_five_points_is_stretched_on_the_way() -> None:
     sides = np.sign(determinant(CORNERS))
     assert sorted(sides) == [-1, -1, -1, 1, 1, 1]
@@ -92,7 +106,36 @@ def test_the_mirrored_pose_is_reached_through_the_stretched_one() -> None:
     assert straight[0, 1] < np.radians(-60) < straight[-1, 1]
 
 
+def test_the_flipped_elbow_is_infeasible_at_both_ends() -> None:
+    """The second posture of the tool's place, by the cosine rule: bodies overlap in it."""
+    for scale in (1.0, 0.96, 0.95, 0.9, 0.8):
+        for start, end in ((5, 3), (2, 0)):
+            q = legs((start, end), scale)[-1]
+            other = [p for p in postures(tool(q)) if np.abs(p - q).max() > 1e-6]
+            assert len(other) == 1
+            a, b, c = (shapely.Polygon(bodies.outline(ROBOT, o, other[0])) for o in ROBOT.bodies)
+            assert (a & b).area + (b & c).area + (a & c).area > 1
+
+
 # --- traversals -----------------------------------------------------------------------------------
+
+
+def test_neighbour_sequences_become_feasible_by_scaling() -> None:
+    """The floor decides, looked at in 400 poses a leg."""
+    orders = [[(s + d * i) % 6 for i in range(5)] for s in range(6) for d in (1, -1)]
+    free = {
+        scale: sum(
+            equation_29(*legs(order, scale).T)["beta_{7,3}"].min() > -1e-9 for order in orders
+        )
+        for scale in (1.0, 0.97, 0.964, 0.95)
+    }
+    assert free == {1.0: 0, 0.97: 0, 0.964: 12, 0.95: 12}
+
+
+def test_a_straight_joint_path_bends_in_the_plane() -> None:
+    places = tool(legs((0, 1), 0.95))
+    chord = shapely.LineString(places[[0, -1]])
+    assert max(chord.distance(shapely.Point(place)) for place in places) > 20
 
 
 def test_the_final_place_depends_on_the_order_under_a_linear_map_too() -> None:
@@ -189,9 +232,34 @@ def test_walls_5_and_6_are_nested() -> None:
 
 
 def test_the_figure_meant_is_the_one_whose_caption_says_so() -> None:
-    cited, subject = paper.NAMED_FIGURE
-    assert paper.CAPTIONS[cited] != subject
-    assert [number for number, shows in paper.CAPTIONS.items() if shows == subject] == [11]
+    cited, words = paper.ON_NUMERICAL_METHODS
+    assert cited == 10
+    assert not any(word in paper.CAPTIONS_AS_PRINTED[10].lower() for word in words)
+    assert all(word in paper.CAPTIONS_AS_PRINTED[11].lower() for word in words)
+
+
+def test_limits_pairs_and_half_spaces_bound_one_region() -> None:
+    limited = with_joints(ROBOT, q1={"limits": tuple(np.radians([-60, 60]))})
+    names = {arc.boundary for loop in find_region(limited).home.loops for arc in loop}
+    assert {"q1.lower", "q1.upper", "B7"} < names
+    assert names & {"B3", "B4"}
+
+
+def test_the_right_column_of_table_6_is_never_below_the_left() -> None:
+    """Rows of one joint by a turn, the walls by the arccosine's range, all by hand."""
+    first = [label for label in paper.TABLE_6 if label.endswith(",1}")]
+    assert len(first) == 11
+    rng = np.random.default_rng(3)
+    for label in first:
+        right, left = (
+            paper.expression(paper.TABLE_6[label.replace(",1}", f",{k}}}")]) for k in (1, 2)
+        )
+        symbols = sorted(right.free_symbols, key=str)
+        for _ in range(20):
+            values = dict(zip(symbols, rng.uniform(0.5, 1.5, len(symbols)), strict=True))
+            difference = complex((right - left).subs(values))
+            if abs(difference.imag) < 1e-12:
+                assert difference.real > -1e-12
 
 
 # --- effort ---------------------------------------------------------------------------------------

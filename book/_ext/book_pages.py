@@ -24,9 +24,10 @@ from qbound.cli import command_parsers
 VERDICTS = (
     "confirmed",
     "confirmed with a condition",
+    "true but says nothing",
     "misprint",
     "refuted",
-    "not determined by the paper",
+    "not determined by the text",
 )
 
 # As long as a number or a name; a table is read in the chapters.

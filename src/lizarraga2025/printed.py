@@ -9,6 +9,7 @@ arctan and atan2, can be computed.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     import sympy
 
 
-Reading = Literal["arctan", "atan2", "printed"]
+Reading = Literal["arctan", "atan2"]
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,56 @@ TABLE_2: Final = (
     ("0", "3", r"\mathbf{r}_{0,2} + R_{0,2}\mathbf{r}_{2,3}", "R_{0,2}R_{2,3}"),
 )
 """Rows of Table 2 as printed; frames a and b, position and orientation of b seen from a (LaTeX)."""
+
+SELECTION: Final = {
+    "S_x": ((1, 0, 0), (0, 0, 0), (0, 0, 0)),
+    "S_z": ((0, 0, 0), (0, 0, 0), (0, 0, 1)),
+}
+"""The matrices of Table 5."""
+
+TABLE_5: Final = {5: ("S_x", "x_{min,1}"), 6: ("S_x", "x_{min,2}"), 7: ("S_z", "z_{min,1}")}
+"""B_i = S r_{0,3} less a vector with one limit, in the place that S selects: S and limit by i."""
+
+THEOREM_1: Final = {
+    14: "x**2 + y**2 + z**2",
+    15: "r_ab + R_ab @ r_bm - r_an",
+    16: "r_ab + R_ab @ r_bm - r_an",
+    18: "r_1 + R_1 @ r_2",
+    19: "r_0bm - r_0an",
+    20: "r_0a + R_0a @ r_an",
+    21: "r_0b + R_0b @ r_bm",
+    22: "(r_0b + R_0b @ r_bm) - (r_0a + R_0a @ r_an)",
+    23: "(r_0b - r_0a) + R_0b @ r_bm - R_0a @ r_an",
+    24: "R_0a @ r_ab + R_0a @ R_ab @ r_bm - R_0a @ r_an",
+    25: "R_0a @ (r_ab + R_ab @ r_bm - r_an)",
+    26: "r_ab + R_ab @ r_bm - r_an",
+    27: "r_ab + R_ab @ r_bm - r_an",
+}
+"""Right sides of eqs. (15) to (27), and the square of the norm in eq. (14).
+
+The points a+n and b+m are written by their last letter (``r_an``, ``r_0an``). Eq. (18) adds a step:
+its vector and matrix up to b-1 are ``r_1`` and ``R_1``, the step from there is ``r_2``.
+"""
+
+UNIT_VECTOR: Final = "r/sqrt(x**2 + y**2 + z**2)"
+"""Right side of eq. (8)."""
+
+THEOREM_2: Final = {
+    "30": "a*cos(q) + b*sin(q)",
+    "31 upper": "arctan(b, a) + acos(c/sqrt(a**2 + b**2)) + 2*pi*k",
+    "31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k - 2*pi",
+    "33": "d*cos(q - theta)",
+    "34 d": "sqrt(a**2 + b**2)",
+    "34 theta": "arctan(b, a)",
+    "35": "c/d",
+    "36 lower": "-1",
+    "36 upper": "1",
+    "37": "+acos(c/d) + 2*pi*k",
+    "38": "arctan(b, a) + acos(c/d) + 2*pi*k",
+    "39 lower": "arctan(b, a) + acos(c/d) + 2*pi*k - 2*pi",
+    "39 upper": "arctan(b, a) + acos(c/d) + 2*pi*k",
+}
+"""Sides of the equations of Theorem 2 and its proof; a sign of both values is ``pm``."""
 
 EQUATION_29: Final = {
     "beta_{1,1}": "x_1_7*cos(q1) - x_0_6 + z_1_7*sin(q1)",
@@ -138,6 +189,29 @@ TABLE_6: Final = {
 }
 """Bounds of Table 6; k = 1 is the right (upper) bound, k = 2 the left (lower) one."""
 
+CAPTIONS_AS_PRINTED: Final = {
+    7: "Trajectory of the six intersection points in the geometric space, including the simplified"
+    " diagram of the planar robot in its final pose.",
+    8: "Nonclosed trajectory consisting of five points. The first plot represents the joint space"
+    " sequence, while the second illustrates the planar robot in its final pose after completing"
+    " the trajectory. Despite following an ordered sequence, the trajectory remains open.",
+    9: "Alternative feasible trajectory. The first plot depicts a five-point joint space path,"
+    " while the second shows its corresponding geometric trajectory.",
+    10: "Overlay of the feasible geometric regions from Figures 8 and 9, highlighting their"
+    " asymmetry due to centroid-based scaling and trajectory nonlinearities.",
+    11: "Numerical collision detection results. The first plot shows joint space sampling with red"
+    " points for collisions and blue points for noncollisions. The second plot illustrates the"
+    " corresponding geometric space, highlighting overlapping regions and the lateral shapes of the"
+    " feasible workspace.",
+}
+"""Captions of Section 4's last figures, quoted."""
+
+ON_NUMERICAL_METHODS: Final = (
+    10,
+    ("numerical", "collision", "red point", "blue point"),
+)
+"""The figure named where the text turns to numerical methods, and words that say what it shows."""
+
 FIGURE_4_BOUNDS: Final = (
     "beta_{1,3,1}",
     "beta_{2,1,2}",
@@ -150,16 +224,32 @@ FIGURE_4_BOUNDS: Final = (
 
 
 CAPTIONS: Final = {
+    2: "a kinematic chain, a simplified example of a planar robot",
+    3: "the kinematic chain of MinervaBotV2",
     7: "the path of six points",
     8: "a path of five points",
     9: "a path of five points",
     10: "an overlay of two paths",
     11: "random configurations",
 }
-"""What the captions of Section 4's last figures announce."""
+"""What captions announce."""
+
+NAMED_VIEW: Final = (2, "isometric")
+"""The figure that the case study's first paragraph names, and the view that it announces."""
+
 
 NAMED_FIGURE: Final = (10, "random configurations")
 """The figure that the text on numerical methods names, and what it says is seen there."""
+
+
+ORDERS: Final[Mapping[int, tuple[int, ...] | None]] = {6: None, 7: None, 8: None, 9: None}
+"""In which order a figure visits the points, from 1: what the text says of it, nothing."""
+
+SCALING: Final[Mapping[str, float | str | None]] = {"factor": None, "centroid": None}
+"""By what, and about which centroid, Figure 6 is scaled: what the text says of it, nothing."""
+
+SAMPLES: Final[Mapping[str, int | str | None]] = {"number": None, "range": None, "test": None}
+"""How the configurations of Figure 11 are drawn and judged: what the text says of it, nothing."""
 
 
 def offsets_in_cm(*, mm_means: Literal["cm", "mm"] = "cm") -> dict[str, float]:
@@ -180,23 +270,28 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     Parameters
     ----------
     text : str
-        An entry of `EQUATION_29` or `TABLE_6`.
-    arctan : {"arctan", "atan2", "printed"}
-        How to read the printed :math:`\tan^{-1}` of a quotient; "printed" leaves the sign, to be
-        shown.
+        An entry of `THEOREM_2`, `EQUATION_29` or `TABLE_6`.
+    arctan : {"arctan", "atan2"}
+        How to read the printed :math:`\tan^{-1}` of a quotient.
     """
     import sympy
 
     readings = {
         "arctan": lambda n, d: sympy.atan(n / d),
         "atan2": sympy.atan2,
-        "printed": lambda n, d: sympy.Function(r"\tan^{-1}")(n / d),
     }
     names: dict[str, Any] = {
         name: sympy.Symbol(label(name), real=True)
-        for name in re.findall(r"\b[xz]_\w+|\bq\d\b", text)
+        for name in re.findall(r"\b(?:[xz]_\w+|q\d?|[abcdk]|theta|pm)\b", text)
     }
     return sympy.parse_expr(text, local_dict=names | {"arctan": readings[arctan]})
+
+
+def work_out(text: str, values: Mapping[str, Any]) -> Any:
+    """Work out an entry of `THEOREM_1` with numbers, symbols or arrays of them for its names."""
+    import sympy
+
+    return sympy.parse_expr(text, local_dict=dict(values))
 
 
 def indices(label: str) -> tuple[int, ...]:
@@ -206,7 +301,9 @@ def indices(label: str) -> tuple[int, ...]:
 
 def label(name: str) -> str:
     """Return the paper's label of a name in a formula, such as ``x_{1,10}`` of ``x_1_10``."""
-    if name.startswith("q"):
+    if re.fullmatch(r"q\d", name):
         return f"q_{name[1:]}"
+    if "_" not in name:
+        return name
     letter, a, b = name.split("_")
     return f"{letter}_{{{a},{b}}}"

@@ -7,12 +7,38 @@ is read.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 LEDGER = "claims.json"
+
+CHAPTERS = (
+    "introduction",
+    "vector_labelling",
+    "theorem_1",
+    "planar_robot",
+    "boundary_functions",
+    "theorem_2",
+    "region",
+    "workspace",
+    "sampling",
+    "every_region",
+    "exact_workspace",
+    "proof",
+    "certainty",
+    "your_own_robot",
+    "what_holds",
+    "errata",
+    "bodies",
+    "prismatic_joints",
+)
+"""In the order of the book."""
+
+HEAD = ("chapter", "version", "robots")
+"""What an entry takes over from its file."""
 
 
 def folder() -> Traversable:
@@ -32,10 +58,21 @@ def folder() -> Traversable:
 
 
 def results() -> list[dict[str, Any]]:
-    """Return every recorded number: the entries of all chapters, each with its ``chapter``."""
-    files = sorted((file for file in folder().iterdir() if _holds_results(file)), key=_name)
+    """Return every recorded number: all chapters' entries, each with its chapter's head.
+
+    That is ``chapter``, ``version`` and ``robots``, a hash each.
+    """
+    files = sorted((file for file in folder().iterdir() if _holds_results(file)), key=_place)
     content = [json.loads(file.read_text(encoding="utf-8")) for file in files]
-    return [{"chapter": c["chapter"], **entry} for c in content for entry in c["results"]]
+    return [{**{key: c[key] for key in HEAD}, **entry} for c in content for entry in c["results"]]
+
+
+def distinct(entries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return each result once, as the first of the chapters that state it records it."""
+    once: dict[str, dict[str, Any]] = {}
+    for entry in entries:
+        once.setdefault(entry["id"], entry)
+    return list(once.values())
 
 
 def claims() -> list[dict[str, Any]]:
@@ -57,5 +94,5 @@ def _holds_results(file: Traversable) -> bool:
     return file.name.endswith(".json") and file.name != LEDGER
 
 
-def _name(file: Traversable) -> str:
-    return file.name
+def _place(file: Traversable) -> int:
+    return CHAPTERS.index(file.name.removesuffix(".json"))

@@ -1,17 +1,62 @@
-"""Results that can be cited: one JSON file a chapter, written by the chapter's own run."""
+"""Results that can be cited: one JSON file a chapter, written by the chapter's own run.
+
+Each number states its error, and is written with the digits that this error allows.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-DIGITS = 15
-"""Digits that are written, as many as a double holds without its last, noisy one."""
+from qbound import __version__
+from qbound.model.robotfile import robot_text
+
+SCHEMA: Final = "qbound/results/2"
+
+EXACT: Final = 0.0
+"""Error of a count, a name, or a decimal that is meant as it is written."""
+
+EXACT_DIGITS: Final = 12
+"""A decimal of more digits than these was computed: it has an error, and has to state it."""
+
+
+def rounding(size: float) -> float:
+    """Bound what doubles leave in a formula of this size: a hundred of its half units.
+
+    The formulas of the book take some tens of operations on offsets and angles; each is right to
+    half a unit in the last place of its largest term.
+    """
+    return 100 * 2.0**-53 * abs(size)
+
+
+ANGLE: Final = rounding(360)
+"""Error of an angle in degrees that a closed form gives, at simple roots."""
+
+LENGTH: Final = rounding(100)
+"""Error of a length in cm that a closed form gives."""
+
+RATIO: Final = rounding(1)
+"""Error of a pure number near one."""
+
+
+def area_error(*areas: float) -> float:
+    """Bound the error of the engine's areas: 1e-12 of their sum.
+
+    Chapter 13 proves the areas of both rules; the engine is within this bound of them.
+    """
+    return 1e-12 * float(np.sum(np.abs(areas)))
+
+
+def last_place(*numbers: str) -> float:
+    """Return a unit of the last decimal place of numbers that are written out."""
+    return float(max(10.0 ** -len(number.partition(".")[2]) for number in numbers))
 
 
 class Results:
@@ -21,24 +66,41 @@ class Results:
     ----------
     chapter : str
         Name of the file, without ``.json``.
+    *robots : str or Path
+        The robots that the numbers are about: packaged ones by name, others by file.
     """
 
-    def __init__(self, chapter: str) -> None:
+    def __init__(self, chapter: str, *robots: str | Path) -> None:
         self.chapter = chapter
+        self.robots = {Path(robot).stem: _sha256(robot_text(robot)[0]) for robot in robots}
         self.entries: list[dict[str, Any]] = []
 
+    def about(self, name: str, text: str) -> None:
+        """Name one more robot, one whose file the chapter itself writes, by its text."""
+        self.robots[name] = _sha256(text)
+
     def add(
-        self, name: str, value: Any, unit: str, *, reference: str = "", rule: str = "none"
+        self,
+        name: str,
+        value: Any,
+        unit: str,
+        *,
+        error: float,
+        reference: str = "",
+        rule: str = "none",
     ) -> Any:
         """Note a number, a vector or a text, and return it.
 
         Parameters
         ----------
         name : str
-            The result's id: stable, unique within the chapter.
+            The result's id: stable, and of one meaning in the whole project.
         value : float, int, str, or array_like
         unit : str
             ``deg``, ``cm``, ``cm^2``, ``deg^2``, ``rad^2``; ``1`` for a pure number or a name.
+        error : float
+            Bound of the error of each number, in `unit`; `EXACT` for a count, a name or an exact
+            decimal. It decides the digits that are written, and their rounding is added to it.
         reference : str
             What it belongs to in the paper, such as "Figure 5" or "eq. 31".
         rule : {"paper", "clearance", "none"}
@@ -47,13 +109,17 @@ class Results:
         Raises
         ------
         ValueError
-            If the id is taken or a number is not finite.
+            If the id is taken, a number is not finite, or the error is none or cannot be.
         """
         if any(entry["id"] == name for entry in self.entries):
             raise ValueError(f"the result {name!r} is there already")
+        if not (math.isfinite(error) and error >= 0):
+            raise ValueError(f"{name}: {error} is no bound of an error")
         plain = _plain(value)
-        entry = {"id": name, "value": plain, "unit": unit, "reference": reference, "rule": rule}
-        self.entries.append(entry)
+        error = max(error, _resolution(plain)) if error else EXACT
+        written, bound = _rounded(plain, error), _with_rounding(plain, error)
+        entry = {"id": name, "value": written, "unit": unit, "reference": reference, "rule": rule}
+        self.entries.append(entry | {"error": bound})
         return value
 
     def save(self, folder: str | Path | None = None) -> Path:
@@ -62,7 +128,8 @@ class Results:
         The folder is `folder`, else the environment's QBOUND_RESULTS, else ``results`` beside the
         nearest pyproject.toml at or above the working directory, else ``results`` in it.
         """
-        content = {"schema": "qbound/results/1", "chapter": self.chapter, "results": self.entries}
+        head = {"schema": SCHEMA, "version": __version__, "robots": self.robots}
+        content = head | {"chapter": self.chapter, "results": self.entries}
         return write_json(self.chapter, content, folder)
 
 
@@ -85,17 +152,67 @@ def _folder(folder: str | Path | None) -> Path:
     return next(roots, here) / "results"
 
 
+def _sha256(text: str) -> str:
+    """Return the hash of a robot's file, as a certificate states it."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+# --- numbers and their digits ---------------------------------------------------------------------
+
+
 def _plain(value: Any) -> Any:
     """Turn arrays and NumPy scalars into lists and numbers that JSON knows."""
     if isinstance(value, np.ndarray):
         return _plain(value.tolist())
     if isinstance(value, np.generic):
         return _plain(value.item())
-    if isinstance(value, str | bool | int) or value is None:
+    if isinstance(value, str | bool | int):
         return value
     if isinstance(value, Sequence):
         return [_plain(item) for item in value]
     number = float(value)
-    if not np.isfinite(number):
+    if not math.isfinite(number):
         raise ValueError(f"{number} is no result")
-    return float(f"{number:.{DIGITS}g}")
+    return number
+
+
+def places(error: float) -> int:
+    """Return the decimal places that an error allows: the last one is at most twice the error."""
+    return -math.floor(math.log10(2 * error))
+
+
+def _rounded(value: Any, error: float) -> Any:
+    """Round every float to the places that the error allows; an exact one stays as it is."""
+    if isinstance(value, list):
+        return [_rounded(item, error) for item in value]
+    if not isinstance(value, float):
+        return value
+    if error:
+        return round(value, places(error)) + 0.0  # no -0.0
+    if float(f"{value:.{EXACT_DIGITS}g}") != value:
+        raise ValueError(f"{value!r} is no exact decimal: state its error")
+    return value
+
+
+def _with_rounding(value: Any, error: float) -> float:
+    """Add half of the last place that is written, and round up to two digits."""
+    if not error or not _floats(value):
+        return error
+    return _rounded_up(error + 10.0 ** -places(error) / 2)
+
+
+def _rounded_up(error: float) -> float:
+    """Return the next number of two digits."""
+    place = math.floor(math.log10(error)) - 1
+    return float(f"{math.ceil(error * 10.0**-place - 1e-9)}e{place}")
+
+
+def _resolution(value: Any) -> float:
+    """Return the distance of doubles at the largest number: no digit below it means anything."""
+    return max((float(np.spacing(abs(number))) for number in _floats(value)), default=0.0)
+
+
+def _floats(value: Any) -> list[float]:
+    if isinstance(value, list):
+        return [number for item in value for number in _floats(item)]
+    return [value] if isinstance(value, float) else []

@@ -9,61 +9,82 @@ from typing import Final, Literal, get_args
 Verdict = Literal[
     "confirmed",
     "confirmed with a condition",
+    "true but says nothing",
     "misprint",
     "refuted",
-    "not determined by the paper",
+    "not determined by the text",
 ]
 
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
 
+FAVOUR: Final[tuple[Verdict, ...]] = (
+    "confirmed",
+    "confirmed with a condition",
+    "true but says nothing",
+    "not determined by the text",
+    "misprint",
+    "refuted",
+)
+"""The verdicts, the most favourable to the statement first."""
+
 
 @dataclass(frozen=True)
-class Finding:
+class Outcome:
     """What a computation gives: the verdict that follows, and a sentence with its numbers."""
 
     verdict: Verdict
     found: str
 
 
-def judge(*, holds: bool, under: bool = False, corrected: bool = False) -> Verdict:
+def judge(
+    *, holds: bool, constrains: bool = True, under: bool = False, corrected: bool = False
+) -> Verdict:
     """Turn the outcome of a computation into a verdict.
 
     Parameters
     ----------
     holds : bool
         Whether the statement held, as printed, wherever it claims to.
+    constrains : bool
+        Whether anything that it speaks of could violate it (asked where `holds` is true).
     under : bool
         Whether it held everywhere under a condition that was computed (asked where `holds` is
         false: a counterexample lies outside the condition).
     corrected : bool
-        Whether a corrected statement held where the printed one did not: a slip of the pen.
+        Whether it held with one slip of the pen corrected, where the printed one did not.
     """
     if holds:
-        return "confirmed"
+        return "confirmed" if constrains else "true but says nothing"
     if under:
         return "confirmed with a condition"
     return "misprint" if corrected else "refuted"
 
 
 def undetermined(readings: Mapping[str, bool]) -> Verdict:
-    """Turn the readings that the print allows, and whether each fits all of it, into a verdict.
+    """Turn the readings that the text allows, and whether each fits all of it, into a verdict.
 
-    One reading alone fits: confirmed under that reading. Several fit: the print does not decide.
+    One reading alone fits: confirmed under that reading. Several fit: the text does not decide.
     None fits: refuted.
     """
     fitting = sum(readings.values())
     if fitting > 1:
-        return "not determined by the paper"
+        return "not determined by the text"
     return judge(holds=False, under=fitting == 1)
 
 
-def require(outcome: bool, statement: str) -> None:
-    """Stop where a corrected statement is not proved: it may not stand in the ledger.
+def strongest(readings: Mapping[str, Verdict], found: str) -> Outcome:
+    """Judge a statement that can fairly be read in several ways: the best reading decides.
 
-    Raises
-    ------
-    ArithmeticError
-        If the outcome is false.
+    Parameters
+    ----------
+    readings : mapping
+        The verdict of each fair reading, by a name that completes "read as ...".
+    found : str
+        What was computed; where the readings differ, a sentence with each of their verdicts
+        follows it.
     """
-    if not outcome:
-        raise ArithmeticError(f"not proved: {statement}")
+    verdict = min(readings.values(), key=FAVOUR.index)
+    if len(set(readings.values())) > 1:
+        each = "; ".join(f"{name}: {its}" for name, its in readings.items())
+        found = f"{found} Read as {each}."
+    return Outcome(verdict, found)

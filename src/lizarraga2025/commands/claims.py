@@ -8,7 +8,7 @@ from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, from_content
+from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, counts, from_content
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.verdicts import VERDICTS
 
@@ -78,10 +78,24 @@ def _say(chosen: list[Claim], whole: bool) -> None:
         if not whole:
             print(f"{one.id:<10}{one.verdict:<29}{one.where}: {one.says}")
             continue
-        print(f"{one.id}  {one.where}\n  says      {one.says}\n  verdict   {one.verdict}")
-        print(f"  found     {one.found}")
+        print(f"{one.id}  {one.where}\n  says      {one.says}\n  reading   {one.reading}")
+        print(f"  verdict   {one.verdict}\n  found     {one.found}")
+        if one.finding != one.id:
+            print(f"  finding   of {one.finding}")
         if one.corrected:
             print(f"  corrected {one.corrected}")
         print(f"  evidence  {one.evidence.chapter}, {one.evidence.test}")
     if not whole:
-        print(f"{len(chosen)} entries")
+        _count(chosen)
+
+
+def _count(chosen: list[Claim]) -> None:
+    for verdict, count in counts(chosen).items():
+        if count.entries:
+            print(f"{verdict}: {_numbers(count.entries, count.findings)}")
+    print(f"all: {_numbers(len(chosen), len({one.finding for one in chosen}))}")
+
+
+def _numbers(entries: int, findings: int) -> str:
+    words = ("entry" if entries == 1 else "entries", "finding" if findings == 1 else "findings")
+    return f"{entries} {words[0]}, {findings} {words[1]}"

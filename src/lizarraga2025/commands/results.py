@@ -7,6 +7,9 @@ import json
 from typing import Any
 
 from lizarraga2025 import recorded
+from lizarraga2025.ledger import cite
+
+ABOUT_THE_FILE = ("version", "robots")
 
 
 def add_to(commands: Any) -> None:
@@ -18,7 +21,9 @@ def add_to(commands: Any) -> None:
         epilog="example: qbound results region/vertex.1",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="vertex.1, region/vertex.1, region/")
-    parser.add_argument("--json", action="store_true", help="as in results/, with the chapter")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="as in results/, with the chapter")
+    form.add_argument("--bibtex", action="store_true", help="how to cite paper, package, results")
     parser.set_defaults(run=run)
 
 
@@ -31,12 +36,23 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"no result {lost[0]!r}; `qbound results` lists all")
     chosen = [entry for entry in entries if any(_is_named(entry, name) for name in names)]
     if options.json:
-        print(json.dumps(chosen, indent=1, ensure_ascii=False))
-        return 0
-    for entry in chosen:
-        unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
-        print(f"{entry['chapter']}/{entry['id']} = {entry['value']}{unit}{_about(entry)}")
+        plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
+        print(json.dumps(plain, indent=1, ensure_ascii=False))
+    elif options.bibtex:
+        cited = [cite.result(entry) for entry in recorded.distinct(chosen)]
+        print("\n\n".join([cite.PAPER, cite.package(), *cited]))
+    else:
+        for entry in chosen:
+            print(_line(entry))
     return 0
+
+
+def _line(entry: dict[str, Any]) -> str:
+    """Return id, value, unit, error, and what the number is about."""
+    unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
+    error = f" ± {entry['error']:g}" if entry["error"] else ""
+    value = f"{cite.value_text(entry['value'])}{error}{unit}"
+    return f"{entry['chapter']}/{entry['id']} = {value}{_about(entry)}"
 
 
 def _is_named(entry: dict[str, Any], name: str) -> bool:

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations.registry import computes_each
+from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge
 from qbound import HarmonicForm, circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
-from qbound.forms.angles import nearest_turn
+from qbound.forms.angles import TURN, nearest_turn
 from qbound.model.robot import Pair, Robot
 from qbound.symbols import joint_symbols, with_symbols
 
@@ -123,29 +123,51 @@ def _value(text: str, reading: paper.Reading, of: Robot) -> float:
 
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})
-def bound_of_a_pair(label: str) -> Finding:
+def bound_of_a_pair(label: str) -> Outcome:
+    """Judge a bound as a root of its component that keeps its side of home, and as a limit."""
     found, right = pair_bound(label), pair_bound(label, corrected_digit=True)
     placed = found.value > 0 if _side(label) == "upper" else found.value < 0
-    is_root = found.residual < RESIDUAL
-    as_printed = is_root and found.plain_residual < RESIDUAL
-    text = f"{degrees(found.value)} with atan2"
-    if not as_printed:
-        text += f"; {degrees(found.plain)} with arctan, where the component is"
-        text += f" {found.plain_residual:.2f} cm"
-    text += f". The component vanishes there and the points are {found.distance:.4f} cm apart"
-    text += f"; rounding allows {found.allowed:.4f} cm."
-    if right.meets and not found.meets:
-        text += f" With x_{{2,13}} = 9.09 they are {right.distance:.4f} cm apart."
-    if not found.at_contact:
-        require(_meets_at_the_other_root(label), f"with the other sign the points of {label} meet")
-        text += f" They meet at the root left out, {degrees(found.other)},"
-        text += f" {found.other_distance:.4f} cm apart."
-    return Finding(
+    is_root = placed and found.residual < RESIDUAL
+    with_arctan = is_root and found.plain_residual < RESIDUAL
+    met = found.meets or not found.at_contact
+    return Outcome(
         judge(
-            holds=placed and as_printed and found.meets, under=placed and is_root and right.meets
+            holds=with_arctan and met,
+            constrains=found.at_contact,
+            under=is_root and (met or right.meets),
         ),
-        text,
+        f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
+
+
+def _with_arctan(found: PairBound) -> str:
+    if found.plain_residual < RESIDUAL:
+        return ""
+    return (
+        f" with atan2; {degrees(found.plain)} with arctan, where the component is"
+        f" {found.plain_residual:.2f} cm"
+    )
+
+
+def _place(label: str, found: PairBound, right: PairBound) -> str:
+    """Tell where the bound lies: at the contact, or at the component's other root."""
+    apart = f"a root of the component, where the points are {found.distance:.4f} cm apart"
+    if found.meets:
+        return f"{apart}; rounding allows {found.allowed:.4f} cm."
+    if found.at_contact:
+        return (
+            f"{apart}; rounding allows {found.allowed:.4f} cm. With x_{{2,13}} = 9.09 they are"
+            f" {right.distance:.4f} cm apart (T-4.2)."
+        )
+    return (
+        f"{apart}, so that it stops no motion. They meet at the other root, {degrees(found.other)},"
+        f" up to {found.other_distance:.4f} cm, inside the window"
+        f"{_with_the_other_sign(_meets_at_the_other_root(label))}."
+    )
+
+
+def _with_the_other_sign(proved: bool) -> str:
+    return "; the formula with the other sign of cos⁻¹ gives it" if proved else ""
 
 
 def _other_sign(label: str) -> str:
@@ -205,34 +227,40 @@ def half_space_bound(label: str, n: int = 7200) -> HalfSpaceBound:
 
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] > 4})
-def bound_of_a_half_space(label: str) -> Finding:
+def bound_of_a_half_space(label: str) -> Outcome:
+    """Judge a bound as a root wherever eq. (36) gives one, and as an end of what is feasible."""
     found, is_upper = half_space_bound(label), _side(label) == "upper"
-    right_side = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
-    if not right_side:
-        require(_is_lower_end(label), f"with the other sign {label} is the lower end of the arc")
-    return Finding(
-        judge(
-            holds=found.part == 100 and right_side, under=found.residual < RESIDUAL and right_side
-        ),
-        f"A root of the component for the {found.part:.1f} % of a turn of the first joint where it"
-        " exists: elsewhere the wall does not cut the circle of the second joint. The component is"
-        f" {'positive' if right_side else 'negative'} just {'below' if is_upper else 'above'}"
-        f" it.{'' if right_side else _counterexample(label)}",
+    is_end = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
+    text = (
+        f"By eq. (36) it exists for {found.part:.0f} % of a turn of the first joint: elsewhere the"
+        " wall does not cut the circle of the second. There it is a root of the component, which is"
+        f" {'positive' if is_end else 'negative'} just {'below' if is_upper else 'above'} it."
     )
+    if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
+        text += _copy_of_the_other(label)
+    return Outcome(judge(holds=found.residual < RESIDUAL, constrains=is_end), text)
 
 
-def _counterexample(label: str) -> str:
-    """Name a configuration inside the printed window whose component is negative, exactly."""
+def _copy_of_the_other(label: str) -> str:
+    """Tell that a bound is the row's other one a turn away, with a configuration between."""
     i, j, _ = paper.indices(label)
-    q1 = {5: 0.0, 6: np.pi}[i]  # the half-space's constant vanishes there
+    q1 = NULL_AT.get(i, float(half_space_bound(label).q[0, 0]))
     upper, lower = (float(_of_q1(paper.TABLE_6[f"beta_{{{i},{j},{k}}}"])(q1)) for k in (1, 2))
     q2 = lower + np.pi / 2
     value = float(_component(label)([q1, q2]))
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
-    return (
-        f" At q1 = {q1:g}° the printed window runs from {low:g}° to {high:g}°; at q2 = {q2:g}° in"
-        f" it the component is {round(value, 9):g} cm."
+    end = (
+        " With + before cos⁻¹ it is the other root, the lower end." if _is_lower_end(label) else ""
     )
+    return (
+        " It is the upper bound a turn lower, one pose, and the window leaves no value of q_2 out:"
+        f" at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
+        f" component is {round(value, 9):g} cm.{end}"
+    )
+
+
+NULL_AT: Final = {5: 0.0, 6: np.pi}
+"""Values of the first joint, rad, at which the argument of the inverse cosine is zero, exactly."""
 
 
 def _is_lower_end(label: str) -> bool:
@@ -255,3 +283,32 @@ def _of_q1(text: str) -> Callable[[Any], Any]:
     bound = paper.expression(text).subs(with_symbols(robot())[1])
     function: Callable[[Any], Any] = sp.lambdify(joint_symbols(robot())[0], bound, "numpy")
     return function
+
+
+# --- both bounds of a row -------------------------------------------------------------------------
+
+
+@computes("E-39.1")
+def rows_against_the_theorem() -> Outcome:
+    rows = {name: _ends_of_a_row(*paper.indices(name)) for name in paper.EQUATION_29}
+    a_turn_apart = [name for name, (length, _) in rows.items() if np.allclose(length, TURN)]
+    both = [name for name in rows if name not in a_turn_apart]
+    are_roots = all(residual < RESIDUAL for _, residual in rows.values())
+    rest = " and ".join(name.replace("beta", "β") for name in both)
+    return Outcome(
+        judge(holds=are_roots and not both, under=are_roots and bool(a_turn_apart)),
+        f"{len(a_turn_apart)} of {len(rows)} rows are eq. (39), with θ by atan2: their two bounds"
+        f" are one root of the component, a full turn apart. The row of {rest} is not: its bounds"
+        " are the two roots of its component, between which it is positive. No row is eq. (31),"
+        " which is longer than a turn.",
+    )
+
+
+def _ends_of_a_row(i: int, j: int) -> tuple[Floats, float]:
+    """Return how far the bounds of a row are apart, rad, and the component's largest value."""
+    labels = [f"beta_{{{i},{j},{k}}}" for k in (1, 2)]
+    if i < 5:
+        upper, lower = map(pair_bound, labels)
+        return np.array(upper.value - lower.value), max(upper.residual, lower.residual)
+    above, below = map(half_space_bound, labels)
+    return above.q[:, 1] - below.q[:, 1], max(above.residual, below.residual)

@@ -2,84 +2,140 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import half_spaces, pairs, robot
+from lizarraga2025.evidence.arms import half_spaces, pairs, robot, tool_form
 from lizarraga2025.evidence.joint_region import square, vertices
-from lizarraga2025.verdicts import Finding, judge, require, undetermined
-from qbound import clearance, pair_vector
+from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound import clearance
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Robot
 from qbound.region import find_region, paper_rule
+from qbound.symbols import joint_symbols, with_symbols
 
 
 @computes("E-9")
-def sign_of_a_component() -> Finding:
-    import sympy as sp
-
-    q = np.array([-np.pi / 2, 0.0])  # cos and sin are 0 and -1: the values are exact
-    cm = {name: sp.Rational(str(x)) for name, x in paper.offsets_in_cm().items()}
-    exact = -cm["x_{0,6}"] - cm["z_{1,7}"]
-    path = np.linspace(robot().home, q, 1001)
+def sign_of_a_component() -> Outcome:
+    inside, outside = np.radians([-90.0, 0.0]), np.radians([-140.0, 0.0])
+    path = np.linspace(robot().home, inside, 1001)
     free = all((clearance(robot(), b)(path) > 0).all() for b in robot().boundaries if b.used)
-    inside = bool(paper_rule.feasible(robot(), q)) and free
-    x = pair_vector(robot(), pairs()[0])(q)[0]
-    allowed = square()[paper_rule.feasible(robot(), square())]
-    vectors = np.stack([pair_vector(robot(), pair)(allowed) for pair in pairs()], axis=1)
-    negative = (vectors < 0).mean(axis=0)
-    share = 100 * (vectors < 0).any(axis=(1, 2)).mean()
-    kinds = [
-        f"β_{{{i + 1},{j + 1}}} ({100 * x:.0f} %)" for (i, j), x in np.ndenumerate(negative) if x
-    ]
-    B, d = sp.symbols("B d", nonnegative=True)
-    require(sp.expand((B - d) * (B + d) - B**2 + d**2) == 0, "|B|² - d² = (|B| - d)(|B| + d)")
-    return Finding(
-        judge(holds=not (inside and x < 0 and share > 0)),
-        "At q = (-90°, 0°), which lies in the selected region and is reached freely from home,"
-        f" β_{{1,1}} = -(x_{{0,6}} + z_{{1,7}}) = {float(exact):.2f} cm exactly. In {share:.1f} %"
-        f" of the region some component is negative: {', '.join(kinds)}. The y components are zero"
-        " everywhere.",
+    allowed = free and bool(paper_rule.feasible(robot(), inside))
+    beyond = not paper_rule.feasible(robot(), outside)
+    bounding = {label.rpartition(",")[0] + "}" for label in paper.FIGURE_4_BOUNDS}
+    pairs = [name for name in paper.EQUATION_29 if paper.indices(name)[0] < 5]
+    negative = {name: x for name in pairs if (x := float(_printed(name)(*inside))) < 0}
+    of_2 = {name: float(_printed(name)(*outside)) for name in pairs if name.startswith("beta_{2")}
+    sides = [_greek(name) for name in negative if name in bounding]
+    return strongest(
+        {
+            "a rule for every component": judge(holds=not (allowed and negative)),
+            "a rule for those that bound the selected region": judge(holds=not (allowed and sides)),
+            "a rule for all components of a pair at once": judge(
+                holds=not (beyond and any(x > 0 for x in of_2.values()))
+            ),
+        },
+        "The pose q = (-90°, 0°) lies in the selected region and is reached from home without"
+        f" touching a boundary, and yet {_values(negative)}. Of these {' and '.join(sides)} bounds"
+        " the region (caption of Figure 4). The pose (-140°, 0°) lies outside, and yet"
+        f" {_values(of_2)} have two signs. A pair is in contact only where all its components"
+        " vanish, so no sign of theirs tells on which side it is.",
     )
 
 
+def _values(components: Mapping[str, float]) -> str:
+    return " and ".join(f"{_greek(name)} = {value:.2f} cm" for name, value in components.items())
+
+
+def _printed(name: str) -> Callable[..., Any]:
+    """Return a printed component as a function of both joints, cm."""
+    import sympy as sp
+
+    form = paper.expression(paper.EQUATION_29[name]).subs(with_symbols(robot())[1])
+    function: Callable[..., Any] = sp.lambdify(joint_symbols(robot()), form, "numpy")
+    return function
+
+
+def _greek(name: str) -> str:
+    return name.replace("beta", "β")
+
+
 @computes("E-9.1")
-def sign_of_a_half_space() -> Finding:
-    allowed = square()[paper_rule.feasible(robot(), square())]
-    below = {w.name: 100 * (clearance(robot(), w)(allowed) < 0).mean() for w in half_spaces()}
-    used = [w.name for w in half_spaces() if w.used]
-    shares = ", ".join(f"{name} in {share:.1f} %" for name, share in below.items())
-    return Finding(
-        judge(holds=not any(below.values()), under=not any(below[name] for name in used)),
-        f"Negative within the selected region: {shares}. So it holds for the wall that bounds it.",
+def sign_of_a_half_space() -> Outcome:
+    q = square().reshape(-1, 2)[::97]
+    tool = tool_form()(q)
+    own = all(
+        np.allclose(_printed(name)(*q.T), tool @ wall.normal - wall.offset)
+        for name, wall in zip(GEOMETRIC, half_spaces(), strict=True)
+    )
+    least = {name: float(np.min(_printed(name)(*vertices().T))) for name in GEOMETRIC}
+    depths = ", ".join(f"{_greek(name)} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
+    kept = {name: x > -SMALL for name, x in least.items()}
+    return strongest(
+        {
+            "positive where its own limit is kept": judge(holds=own),
+            "positive in the selected region": judge(
+                holds=all(kept.values()), under=kept["beta_{7,3}"]
+            ),
+        },
+        "Each is the coordinate of the tool less its limit, so its sign tells the side. In the"
+        f" selected region that of the floor is kept. Least values at its six points: {depths}.",
+    )
+
+
+GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
+"""Components of the geometric boundary functions that are not zero throughout."""
+
+
+@computes("E-9.2")
+def kinds_of_bound() -> Outcome:
+    import sympy as sp
+
+    values = with_symbols(robot())[1]
+    q1 = sp.Symbol("q_1", real=True)
+    turn = np.linspace(-np.pi, np.pi, 721)
+    above = []
+    for i, j in (paper.indices(name) for name in paper.EQUATION_29):
+        first, second = (paper.expression(paper.TABLE_6[f"beta_{{{i},{j},{k}}}"]) for k in (1, 2))
+        with np.errstate(invalid="ignore"):
+            apart = sp.lambdify(q1, (first - second).subs(values), "numpy")(turn) + 0 * turn
+        above.append(bool((apart[np.isfinite(apart)] > 0).all()))
+    return Outcome(
+        judge(holds=all(above)),
+        f"In {sum(above)} of {len(above)} rows of Table 6 the bound with k = 1 is the greater one,"
+        " wherever both exist. The caption of Figure 4 names β_{3,3,2} for a side that only"
+        " β_{3,3,1} can be if every window of Table 6 holds the home pose.",
     )
 
 
 @computes("E-10")
-def joint_limits() -> Finding:
-    printed = [o.label for o in paper.OFFSETS if o.label.startswith("q")]
+def joint_limits() -> Outcome:
+    stated = [o.label for o in paper.OFFSETS if o.label.startswith("q")]
     box = np.degrees([paper_rule.box(robot()).lower, paper_rule.box(robot()).upper])
     area = {}
     for name, limits in (("none", None), ("±180°", (-np.pi, np.pi)), ("±170°", (-2.967, 2.967))):
         joints = tuple(replace(joint, limits=limits) for joint in robot().joints)
         area[name], _ = _home(replace(robot(), joints=joints))
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
-    verdict = undetermined({name: not printed and fits for name, fits in same.items()})
-    return Finding(
-        verdict,
-        f"{len(printed)} limits are printed. The windows of Table 6 end at {box[0, 0]:.2f}° and"
-        f" {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and {box[1, 1]:.2f}° for"
-        " the second, so wide limits change nothing: area around home "
+    return Outcome(
+        judge(holds=True) if stated else undetermined(same),
+        f"{len(stated) or 'No'} limits are printed. The windows of Table 6 end at"
+        f" {box[0, 0]:.2f}° and {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and"
+        f" {box[1, 1]:.2f}° for the second, so limits beyond these fit all that is printed and"
+        " change nothing: the area around home is "
         + ", ".join(f"{a:.6f} rad² with limits {name}" for name, a in area.items())
         + ".",
     )
 
 
 @computes("E-11")
-def least_distance() -> Finding:
+def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
     seen, fits = [], {}
     for d in (0.01, 0.1, 0.5):
@@ -90,8 +146,9 @@ def least_distance() -> Finding:
         bounding = sum(gap < d for gap in gaps)
         fits[str(d)] = bounding == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
-    return Finding(
-        undetermined(fits),
+    stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
+    return Outcome(
+        judge(holds=True) if stated else undetermined(fits),
         f"The pairs come as close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no"
         f" wall at all; every pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}.",
     )
@@ -104,13 +161,19 @@ def _home(arm: Robot) -> tuple[float, int]:
 
 
 @computes("E-12")
-def limits_in_space() -> Finding:
+def limits_in_space() -> Outcome:
     least = {w.name: float(np.min(clearance(robot(), w)(vertices()))) for w in half_spaces()}
-    inside = {name: x > -1e-9 for name, x in least.items()}
+    kept = {name: x > -SMALL for name, x in least.items()}
     depths = ", ".join(f"{name} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     upper = [o.label for o in paper.OFFSETS if "max" in o.label]
-    return Finding(
-        judge(holds=all(inside.values()), under=inside["B7"]),
-        f"{len(upper)} upper limits and two lower ones for x are printed. Least margins at the six"
-        f" points of the region: {depths}. Only the floor is kept.",
+    return strongest(
+        {
+            "the limit that bounds the selected region (caption of Figure 4)": judge(
+                holds=kept["B7"]
+            ),
+            "all limits of Table 5 at once": judge(holds=all(kept.values())),
+        },
+        f"{len(upper) or 'No'} upper limits, two lower ones for x and one for z are printed."
+        f" Margins at the six points of the selected region: {depths}. Only the floor is kept"
+        " there, as the caption has it.",
     )

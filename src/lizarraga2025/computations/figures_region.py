@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
@@ -19,24 +22,28 @@ from lizarraga2025.evidence.joint_region import (
     scaled,
     vertices,
 )
-from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Finding, judge, undetermined
+from lizarraga2025.evidence.rounding import SMALL, degrees
+from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
 from qbound import pair_vector
+from qbound.forms.angles import TURN
 from qbound.geometry import polygon
 from qbound.measures import scaling
+from qbound.model.robot import Pair
 from qbound.region import paper_rule, solve, state
 from qbound.symbols import joint_symbols
 
+Floats = NDArray[np.float64]
+
 
 @computes("F-1")
-def labels_close_a_triangle() -> Finding:
+def labels_close_a_triangle() -> Outcome:
     import sympy as sp
 
     frames = symbolic_robot()[0].frames(joint_symbols(robot()))
     seen = sp.Matrix(frames.rotation("0", "1")) * sp.Matrix(frames.position("1", "2", "1"))
     path = sp.Matrix(frames.position("0", "1", "0")) + seen
     closed = sp.simplify(path - sp.Matrix(frames.position("0", "2", "0"))) == sp.zeros(3, 1)
-    return Finding(
+    return Outcome(
         judge(holds=closed),
         "Labels are enough to compute with: r_{0,1} and r_{1,2}, the second turned by"
         " R_{0,1}, add up to r_{0,2} by identity. The picture itself is drawn anew.",
@@ -44,24 +51,39 @@ def labels_close_a_triangle() -> Finding:
 
 
 @computes("F-2")
-def points_lie_on_adjacent_links() -> Finding:
+def points_lie_on_adjacent_links() -> Outcome:
     chain = [robot().base, *(joint.frame for joint in robot().joints)]
     apart = [
         abs(chain.index(robot().point(a).frame) - chain.index(robot().point(b).frame))
         for a, b in (pair.points for pair in pairs())
     ]
-    return Finding(
+    return Outcome(
         judge(holds=set(apart) == {1}),
         f"In all {len(apart)} pairs of Tables 3 and 4 one joint lies between the two points.",
     )
 
 
+@computes("F-2.1")
+def which_figure_is_isometric() -> Outcome:
+    named, view = paper.NAMED_VIEW
+    announce_it = [number for number, words in paper.CAPTIONS.items() if view in words]
+    fits = {
+        f"Figure {number}": number in announce_it if announce_it else True for number in (named, 3)
+    }
+    return Outcome(
+        judge(holds=True) if announce_it == [named] else undetermined(fits),
+        f"The text names Figure {named}. Captions that announce an {view} view: {len(announce_it)};"
+        f" that of Figure {named} announces {paper.CAPTIONS[named]}, that of Figure 3"
+        f" {paper.CAPTIONS[3]}. {' and '.join(fits)} could be meant; only the pictures can tell.",
+    )
+
+
 @computes("F-3")
-def chain_of_the_robot() -> Finding:
+def chain_of_the_robot() -> Outcome:
     frames = robot().frames(robot().home)
     order = ["0", "1", "2", robot().tool]
     precede = all(frames.precedes(a, b) for a, b in pairwise(order))
-    return Finding(
+    return Outcome(
         judge(holds=precede and order[-1] == "3"),
         f"Each of {', '.join(order)} precedes the next; {len(robot().joints)} joints move them.",
     )
@@ -72,62 +94,109 @@ def _edges() -> set[str]:
     return {b.label for corner in closed_form.vertices(robot()) for b in corner.bounds}
 
 
+def _components(labels: Iterable[str]) -> set[tuple[int, ...]]:
+    """Return the indices i and j, without the k that tells lower from upper."""
+    return {paper.indices(label)[:2] for label in labels}
+
+
 @computes("F-4.1")
-def six_curves() -> Finding:
+def six_curves() -> Outcome:
     named, found = set(paper.FIGURE_4_BOUNDS), _edges()
-    lines = [{label.rpartition(",")[0] for label in labels} for labels in (named, found)]
-    return Finding(
-        judge(holds=lines[0] == lines[1] and len(found) == len(named)),
-        f"The exact region has {len(found)} bounding curves, of the components that the caption"
-        f" names; {len(named & found)} of the six labels agree to the last index.",
+    same = _components(named) == _components(found) and len(found) == len(named)
+    with_arctan = _sides("arctan")
+    return Outcome(
+        judge(holds=same and with_arctan <= named, under=same),
+        f"With the inverse tangent as atan2 the region has {len(found)} bounding curves, of the"
+        f" components that the caption names; {len(named & found)} of the {len(named)} labels agree"
+        " to the last index (F-4.2). With arctan the sides of the box would be"
+        f" {', '.join(_greek(label) for label in sorted(with_arctan))}.",
     )
 
 
-@computes("F-4.2")
-def the_index_of_one_bound() -> Finding:
-    side = float(paper_rule.box(robot()).upper[1])
-    values = {k: _beta_3_3(k, "atan2") for k in (1, 2)}
-    raised = {k: _beta_3_3(k, "arctan") + np.pi for k in (1, 2)}  # a < 0: pi is added
-    mendings = {
-        "the index": np.isclose(values[1], side) and values[2] < 0 < values[1],
-        "the window": np.isclose(raised[2], side) and raised[2] - 2 * np.pi < 0 < raised[2],
-    }
-    return Finding(
-        undetermined({name: bool(fits) for name, fits in mendings.items()}),
-        f"The side lies at {np.degrees(side):.4f}°. With atan2 that is k = 1 and k = 2 is"
-        f" {np.degrees(values[2]):.4f}°, off the picture; with an inverse tangent that adds 180° it"
-        f" is k = 2, but then the row of Table 6 runs from it to {np.degrees(raised[1]):.4f}° and"
-        " leaves out home. Either the index or that row is a turn off; the line is the same.",
-    )
+def _sides(reading: paper.Reading) -> set[str]:
+    """Return the labels of the highest lower and the lowest upper bound of each joint."""
+    found = set()
+    for of_joint in ((1, 2), (3, 4)):
+        values = {
+            label: _bound(label, reading)
+            for label in paper.TABLE_6
+            if paper.indices(label)[0] in of_joint
+        }
+        upper, lower = ([n for n in values if paper.indices(n)[2] == k] for k in (1, 2))
+        found |= {max(lower, key=values.__getitem__), min(upper, key=values.__getitem__)}
+    return found
 
 
-def _beta_3_3(k: int, reading: paper.Reading) -> float:
-    printed = paper.expression(paper.TABLE_6[f"beta_{{3,3,{k}}}"], arctan=reading)
+def _bound(label: str, reading: paper.Reading) -> float:
+    """Return the value, rad, of a printed bound of a point pair."""
+    printed = paper.expression(paper.TABLE_6[label], arctan=reading)
     return float(printed.subs(symbolic_robot()[1]))
 
 
-@computes("F-4.3")
-def red_lines_play_no_part() -> Finding:
-    box = paper_rule.box(robot())
-    ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
-    names = [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")]
-    home = robot().home
-    areas = [
-        sum(c.area for c in solve(state(robot(), used, ranges, names), home).components)
-        for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
-    ]
-    windows = paper_rule.windows(robot())
-    outside = all(w.lower <= box.lower[w.joint] and w.upper >= box.upper[w.joint] for w in windows)
-    return Finding(
-        judge(holds=outside and np.ptp(areas) < SMALL, under=outside),
-        f"True of the {len(windows)} windows of the point pairs. The walls B5 and B6 of Table 5"
-        f" cross the region: with B6 in force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left,"
-        f" with B5 too {areas[2]:.4f}. The paper leaves them out without a word.",
+def _greek(label: str) -> str:
+    return label.replace("beta", "β")
+
+
+@computes("F-4.2")
+def the_index_of_one_bound() -> Outcome:
+    (k,) = {paper.indices(label)[2] for label in paper.FIGURE_4_BOUNDS if "{3,3," in label}
+    side = float(paper_rule.box(robot()).upper[1])
+    values = {k: _bound(f"beta_{{3,3,{k}}}", "atan2") for k in (1, 2)}
+    raised = {k: _bound(f"beta_{{3,3,{k}}}", "arctan") + np.pi for k in (1, 2)}  # a < 0: add pi
+    fits = {
+        "the index is a slip": bool(np.isclose(values[1], side)) and values[2] < 0 < values[1],
+        "the row is a slip": bool(np.isclose(raised[2], side)) and 0 < raised[2] < TURN,
+    }
+    return Outcome(
+        judge(holds=True) if np.isclose(values[k], side) else undetermined(fits),
+        f"The side lies at {degrees(side)}. With atan2 that is k = 1, and k = 2 is"
+        f" {degrees(values[2])}, a turn lower; with an inverse tangent that adds 180° it is k = 2,"
+        f" but then the row of Table 6 runs from it to {degrees(raised[1])} and leaves out home."
+        " Either the index or that row is a turn off; the line is the same. All hangs on one"
+        " index of a converted text.",
     )
 
 
+@computes("F-4.3")
+def red_lines_play_no_part() -> Outcome:
+    box, named = paper_rule.box(robot()), _components(paper.FIGURE_4_BOUNDS)
+    cuts_in = [
+        label
+        for label in paper.TABLE_6
+        if paper.indices(label)[0] < 5 and paper.indices(label)[:2] not in named
+        if _is_inside(box, pairs()[paper.indices(label)[0] - 1], _bound(label, "atan2"))
+    ]
+    closes = _components(_edges()) == named
+    ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
+    names = [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")]
+    areas = [
+        sum(c.area for c in solve(state(robot(), used, ranges, names), robot().home).components)
+        for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
+    ]
+    return strongest(
+        {
+            "lines that the authors leave out": judge(holds=closes and not cuts_in),
+            "lines that would cut nothing off": judge(
+                holds=not cuts_in and np.ptp(areas) < SMALL, under=not cuts_in
+            ),
+        },
+        f"The six lines named close the region alone, and of the other lines of point pairs"
+        f" {len(cuts_in) or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in"
+        f" force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}."
+        " Why they are left out the text does not say.",
+    )
+
+
+def _is_inside(box: paper_rule.Box, pair: Pair, value: float) -> bool:
+    """Tell whether a line at a joint value, or a full turn on or back, runs through the box."""
+    (joint,) = pair_vector(robot(), pair).joints()
+    copies = value + TURN * np.arange(-2, 3)
+    inside = (box.lower[joint] + SMALL < copies) & (copies < box.upper[joint] - SMALL)
+    return bool(inside.any())
+
+
 @computes("F-5.1")
-def six_points_on_two_curves_each() -> Finding:
+def six_points_on_two_curves_each() -> Outcome:
     residuals = []
     for corner in closed_form.vertices(robot()):
         for bound in corner.bounds:
@@ -140,85 +209,102 @@ def six_points_on_two_curves_each() -> Finding:
             residuals.append(abs(float(form(corner.q))))
     exact = sorted(v.q.tolist() for v in by_windows().vertices)
     same = np.allclose(exact, sorted(vertices().tolist()), atol=SMALL)
-    return Finding(
+    return Outcome(
         judge(holds=len(vertices()) == 6 and same and max(residuals) < SMALL),
-        f"{len(vertices())} corners in closed form; both components vanish in each to less than"
-        f" {SMALL:g} cm, and a complete decomposition of the region finds the same corners.",
+        f"{len(vertices())} corners in closed form; both components vanish in each, but for"
+        " rounding, and a complete decomposition of the region finds the same corners.",
     )
 
 
 @computes("F-5.2")
-def six_points_joined() -> Finding:
+def six_points_joined() -> Outcome:
     depth = depth_below_edges()
-    leaving = [i + 1 for i in range(6) if depth[i] > SMALL]
+    leaving = [str(i + 1) for i, d in enumerate(depth) if d > SMALL]
     arcs = [arc for loop in by_windows().loops for arc in loop]
     ends = np.array([arc.points[[0, -1]] for arc in arcs])
     closed = np.allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=SMALL)
-    return Finding(
-        judge(holds=not leaving, under=closed and len(by_windows().loops) == 1),
-        f"Joined by straight lines, as drawn, edges {' and '.join(map(str, leaving))} leave the"
-        f" region: the tool is up to {depth.max():.4f} cm below its limit. Joined along the"
-        f" functions themselves, {len(arcs)} arcs close one loop around {by_windows().area:.6f}"
-        " rad².",
+    along = len(by_windows().loops) == 1 and closed and len(arcs) == 6
+    return strongest(
+        {
+            "joined along the functions": judge(holds=along),
+            "joined by straight lines": judge(holds=along and not leaving, under=along),
+        },
+        f"Along the functions {len(arcs)} arcs close one loop around {by_windows().area:.6f} rad²."
+        f" The straight lines through points {' and '.join(leaving)} and the next leave it, with"
+        f" the tool up to {depth.max():.4f} cm below its limit: the text says so itself and offers"
+        " two remedies.",
     )
 
 
 @computes("F-6.1")
-def scaling_takes_the_region_off() -> Finding:
-    safe = largest_scale()
-    bad, good = least_height(0.97), [least_height(s) for s in (0.96, 0.95, 0.9, 0.5)]
-    return Finding(
-        judge(holds=bad > 0, under=min(good) > 0 and 0.96 < safe.scale < 0.97),
-        f"True from scale {safe.scale:.9f} down. At 0.97 the tool is still {-bad:.4f} cm below its"
-        " limit on the way from point 3 to point 4.",
+def scaling_takes_the_region_off() -> Outcome:
+    safe = largest_scale().scale
+    heights = {s: least_height(s) for s in (0.97, 0.96, 0.95, 0.9, 0.5)}
+    below = [height for s, height in heights.items() if s < safe]
+    return Outcome(
+        judge(holds=min(heights.values()) > 0, under=bool(below) and min(below) > 0),
+        f"From scale {safe:.9f} down. At 0.97 the tool is still {-heights[0.97]:.4f} cm below its"
+        " limit on the way from point 3 to point 4. The text gives no factor (F-6.4).",
     )
 
 
 @computes("F-6.2")
-def scaling_leaves_a_margin() -> Finding:
+def scaling_leaves_a_margin() -> Outcome:
+    safe = largest_scale().scale
     scales = (0.97, 0.96, 0.95, 0.9, 0.8)
-    heights = [least_height(s) for s in scales]
-    gaps = [float(body_gap(polygon.along_edges(scaled(s), np.linspace(0, 1, 501))).min())
-            for s in scales]  # fmt: skip
-    grows = bool((np.diff(heights) > 0).all() and (np.diff(gaps) > 0).all())
-    return Finding(
-        judge(holds=min(*heights, *gaps) > 0, under=grows and min(heights[1:]) > 0),
-        f"A margin in length, and growing, once the scale is below {largest_scale().scale:.6f}: at"
+    heights = np.array([least_height(s) for s in scales])
+    gaps = np.array(
+        [body_gap(polygon.along_edges(scaled(s), np.linspace(0, 1, 501))).min() for s in scales]
+    )
+    grow = bool((np.diff(heights) > 0).all() and (np.diff(gaps) > 0).all())
+    below = np.array(scales) < safe
+    kept = bool(below.any() and (heights[below] > 0).all() and (gaps[below] > 0).all())
+    return Outcome(
+        judge(holds=grow and bool((heights > 0).all() and (gaps > 0).all()), under=grow and kept),
+        f"A margin in length, and growing, once the scale is below {safe:.6f}: at"
         f" 0.96 the tool keeps {heights[1]:.4f} cm from its limit and the bodies {gaps[1]:.4f} cm"
         f" from each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
     )
 
 
 @computes("F-6.3")
-def scaled_region_is_free_of_collision() -> Finding:
+def scaled_region_is_free_of_collision() -> Outcome:
     t, factors = np.linspace(0, 1, 41), np.linspace(0.02, 1, 50)
     inside = [polygon.along_edges(scaled(float(0.999 * f)), t) for f in factors]
-    least = float(body_gap(np.array(inside)).min())
+    gap = body_gap(np.array(inside))
     touching = float(body_gap(polygon.along_edges(scaled(1.0), t)).min())
-    return Finding(
-        judge(holds=least > 0),
-        f"With the bodies rebuilt from the points: at scale 1 bodies touch (gap {abs(touching):.4f}"
-        f" cm), and in all polygons from 0.999 down they are apart, by {least:.4f} cm or more."
-        " Below 0.964 the tool keeps its limit too.",
+    return Outcome(
+        judge(holds=float(gap.min()) > 0),
+        f"With the bodies rebuilt from the points: at scale 1 bodies touch (gap {abs(touching):.2f}"
+        f" cm); on {gap.size} configurations of the polygons from scale 0.999 down the least gap is"
+        f" {gap.min():.4f} cm. From {largest_scale().scale:.3f} down the tool keeps its limit too.",
     )
+
+
+CENTROIDS: Final = ("area", "points")
 
 
 @computes("F-6.4")
-def which_factor_and_which_centroid() -> Finding:
-    middles = polygon.centroid(vertices()), vertices().mean(axis=0)
-    fits = {
-        f"{factor} about {name}": scaling.least_along_edges(
-            floor(), polygon.scaled(vertices(), factor, middle)
-        )[0]
-        > 0
-        for factor in (0.96, 0.95, 0.9, 0.8)
-        for name, middle in zip(("the area's centroid", "the points' mean"), middles, strict=True)
-    }
-    apart = float(np.degrees(np.linalg.norm(np.subtract(*middles))))
-    both = [largest_scale(centre).scale for centre in ("area", "vertices")]
-    return Finding(
-        undetermined(fits),
-        f"No factor is printed, nor which centroid: all {len(fits)} combinations tried are safe."
-        f" The two centroids are {apart:.4f}° apart and allow scales up to {both[0]:.9f} and"
-        f" {both[1]:.9f}.",
+def which_factor_and_which_centroid() -> Outcome:
+    printed = paper.SCALING["factor"], paper.SCALING["centroid"]
+    middles = dict(
+        zip(CENTROIDS, (polygon.centroid(vertices()), vertices().mean(axis=0)), strict=True)
     )
+    fits = {
+        f"{factor} about the centroid of the {name}": _is_safe(factor, middles[name])
+        for factor in (0.96, 0.95, 0.9, 0.8)
+        for name in CENTROIDS
+        if printed[0] in (None, factor) and printed[1] in (None, name)
+    }
+    apart = float(np.degrees(np.linalg.norm(np.subtract(*middles.values()))))
+    both = [largest_scale(centre).scale for centre in ("area", "vertices")]
+    return Outcome(
+        undetermined(fits),
+        f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried are"
+        f" safe. The centroids of the area and of the six points are {apart:.4f}° apart and allow"
+        f" scales up to {both[0]:.9f} and {both[1]:.9f}.",
+    )
+
+
+def _is_safe(factor: float, about: Floats) -> bool:
+    return scaling.least_along_edges(floor(), polygon.scaled(vertices(), factor, about))[0] > 0

@@ -2,167 +2,222 @@
 
 from __future__ import annotations
 
-from itertools import permutations
+from collections.abc import Callable, Mapping
+from functools import cache
+from itertools import permutations, product
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from lizarraga2025 import printed as paper
 from lizarraga2025.collisions import keeps_components_positive, keeps_geometric, misses_points
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import corrected, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     bodies_allow,
-    by_clearances,
     drawn,
     scaled,
-    share_of_square,
-    vertices,
 )
-from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
     PLANE,
     RIGHT,
     asymmetry,
-    asymmetry_of_the_symmetric,
     crossings,
+    neighbour_sequences,
     other_posture,
     path_through,
+    simple_neighbours,
     simple_sequences,
-    stretched,
-    workspace,
 )
-from lizarraga2025.verdicts import Finding, judge, require, undetermined
-from qbound.geometry import polygon
+from lizarraga2025.verdicts import Outcome, judge, undetermined
+from qbound.forms.angles import TURN
 from qbound.model.robot import Robot
+from qbound.paths.traversal import Traversal
 from qbound.region import paper_rule
 from qbound.sampling import keeps_clear
 
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
-@computes("F-7.1")
-def tool_path_of_the_six_points() -> Finding:
-    counts = [crossings(path_through(AROUND, s)) for s in (1.0, 0.96, SCALE, 0.9, 0.8)]
-    return Finding(
-        judge(holds=min(counts) > 0),
-        f"The closed path of the tool crosses itself once, at every scale tried ({counts[0]}"
-        " crossing each from scale 1 to 0.8).",
+
+ROUNDS: Final = {
+    f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(
+        (start + sense * i) % 6 for i in range(6 + back)
+    )
+    for start in range(6)
+    for sense in (1, -1)
+    for back in (0, 1)
+}
+"""The 24 walks round the six points: from each, in both directions, open or back to the start."""
+
+
+def _stated(figure: int, walks: Mapping[str, tuple[int, ...]]) -> dict[str, tuple[int, ...]]:
+    """Return the walks that agree with the order that the text gives: all, where it gives none."""
+    order = paper.ORDERS[figure]
+    points = None if order is None else tuple(number - 1 for number in order)
+    return {name: walk for name, walk in walks.items() if points in (None, walk)}
+
+
+@computes("F-6.5")
+def which_order_of_the_six_points() -> Outcome:
+    closed = {name: walk for name, walk in ROUNDS.items() if walk[0] == walk[-1]}
+    fits = {
+        name: bool(paper_rule.feasible(robot(), path_through(walk).q).all())
+        for name, walk in _stated(6, closed).items()
+    }
+    return Outcome(
+        undetermined(fits),
+        f"The text names neither start nor direction. The {sum(fits.values())} closed walks along"
+        f" the region's edges all stay feasible at scale {SCALE}.",
     )
 
 
-@computes("F-7.2")
-def final_pose_of_the_six_points() -> Finding:
-    ends = {
-        f"from {start + 1} {name}": path_through(
-            [(start + sense * i) % 6 for i in range(6 + back)]
-        ).final_pose
-        for start in range(6)
-        for sense in (1, -1)
-        for back, name in ((0, "open"), (1, "closed"))
+@computes("F-7.1")
+def tool_path_of_the_six_points() -> Outcome:
+    scales = (1.0, SCALE, 0.8)
+    counts = {
+        curve: [crossings(path_through(curve, s)) for s in scales] for curve in sorted(_curves())
     }
+    plain = ["-".join(str(i + 1) for i in curve) for curve, n in counts.items() if min(n) == 0]
+    crossed = sum(min(counts[_curve(walk)]) > 0 for walk in ROUNDS.values())
+    return Outcome(
+        judge(holds=crossed > 0),
+        f"Of {len(ROUNDS)} walks round the region {crossed} give a path of the tool that crosses"
+        f" itself at each of the scales {', '.join(f'{s:g}' for s in scales)}, among them all that"
+        f" return: {min(counts[AROUND])} crossing. Without return {' and '.join(plain)} do not, in"
+        " either direction.",
+    )
+
+
+def _curve(walk: tuple[int, ...]) -> tuple[int, ...]:
+    """Return one walk for all that draw the same curve: its reverse, another start of a loop."""
+    return AROUND if walk[0] == walk[-1] else min(walk, walk[::-1])
+
+
+def _curves() -> set[tuple[int, ...]]:
+    return {_curve(walk) for walk in ROUNDS.values()}
+
+
+@computes("F-7.2")
+def final_pose_of_the_six_points() -> Outcome:
+    ends = {name: path_through(walk).final_pose for name, walk in _stated(7, ROUNDS).items()}
     kinds = {tuple(np.round(pose, 9)) for pose in ends.values()}
-    return Finding(
-        undetermined(dict.fromkeys(ends, len(kinds) > 1)),
-        f"Start, direction and return are not stated: {len(ends)} walks round the six points fit,"
-        f" with {len(kinds)} different final poses.",
+    return Outcome(
+        undetermined({str(pose): True for pose in kinds}),
+        f"The text states neither start nor direction nor return: {len(ends)} walks round the six"
+        f" points fit, with {len(kinds)} different final poses.",
     )
 
 
 @computes("F-8.1")
-def which_five_points() -> Finding:
-    fits = {"-".join(str(i + 1) for i in order): True for order in simple_sequences()}
-    return Finding(
+def which_five_points() -> Outcome:
+    orders = {"-".join(str(i + 1) for i in order): order for order in simple_sequences()}
+    fits = dict.fromkeys(_stated(8, orders), True)
+    neighbours = len(simple_neighbours())
+    return Outcome(
         undetermined(fits),
-        f"Of 360 orders of five of the six points (a walk and its reverse counted once) {len(fits)}"
-        " give a path of the tool that does not cross itself. The book shows 6-1-2-3-4.",
+        f"The text does not name the points. Of 360 orders of five of the six (a walk and its"
+        f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself; of"
+        f" the {len(neighbour_sequences())} walks through five neighbours, in either direction,"
+        f" {neighbours}. The book shows 6-1-2-3-4.",
     )
 
 
 @computes("F-8.2")
-def five_points_stay_open() -> Finding:
-    places = tool_form()(np.array([scaled(1.0), scaled(SCALE), scaled(0.8)]))[..., PLANE]
+def five_points_stay_open() -> Outcome:
+    corners = np.array([scaled(1.0), scaled(SCALE), scaled(0.8)])
+    places = tool_form()(corners)[..., PLANE]
     apart = np.linalg.norm(places[:, :, None] - places[:, None], axis=-1)
-    least = float(apart[:, ~np.eye(6, dtype=bool)].min())
-    number = len(list(permutations(range(6), 5)))
-    return Finding(
-        judge(holds=least > SMALL),
+    points = corners.shape[1]
+    least = float(apart[:, ~np.eye(points, dtype=bool)].min())
+    number = len(list(permutations(range(points), 5)))
+    return Outcome(
+        judge(holds=number > 0 and least > SMALL),
         f"All {number} sequences: five different points have first and last places of the tool at"
-        f" least {least:.4f} cm apart, at scales 1, 0.95 and 0.8.",
+        f" least {least:.4f} cm apart, at scales 1, {SCALE} and 0.8.",
     )
 
 
+def _shown(figure: int, ours: tuple[int, ...]) -> Traversal:
+    """Return the path of five points that a figure shows: the book's, where the text names none."""
+    order = paper.ORDERS[figure]
+    return path_through(ours if order is None else [number - 1 for number in order])
+
+
 @computes("F-9")
-def a_second_sequence() -> Finding:
-    right, left = path_through(RIGHT), path_through(LEFT)
-    feasible = all(paper_rule.feasible(robot(), w.q).all() for w in (right, left))
-    ends = [float(w.tool[-1, 0]) for w in (right, left)]
+def a_second_sequence() -> Outcome:
+    paths = right, left = _shown(8, RIGHT), _shown(9, LEFT)
+    feasible = all(paper_rule.feasible(robot(), path.q).all() for path in paths)
     ordered = crossings(right) == crossings(left) == 0
-    return Finding(
-        judge(holds=feasible and ordered and ends[0] > 0 > ends[1]),
-        "3-4-5-6-1 and 6-1-2-3-4 both stay feasible at scale 0.95 and do not cross themselves; the"
-        f" tool ends at x = {ends[1]:.4f} cm and at x = {ends[0]:.4f} cm.",
+    ends = [float(path.tool[-1, 0]) for path in paths]
+    return Outcome(
+        judge(holds=feasible and ordered),
+        f"3-4-5-6-1 and 6-1-2-3-4 both stay feasible at scale {SCALE} and do not cross themselves;"
+        f" the tool ends at x = {ends[1]:.4f} cm and at x = {ends[0]:.4f} cm.",
+    )
+
+
+@computes("F-9.1")
+def opposite_paths() -> Outcome:
+    right, left = _shown(8, RIGHT), _shown(9, LEFT)
+    across = np.roll(scaled(), -3, axis=0)  # point 4 for point 1, and so on
+    of_right = [int(np.argmin(np.abs(scaled() - q).sum(-1))) for q in right.q[right.stops]]
+    same_way = np.allclose(across[of_right], left.q[left.stops])
+    ends = [float(path.tool[-1, 0]) for path in (right, left)]
+    both_ways = {order for o in simple_sequences() for order in (o, o[::-1])}
+    opposites = sum(tuple((i + 3) % 6 for i in order) in both_ways for order in both_ways)
+    return Outcome(
+        judge(holds=bool(same_way) and ends[0] * ends[1] < 0),
+        "The book's 6-1-2-3-4 and 3-4-5-6-1 are opposite: each point is the one across the hexagon,"
+        f" and the tool ends at x = {ends[0]:.4f} and {ends[1]:.4f} cm. The text names no points;"
+        f" of {len(both_ways)} orders, counted in both directions, that do not cross themselves"
+        f" {opposites} have such an opposite.",
     )
 
 
 @computes("F-10.1")
-def the_regions_are_not_symmetric() -> Finding:
+def the_regions_are_not_symmetric() -> Outcome:
     printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), corrected()))
-    rounding = 2 * np.hypot(0.005, 0.005)
-    return Finding(
+    rounding = 2 * np.hypot(HALF_DIGIT, HALF_DIGIT)
+    return Outcome(
         judge(holds=printed > rounding),
         f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
-        f" printed offsets, {one_digit:.4f} cm with x_{{2,13}} mended to 9.09 cm.",
+        f" printed offsets, {one_digit:.4f} cm with x_{{2,13}} at 9.09 cm.",
     )
 
 
 @computes("F-10.2")
-def asymmetry_from_scaling() -> Finding:
-    unscaled = asymmetry(robot(), 1.0)
-    exact = asymmetry_of_the_symmetric()
-    require(exact < SMALL, "symmetric paths of the symmetric arm")
-    return Finding(
-        judge(holds=unscaled < SMALL < exact),
-        f"Without scaling the paths are {unscaled:.4f} cm apart already; on the exactly symmetric"
-        f" arm they agree to {SMALL:g} cm at scales 1, 0.95 and 0.8.",
+def asymmetry_from_scaling() -> Outcome:
+    scales = (1.0, SCALE, 0.8)
+    printed, exact = ([asymmetry(arm, s) for s in scales] for arm in (robot(), symmetric()))
+    brought_in = printed[0] < SMALL < max(printed) or exact[0] < SMALL < max(exact)
+    return Outcome(
+        judge(holds=brought_in),
+        f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
+        " scaling changes the asymmetry and does not bring it in. On the exactly symmetric arm they"
+        f" are mirror images at scales {', '.join(f'{s:g}' for s in scales)}.",
     )
 
 
 @computes("F-10.3")
-def asymmetry_from_nonlinearity() -> Finding:
+def asymmetry_from_nonlinearity() -> Outcome:
     bends = [_bend(arm) for arm in (robot(), symmetric())]
     exact = asymmetry(symmetric(), SCALE)
-    require(exact < SMALL, "symmetric paths of the symmetric arm")
-    return Finding(
-        judge(holds=exact > SMALL or min(bends) < SMALL),
-        f"The tool's path bends away from its chords by up to {bends[0]:.4f} cm on the printed arm"
-        f" and {bends[1]:.4f} cm on the symmetric one: as nonlinear, and yet symmetric to {SMALL:g}"
-        " cm.",
-    )
-
-
-@computes("F-10.4")
-def paths_bound_the_workspace() -> Finding:
-    import shapely
-
-    areas, lines = workspace(), [path_through(order).tool[:, PLANE] for order in (RIGHT, LEFT)]
-    closed = shapely.node(shapely.MultiLineString([[*line, line[0]] for line in lines]))
-    within = shapely.union_all(shapely.polygonize([closed]))
-    pose = np.array([polygon.centroid(vertices())[0], stretched()])
-    out = float(within.distance(shapely.Point(tool_form()(pose)[PLANE])))
-    rest = areas["enclosed"] - areas["once"]
-    require(abs(rest) < 1e-3, "what the path round the region leaves out both postures reach")
-    require(bool(paper_rule.feasible(robot(), pose)), "the witness is feasible")
-    return Finding(
-        judge(holds=out == 0),
-        f"The feasible pose q1 = {np.degrees(pose[0]):.4f}°, q2 = {np.degrees(pose[1]):.4f}° puts"
-        f" the tool {out:.2f} cm outside of all that the two paths, closed, enclose. The path round"
-        f" the whole region encloses {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are"
-        " reached.",
+    return Outcome(
+        judge(holds=exact > SMALL),
+        f"The tool's path bends away from its chords by up to {bends[0]:.2f} cm on the printed arm"
+        f" and {bends[1]:.2f} cm on the exactly symmetric one: as nonlinear, and its paths are"
+        " mirror images.",
     )
 
 
 def _bend(arm: Robot) -> float:
-    """Farthest that the tool's path on the right is from the straight lines between its stops."""
+    """Return how far the tool's path on the right is from the straight lines between its stops."""
     import shapely
 
     path = path_through(RIGHT, SCALE, arm)
@@ -170,60 +225,92 @@ def _bend(arm: Robot) -> float:
     return float(shapely.LineString(line).hausdorff_distance(shapely.LineString(chords)))
 
 
-@computes("F-11.1")
-def what_a_red_point_is() -> Finding:
-    q = drawn().q
-    free = {
-        "coincidence of points, eq. (17)": misses_points(robot(), q),
-        "the tool's limit alone, eq. (12)": keeps_geometric(robot(), q),
-        "clearances, eqs. (11) and (12)": keeps_clear(robot(), q),
-        "windows of Table 6": paper_rule.feasible(robot(), q),
-        "signs of all components, eq. (9)": keeps_components_positive(robot(), q),
-        "whole bodies and the tool's limit": bodies_allow(q),
+TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
+    "coincidence of points, eq. (17)": misses_points,
+    "the tool's limit alone, eq. (12)": keeps_geometric,
+    "clearances, eqs. (11) and (12)": keeps_clear,
+    "windows of Table 6": paper_rule.feasible,
+    "signs of all components, eq. (9)": keeps_components_positive,
+    "whole bodies and the tool's limit": lambda _, q: bodies_allow(q),
+}
+"""What can make a point red: the test for a configuration that stays blue, by name."""
+
+
+@cache
+def _colours() -> dict[str, tuple[Bools, Bools]]:
+    """Return by test which configurations of the draw are free, and which of their counterparts.
+
+    The counterpart has the tool at the same place in the other posture. Where the text states a
+    test, it is the only one.
+    """
+    q, stated = drawn().q, paper.SAMPLES["test"]
+    return {
+        name: (free(robot(), q), free(robot(), other_posture(q)))
+        for name, free in TESTS.items()
+        if stated in (None, name)
     }
-    parts = ", ".join(f"{name}: {100 * x.mean():.2f} %" for name, x in free.items())
-    return Finding(
-        undetermined({name: bool(x.any() and not x.all()) for name, x in free.items()}),
-        f"The test is not stated. Free parts of one draw of {len(q)}: {parts}. The first draws no"
-        " red point at all; each of the others could be meant.",
+
+
+def _mixing() -> list[str]:
+    """Return the tests by which some place has a free posture and a colliding one."""
+    return [name for name, (free, other) in _colours().items() if (free & ~other).any()]
+
+
+@computes("F-11.1")
+def what_a_red_point_is() -> Outcome:
+    parts = "; ".join(f"{100 * free.mean():.1f} % by {n}" for n, (free, _) in _colours().items())
+    fits = {name: name in _mixing() for name in _colours()}
+    out = " and ".join(name for name, fit in fits.items() if not fit)
+    return Outcome(
+        undetermined(fits),
+        f"The test is not in the text. Of one draw of {len(drawn().q)} configurations are free, to"
+        f" 0.3 %: {parts}. By {out or 'none'} no place has both colours, as the text says some"
+        f" have (F-11.2); each of the other {len(_mixing())} could be meant.",
     )
 
 
 @computes("F-11.2")
-def both_colours_at_one_place() -> Finding:
-    draw = drawn()
-    second = other_posture(draw.q)
-    same = np.allclose(tool_form()(second), draw.tool, atol=SMALL)
-    other = paper_rule.feasible(robot(), second)
-    mixed = other[draw.free].mean(), other[~draw.free].mean()
-    return Finding(
-        judge(holds=bool(same and mixed[0] < 1 and mixed[1] > 0)),
-        f"Every place has two postures. Of the free configurations {100 * (1 - mixed[0]):.2f} %"
-        f" have a colliding second posture, of the colliding ones {100 * mixed[1]:.2f} % a free"
-        " one.",
+def both_colours_at_one_place() -> Outcome:
+    same = np.allclose(tool_form()(other_posture(drawn().q)), drawn().tool, atol=SMALL)
+    parts = [
+        f"{100 * (free & ~other).sum() / free.sum():.1f} % by {name}"
+        for name, (free, other) in _colours().items()
+        if name in _mixing()
+    ]
+    return Outcome(
+        judge(holds=bool(same) and bool(_mixing())),
+        "Every place has two postures. Of the free configurations of the draw the second posture"
+        f" collides for {'; '.join(parts) or 'none'}.",
     )
 
 
 @computes("F-11.3")
-def lateral_shapes() -> Finding:
+def lateral_shapes() -> Outcome:
     places = drawn().tool[drawn().free]
     low = places[places[:, 2] < robot().joints[0].origin[2]]
     sides = [int((low[:, 0] > 0).sum()), int((low[:, 0] < 0).sum())]
-    inner = float(np.abs(low[:, 0]).min())
-    return Finding(
+    inner = float(np.abs(low[:, 0]).min(initial=np.inf))
+    return Outcome(
         judge(holds=min(sides) > 100 and inner > robot().point("6").at[0]),
         f"Below joint 1 the free places fall apart into two lobes, {sides[0]} places of the draw on"
-        f" the right and {sides[1]} on the left, and none within {inner:.2f} cm of the middle.",
+        f" the right and {sides[1]} on the left, and none of them within {inner:.1f} cm of the"
+        " middle.",
     )
 
 
-@computes("F-11.4")
-def sampling_shows_the_region() -> Finding:
-    part, draw = share_of_square(), drawn()
-    off = abs(draw.fraction_free - part) / draw.standard_error
-    return Finding(
-        judge(holds=bool(off < 3)),
-        f"{100 * draw.fraction_free:.3f} % of the draw are free by the paper's rule,"
-        f" {100 * part:.4f} % of the square exactly: {off:.2f} standard errors apart. The clearance"
-        f" rule, a different test, leaves {100 * by_clearances().area / (2 * np.pi) ** 2:.2f} %.",
+@computes("F-11.5")
+def how_many_samples_over_which_range() -> Outcome:
+    box = paper_rule.box(robot())
+    turn = np.full((2, 2), np.pi) * [[-1], [1]]
+    ranges = {"one turn": turn, "the box of Table 6": np.array([box.lower, box.upper])}
+    part = (drawn().q + np.pi) / TURN
+    fits = {}
+    for number, (name, (low, high)) in product((1_000, 10_000, 100_000), ranges.items()):
+        if paper.SAMPLES["number"] in (None, number) and paper.SAMPLES["range"] in (None, name):
+            free = paper_rule.feasible(robot(), low + part[:number] * (high - low))
+            fits[f"{number} over {name}"] = bool(free.any() and not free.all())
+    return Outcome(
+        undetermined(fits),
+        "The text draws n configurations and gives neither n nor the range of each joint. All"
+        f" {sum(fits.values())} choices tried show both colours: {', '.join(fits)}.",
     )

@@ -9,9 +9,9 @@ from pkgutil import iter_modules
 from typing import TypeVar
 
 from lizarraga2025 import computations
-from lizarraga2025.verdicts import Finding
+from lizarraga2025.verdicts import Outcome
 
-Computation = Callable[[], Finding]
+Computation = Callable[[], Outcome]
 Case = TypeVar("Case")
 
 _BY_ID: dict[str, Computation] = {}
@@ -37,10 +37,10 @@ def computes(name: str) -> Callable[[Computation], Computation]:
 
 def computes_each(
     cases: Mapping[str, Case],
-) -> Callable[[Callable[[Case], Finding]], Callable[[Case], Finding]]:
+) -> Callable[[Callable[[Case], Outcome]], Callable[[Case], Outcome]]:
     """Register a function for several entries of a kind, each with what it is called with."""
 
-    def register(function: Callable[[Case], Finding]) -> Callable[[Case], Finding]:
+    def register(function: Callable[[Case], Outcome]) -> Callable[[Case], Outcome]:
         for name, case in cases.items():
             computes(name)(partial(function, case))
         return function

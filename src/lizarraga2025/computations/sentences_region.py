@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
+from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import (
     corrected,
@@ -13,6 +14,7 @@ from lizarraga2025.evidence.arms import (
     half_spaces,
     pairs,
     robot,
+    symbolic_robot,
     symmetric,
     tool_form,
 )
@@ -25,32 +27,38 @@ from lizarraga2025.evidence.joint_region import (
     least_height,
     square,
 )
-from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.evidence.tool_paths import AROUND, crossings, path_through
-from lizarraga2025.verdicts import Finding, judge, undetermined
-from qbound import circle_roots, pair_vector
+from lizarraga2025.evidence.rounding import SMALL, contact, counted
+from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
+from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound import circle_roots, clearance, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.geometry import polygon
+from qbound.geometry.polylines import self_crossings
 from qbound.measures import bodies, scaling
-from qbound.model.robot import Pair, Robot
-from qbound.region import paper_rule
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.region import paper_rule, solve
+from qbound.region.problem import Problem, state
+from qbound.symbols import joint_symbols
 
 Floats = NDArray[np.float64]
 
 
 @computes("S-18")
-def all_components_at_once() -> Finding:
-    alone = [
-        float(np.linalg.norm(pair_vector(robot(), pair)(q)))
-        for pair in pairs()
-        for q in _roots_of_one_component(pair)
-    ]
-    apart = [d for d in alone if d > 0.5]
-    return Finding(
+def all_components_at_once() -> Outcome:
+    alone = np.array(
+        [
+            np.linalg.norm(pair_vector(robot(), pair)(q))
+            for pair in pairs()
+            for q in _roots_of_one_component(pair)
+        ]
+    )
+    apart = alone[alone > 0.5]
+    far = f", up to {apart.max():.2f} cm" if len(apart) else ""
+    return Outcome(
         judge(holds=len(apart) > 0),
-        f"One component alone does not make a contact: its {len(alone)} roots include {len(apart)}"
-        f" at which the two points are more than 0.5 cm apart, up to {max(alone):.4f} cm. Table 6"
-        " uses roots of single components.",
+        f"One component alone does not make a contact: at {len(apart)} of its {len(alone)} roots"
+        f" the two points are more than 0.5 cm apart{far}. Table 6 uses roots of single"
+        " components.",
     )
 
 
@@ -61,7 +69,8 @@ def _roots_of_one_component(pair: Pair) -> list[Floats]:
     found = []
     for component in (0, 2):
         c0, a, b = vector[component].along(joint, robot().home)
-        for root in circle_roots(a, b, -c0).q:
+        roots = circle_roots(a, b, -c0)
+        for root in roots.q if roots.count > 0 else ():
             q = np.array(robot().home)
             q[joint] = root
             found.append(q)
@@ -69,32 +78,74 @@ def _roots_of_one_component(pair: Pair) -> list[Floats]:
 
 
 @computes("S-19")
-def exactly_where_it_meets_itself() -> Finding:
+def exactly_where_it_meets_itself() -> Outcome:
     printed = [closest_approach(robot(), pair)[1] for pair in pairs()]
     exact = [closest_approach(symmetric(), pair)[1] for pair in pairs(symmetric())]
-    return Finding(
+    digit = [closest_approach(corrected(), pair)[1] for pair in pairs(corrected())]
+    return Outcome(
         judge(holds=max(printed) < SMALL, under=max(exact) < SMALL),
-        f"With the printed digits no pair meets (least distances {min(printed):.4f} to"
-        f" {max(printed):.4f} cm); with the unrounded shape all four do, to {SMALL:g} cm.",
+        f"With the offsets to two decimals the points of a pair come to within {min(printed):.4f}"
+        f" to {max(printed):.4f} cm of each other, with one digit corrected to within"
+        f" {max(digit):.4f} cm. With the unrounded shape behind them all four pairs meet, at one"
+        " angle each.",
     )
 
 
 @computes("S-20")
-def half_spaces_are_independent() -> Finding:
+def half_spaces_are_independent() -> Outcome:
+    alone = [_vanishes_alone(i) for i in range(len(half_spaces()))]
     place = tool_form()(square(180))
     signs = np.stack([place @ half.normal >= half.offset for half in half_spaces()], axis=-1)
-    patterns = {tuple(p) for p in np.unique(signs.reshape(-1, 3), axis=0).tolist()}
-    never = [p for p in np.ndindex(2, 2, 2) if tuple(map(bool, p)) not in patterns]
-    nested = all(p[0] == 1 and p[1] == 0 for p in never)
-    return Finding(
-        judge(holds=not never, under=nested and len(never) == 2),
-        f"{len(patterns)} of 8 combinations occur. B5 asks x >= 15 and B6 x >= -15 cm of the same"
-        " point, so B5 implies B6; with B7 either is independent.",
+    patterns = np.unique(signs.reshape(-1, 3), axis=0)
+    nested = not (signs[..., 0] & ~signs[..., 1]).any()
+    return strongest(
+        {
+            "each of them being a condition by itself": judge(holds=all(alone)),
+            "each being free of what the others say": judge(
+                holds=len(patterns) == 8, under=nested and len(patterns) == 6
+            ),
+        },
+        f"{sum(alone)} of the {len(alone)} functions vanish in poses in which no other does. Of the"
+        f" 8 combinations of signs {len(patterns)} occur: B5 asks x >= 15 cm and B6 x >= -15 cm of"
+        " the same point, so B5 implies B6.",
     )
 
 
+def _vanishes_alone(index: int) -> bool:
+    """Tell whether a half-space's function vanishes in some pose in which no other one does."""
+    forms = [clearance(robot(), half) for half in half_spaces()]
+    q1 = np.linspace(-np.pi, np.pi, 73)
+    c0, a, b = np.moveaxis(forms[index].along(1, np.stack([q1, q1], -1)), -1, 0)
+    roots = circle_roots(a, b, -c0)
+    q = np.stack([q1, roots.q[1]], -1)[roots.count == 2]
+    others = [np.abs(form(q)) > SMALL for i, form in enumerate(forms) if i != index]
+    return bool(np.all(others, axis=0).any())
+
+
+@computes("S-20.1")
+def limits_are_respected() -> Outcome:
+    areas = [
+        sum(c.area for c in solve(_limited(walls), robot().home).components)
+        for walls in (half_spaces()[2:], half_spaces()[1:], half_spaces())
+    ]
+    kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
+    return Outcome(
+        judge(holds=all(kept), under=areas[0] > 0),
+        "The selected region respects B7, the one that its caption names. B5 and B6 of the same"
+        f" table are drawn in red and cut it: with B6 in force {areas[1]:.4f} of {areas[0]:.4f}"
+        f" rad² would be left, with B5 too {areas[2]:.4f}.",
+    )
+
+
+def _limited(walls: tuple[HalfSpace, ...]) -> Problem:
+    """State the paper's box of windows with these half-spaces in force."""
+    box = paper_rule.box(robot())
+    ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
+    return state(robot(), walls, ranges, [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")])
+
+
 @computes("S-21")
-def combinations_of_cosine_and_sine() -> Finding:
+def combinations_of_cosine_and_sine() -> Outcome:
     q = np.random.default_rng(4).uniform(-3, 3, (50, 2))
     worst, count = 0.0, 0
     for pair in pairs():
@@ -104,45 +155,76 @@ def combinations_of_cosine_and_sine() -> Finding:
         angle = q[:, joint, None]
         rest = vector(q) - (a * np.cos(angle) + b * np.sin(angle) + c0)
         worst, count = max(worst, float(np.abs(rest).max())), count + 2
-    return Finding(
+    return Outcome(
         judge(holds=worst < SMALL),
-        f"The {count} components of the point pairs are, of one joint each; the three of the walls"
-        " are too along either joint, with coefficients that depend on the other.",
+        f"The {count} components of the pairs are, each of one joint, plus a constant. The"
+        f" {len(half_spaces())} of the half-spaces are so along either joint, with coefficients"
+        " that depend on the other.",
     )
 
 
+@computes("S-21.1")
+def right_is_upper_and_left_is_lower() -> Outcome:
+    q1 = np.linspace(-np.pi, np.pi, 721)
+    rows = sorted({label.rpartition(",")[0] for label in paper.TABLE_6})
+    ordered = [
+        bool((_bound(f"{row},1}}", q1) >= _bound(f"{row},2}}", q1) - SMALL).all()) for row in rows
+    ]
+    return Outcome(
+        judge(holds=all(ordered), under=any(ordered)),
+        f"In {sum(ordered)} of {len(ordered)} rows of Table 6 the value with k = 1 is the larger,"
+        " whichever arctangent is meant, as both columns have the same one. The caption of Figure 4"
+        " names an upper side by k = 2 (F-4.2).",
+    )
+
+
+def _bound(label: str, q1: Floats) -> Floats:
+    """Return a bound of Table 6 over the first joint, where it is real, rad; zero elsewhere."""
+    import sympy as sp
+
+    formula = paper.expression(paper.TABLE_6[label]).subs(symbolic_robot()[1])
+    with np.errstate(invalid="ignore"):
+        value = sp.lambdify(joint_symbols(robot())[0], formula, "numpy")(q1)
+    return np.asarray(np.nan_to_num(np.broadcast_to(value, q1.shape)))
+
+
 @computes("S-22")
-def several_regions() -> Finding:
+def several_regions() -> Outcome:
     from skimage.measure import label
 
     points = by_clearances().components
-    whole = int(label(bodies_allow(square()), connectivity=1).max())  # type: ignore[no-untyped-call]
+    whole = int(label(bodies_allow(square(180)), connectivity=1).max())  # type: ignore[no-untyped-call]
     areas = ", ".join(f"{c.area:.4f}" for c in points)
-    return Finding(
-        judge(holds=whole > 1, under=len(points) > 1),
+    return strongest(
+        {
+            "regions of the boundary functions": judge(holds=len(points) > 1),
+            "regions of the whole links": judge(holds=whole > 1),
+        },
         f"By the clearances of the points there are {len(points)} ({areas} rad²). By the bodies of"
-        f" the links there is {whole}: in the others the bodies overlap throughout.",
+        f" the links there is {whole}, on a grid of 180 by 180: in the others the bodies overlap.",
     )
 
 
 @computes("S-23")
-def other_regions_are_out_of_reach() -> Finding:
-    home, *others = by_clearances().components
+def other_regions_are_out_of_reach() -> Outcome:
     with_home = [c.contains_home for c in by_clearances().components]
-    names = sorted({arc.boundary for loop in home.loops for arc in loop})
-    return Finding(
-        judge(holds=with_home == [True, *([False] * len(others))]),
-        "The regions are the connected pieces of what the clearances leave; home is in one of"
-        f" {len(with_home)}, walled in by {', '.join(names)}.",
+    loops = by_clearances().components[0].loops
+    names = sorted({arc.boundary for loop in loops for arc in loop})
+    others = len(with_home) - 1
+    return Outcome(
+        judge(holds=others > 0 and with_home == [True, *([False] * others)]),
+        f"The regions are the connected pieces of what the clearances leave; {sum(with_home)} of"
+        f" {len(with_home)} contains home. It is bounded by {', '.join(names)}, so every way out of"
+        " it crosses one of these.",
     )
 
 
 @computes("S-23.1")
-def home_pose_is_not_printed() -> Finding:
+def home_pose_is_not_printed() -> Outcome:
     poses = {"both joints at zero": (0, 0), "the arm upright": (-30, -60), "q1 alone": (45, 0)}
     within = {name: bool(paper_rule.feasible(robot(), np.radians(q))) for name, q in poses.items()}
     seen = ", ".join(f"{name} ({q1}°, {q2}°)" for name, (q1, q2) in poses.items() if within[name])
-    return Finding(
+    return Outcome(
         undetermined(within),
         f"The selected region holds {sum(within.values())} of {len(within)} candidates: {seen}. Any"
         " pose in it gives the same region, so nothing hangs on it; the robot file takes the pose"
@@ -151,23 +233,24 @@ def home_pose_is_not_printed() -> Finding:
 
 
 @computes("S-24")
-def six_intersection_points() -> Finding:
+def six_intersection_points() -> Outcome:
     by_rule = {name: len(closed_form.vertices(arm)) for name, arm in _robots().items()}
     home = by_clearances().home
     count = len(home.vertices) if home else 0
-    return Finding(
+    return Outcome(
         judge(holds=set(by_rule.values()) == {6} and len(by_windows().vertices) == 6),
-        "Six by the paper's rule, for the printed, the mended and the symmetric offsets alike; by"
-        f" the clearances the home region has {count} too.",
+        f"The region has {len(by_windows().vertices)} by the paper's rule, for the printed offsets"
+        " as for those with one digit corrected and the symmetric ones; by the clearances the home"
+        f" region has {count}.",
     )
 
 
 def _robots() -> dict[str, Robot]:
-    return {"printed": robot(), "mended": corrected(), "symmetric": symmetric()}
+    return {"printed": robot(), "corrected": corrected(), "symmetric": symmetric()}
 
 
 @computes("S-25")
-def nonlinear_functions_are_violated() -> Finding:
+def nonlinear_functions_are_violated() -> Outcome:
     depth = depth_below_edges()
     corners = closed_form.vertices(robot())
     shared = [
@@ -176,61 +259,82 @@ def nonlinear_functions_are_violated() -> Finding:
     ]
     match = all((d > SMALL) == (name == "B7") for d, name in zip(depth, shared, strict=True))
     worst = sorted(depth)[-2:]
-    return Finding(
-        judge(holds=match),
-        "Exactly the two edges between points of B7, the only function of two joints, leave the"
+    return Outcome(
+        judge(holds=bool(depth.max() > SMALL) and match),
+        "Just the two edges between points of B7, the only function of two joints, leave the"
         f" region, by {worst[1]:.4f} and {worst[0]:.4f} cm; the four on straight lines do not.",
     )
 
 
 @computes("S-26")
-def tangents_mend_it() -> Finding:
+def tangents_mend_it() -> Outcome:
     inner = {n: closed_form.refined(robot(), n, tangents=True) for n in (2, 3, 5)}
     least = {n: scaling.least_along_edges(floor(), p)[0] for n, p in inner.items()}
     kept = 100 * polygon.area(inner[5]) / by_windows().area
     chord = closed_form.refined(robot(), 33, tangents=False)
     deep = -scaling.least_along_edges(floor(), chord)[0]
-    return Finding(
+    return Outcome(
         judge(holds=min(least.values()) > -SMALL),
-        f"Corners of tangents at five points a curve keep every bound and {kept:.3f} % of the"
-        " region's area, without a margin. Chords through points on the curve do not: with"
-        f" {len(chord)} points the tool is still {deep:.5f} cm too low.",
+        f"Corners of tangents at five points of each curve keep every bound and {kept:.3f} % of the"
+        " region's area, without a margin. Points on the curve itself, joined by chords, do not:"
+        f" with {len(chord)} points the tool is still {deep:.4f} cm too low.",
     )
 
 
 @computes("S-27")
-def scaling_mends_it() -> Finding:
+def scaling_mends_it() -> Outcome:
     safe = largest_scale()
     margins = [least_height(s) for s in np.linspace(0.05, safe.scale - 1e-9, 20)]
-    return Finding(
+    return Outcome(
         judge(holds=least_height(0.98) > 0, under=min(margins) > -SMALL),
-        f"From scale {safe.scale:.9f} down; edge {safe.edge + 1} to {safe.edge + 2} binds, at q1 ="
-        f" {np.degrees(safe.q[0]):.4f}°, q2 = {np.degrees(safe.q[1]):.4f}°. A reader has to find"
-        " the factor: none is printed.",
+        f"From scale {safe.scale:.6f} down; edge {safe.edge + 1} to {safe.edge + 2} binds, at q1 ="
+        f" {np.degrees(safe.q[0]):.4f}°, q2 = {np.degrees(safe.q[1]):.4f}°. The text states no"
+        " factor, so a reader has to find it.",
     )
 
 
 @computes("S-28")
-def contact_on_the_boundary() -> Finding:
-    worst = {}
-    for name, arm in _robots().items():
-        box = paper_rule.box(arm)
-        rooms = np.array([bodies.contact_free_interval(arm, joint) for joint in (0, 1)])
-        worst[name] = float(np.degrees(np.abs(rooms - np.stack([box.lower, box.upper], -1)).max()))
-    return Finding(
-        judge(holds=worst["printed"] < 1e-6, under=worst["symmetric"] < 1e-6),
-        "Exactly so for the unrounded shape: on all four sides of the box two bodies touch. As"
-        f" printed, the side of B4 stops {worst['printed']:.4f}° before the contact, with one digit"
-        f" mended no side by more than {worst['mended']:.4f}°.",
+def contact_on_the_boundary() -> Outcome:
+    contacts = [_gap_of_bodies(pair) < contact(pair) for pair in pairs()]
+    worst = {name: _angle_to_contact(arm) for name, arm in _robots().items()}
+    return strongest(
+        {
+            "a collision that may follow there": judge(holds=any(contacts)),
+            "a contact that is there on every side": judge(
+                holds=worst["printed"] < 1e-6, under=worst["symmetric"] < 1e-6
+            ),
+        },
+        f"On {sum(contacts)} of the {len(contacts)} sides of the box of windows two bodies touch,"
+        " within the rounding of the printed offsets; for the unrounded shape on all. As printed,"
+        f" one side stops {worst['printed']:.4f}° before the contact, with one digit corrected none"
+        f" by more than {worst['corrected']:.4f}°.",
     )
 
 
+def _gap_of_bodies(pair: Pair) -> float:
+    """Return how far the bodies of a pair's links are apart where its window ends, cm."""
+    (joint,) = pair_vector(robot(), pair).joints()
+    box, q = paper_rule.box(robot()), np.array(robot().home, dtype=float)
+    sides = ((box.lower_bounds[joint], box.lower), (box.upper_bounds[joint], box.upper))
+    q[joint] = next(ends[joint] for bound, ends in sides if bound.boundary == pair.name)
+    frames = (str(joint), str(joint + 1))
+    return abs(float(bodies.gaps(robot(), q)[frames]))
+
+
+def _angle_to_contact(arm: Robot) -> float:
+    """Return the largest angle between a side of the box and the contact of bodies, deg."""
+    box = paper_rule.box(arm)
+    free = np.array([bodies.contact_free_interval(arm, joint) for joint in (0, 1)])
+    return float(np.degrees(np.abs(free - np.stack([box.lower, box.upper], -1)).max()))
+
+
 @computes("S-29")
-def order_is_not_kept() -> Finding:
+def order_is_not_kept() -> Outcome:
     around = path_through(AROUND)
-    simple_in_joints = len({tuple(p) for p in np.round(around.q[around.stops][:-1], 9)}) == 6
-    return Finding(
-        judge(holds=simple_in_joints and crossings(around) > 0),
-        "The six points are visited once each, and the tool's path crosses itself"
-        f" {crossings(around)} time.",
+    once = len({tuple(p) for p in np.round(around.q[around.stops][:-1], 9)}) == 6
+    crossed = len(self_crossings(tool_form()(around.q)[:, PLANE]))
+    return Outcome(
+        judge(holds=once and crossed > 0),
+        "Each of the six points is visited once, and the tool's path crosses itself in"
+        f" {counted(crossed, 'place')}.",
     )

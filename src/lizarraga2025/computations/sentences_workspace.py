@@ -7,143 +7,207 @@ import numpy as np
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import robot, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import SCALE, drawn, scaled, share_of_square
+from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
+from lizarraga2025.evidence.joint_region import (
+    SCALE,
+    body_gap,
+    distance_of_the_draw,
+    drawn,
+    largest_scale,
+    scaled,
+    share_of_square,
+    vertices,
+)
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     LEFT,
     RIGHT,
-    aspect,
+    crossings,
     det_jacobian,
+    enclosed,
+    feasible_neighbours,
     is_cut_by_the_singular_line,
+    is_feasible,
     neighbour_sequences,
     other_posture,
     path_through,
-    simple_neighbours,
     simple_sequences,
     stretched,
+    stretched_poses,
     workspace,
 )
-from lizarraga2025.verdicts import Finding, judge, require
+from lizarraga2025.verdicts import Outcome, judge, strongest
+from qbound.geometry import polygon
 from qbound.region import paper_rule
 from qbound.sampling import sample
 
 
 @computes("S-30")
-def greatest_reach() -> Finding:
+def greatest_reach() -> Outcome:
     q2 = np.linspace(-np.pi, np.pi, 7201)
     places = tool_form()(np.stack([0 * q2, q2], -1)) - robot().joints[0].origin
     reach = np.linalg.norm(places, axis=-1)
     best, at = float(reach.max()), float(q2[reach.argmax()])
     links = np.linalg.norm(robot().joints[1].origin) + np.linalg.norm(robot().point("3").at)
-    return Finding(
-        judge(holds=bool(abs(at - stretched()) < 1e-3 and best <= links + SMALL)),
+    return Outcome(
+        judge(holds=bool(abs(at - stretched()) < 1e-3 and abs(best - links) < 1e-6)),
         f"The distance of the tool from joint 1 is greatest at q2 = {np.degrees(stretched()):.4f}°,"
         f" where it is {links:.4f} cm, the sum of both links.",
     )
 
 
-@computes("S-31")
-def stretched_is_singular() -> Finding:
-    q = np.array([[0.3, stretched()], [-1.0, stretched()], [0.3, stretched() + 0.1]])
-    det = det_jacobian(q)
-    return Finding(
-        judge(holds=bool(np.abs(det[:2]).max() < SMALL < abs(det[2]))),
-        f"det J vanishes on the line q2 = {np.degrees(stretched()):.4f}° for every q1 (to {SMALL:g}"
-        f" cm²) and is {det[2]:.2f} cm² a tenth of a radian beside it.",
+@computes("S-30.1")
+def why_the_path_stays_open() -> Outcome:
+    areas = workspace()
+    rest = areas["union"] - areas["enclosed"]
+    outside = rest > SMALL and bool(np.isclose(rest, areas["twice"], rtol=1e-6))
+    middle = np.array([polygon.centroid(vertices())[0], stretched()])
+    reached = bool(paper_rule.feasible(robot(), middle))
+    return Outcome(
+        judge(holds=reached and outside),
+        "The outer edge of what the tool reaches is the image of the singular line, which no path"
+        f" through the points draws: the path round the region encloses {areas['enclosed']:.2f} of"
+        f" {areas['union']:.2f} cm², and the rest, reached in both postures, ends at the stretched"
+        " arm. That a path of five different points ends elsewhere than it begins is F-8.2.",
     )
 
 
+@computes("S-31")
+def stretched_is_singular() -> Outcome:
+    q = np.array([[0.3, stretched()], [-1.0, stretched()], [0.3, stretched() + 0.1]])
+    det = det_jacobian(q)
+    return Outcome(
+        judge(holds=bool(np.abs(det[:2]).max() < SMALL < abs(det[2]))),
+        f"det J vanishes on the line q2 = {np.degrees(stretched()):.4f}°, for every q1, and is"
+        f" {det[2]:.2f} cm² a tenth of a radian beside it.",
+    )
+
+
+@computes("S-2")
 @computes("S-32")
-def scaling_settles_nothing() -> Finding:
-    side = {s: aspect(scaled(s)) for s in (1.0, 0.96, SCALE, 0.9, 0.5, 0.1)}
-    parts = {s: (int((x < 0).sum()), int((x > 0).sum())) for s, x in side.items()}
-    require(set(parts.values()) == {(3, 3)}, "three points on either side of the singular line")
-    passing = sum(is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences())
-    return Finding(
-        judge(holds=passing == 0),
-        "At every scale tried, 1 to 0.1, three points lie on either side of the singular line, so"
-        f" any five of them lie on both: all walks cross it, among them the {passing} sequences of"
-        " neighbours.",
+def scaling_settles_the_stretched_pose() -> Outcome:
+    least = {s: float(floor()(stretched_poses(s)).min(initial=np.inf)) for s in (1.0, 0.99, SCALE)}
+    feasible = {s: len(feasible_neighbours(s)) for s in least}
+    passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
+    return strongest(
+        {
+            "a path planned in joint space that passes the stretched pose safely": judge(
+                holds=least[1.0] < 0 < least[0.99] and feasible[0.99] > 0,
+                under=least[1.0] < 0 < least[SCALE] and feasible[SCALE] > 0,
+            ),
+            "a path that keeps off the stretched pose": judge(holds=not all(passing)),
+        },
+        "Where the outline of the six points passes the stretched pose, the tool's height above"
+        f" its limit is {least[1.0]:.4f} cm at the least; at scale {SCALE:g} it is"
+        f" {least[SCALE]:.4f} cm, and {feasible[SCALE]} of {len(passing)} sequences of five"
+        f" neighbours are feasible, unscaled {feasible[1.0]}; the limit is scale"
+        f" {largest_scale().scale:.6f}. {sum(passing)} of them pass the stretched pose.",
     )
 
 
 @computes("S-33")
-def two_ways() -> Finding:
-    free = simple_neighbours()
-    mirror = (3, 4, 5, 0, 1, 2)
-    paired = {o for o in free if tuple(mirror[i] for i in o) in free}
-    forward = {min(o, o[::-1]) for o in paired}
-    return Finding(
-        judge(holds=len(simple_sequences()) == 2, under=len(forward) == 2),
-        f"{len(simple_sequences())} orders of five points do not cross themselves. If the five are"
-        f" to be neighbours and the two ways mirror images, {len(forward)} are left (and their"
-        " reverses): 6-1-2-3-4 on the right, 3-4-5-6-1 on the left.",
+def two_ways() -> Outcome:
+    sides = [float(np.sign(path_through(o).tool[-1, 0])) for o in (RIGHT, LEFT)]
+    ordered = all(is_feasible(o) and not crossings(path_through(o)) for o in (RIGHT, LEFT))
+    number = len(simple_sequences())
+    return strongest(
+        {
+            "there being one on either side": judge(holds=ordered and sides == [1, -1]),
+            "there being these two and no more": judge(holds=number == 2),
+        },
+        "The paths 6-1-2-3-4, which ends on the right, and 3-4-5-6-1, which ends on the left, are"
+        f" feasible at scale {SCALE:g} and do not cross themselves. They are two of {number} orders"
+        " of five points that do not.",
     )
 
 
 @computes("S-34")
-def choice_decides_the_pose() -> Finding:
+def choice_decides_the_pose() -> Outcome:
     ends = [np.degrees(path_through(o).final_pose) for o in (RIGHT, LEFT)]
     text = " and ".join(f"({a:.4f}°, {b:.4f}°)" for a, b in ends)
-    return Finding(
+    return Outcome(
         judge(holds=bool(np.abs(ends[0] - ends[1]).max() > 1)),
         f"The right-hand and the left-hand way end at {text}.",
     )
 
 
 @computes("S-35")
-def choice_decides_the_reach() -> Finding:
-    reach = {arm: [float(path_through(o, SCALE, arm).reach[-1]) for o in (RIGHT, LEFT)]
-             for arm in (robot(), symmetric())}  # fmt: skip
-    printed, exact = reach.values()
+def choice_decides_the_reach() -> Outcome:
+    ways = [[path_through(o, None, arm) for o in (RIGHT, LEFT)] for arm in (robot(), symmetric())]
+    final = [[float(way.reach[-1]) for way in pair] for pair in ways]
+    largest = [float(way.reach.max()) for way in ways[0]]
     spread = [float(path_through(o).reach[-1]) for o in neighbour_sequences()]
-    return Finding(
-        judge(holds=abs(exact[0] - exact[1]) > SMALL, under=max(spread) - min(spread) > 1),
-        f"Among all sequences the final reach runs from {min(spread):.4f} to {max(spread):.4f} cm."
-        f" Between right and left it differs by the rounded data alone: {printed[0]:.4f} and"
-        f" {printed[1]:.4f} cm as printed, {exact[0]:.4f} cm for both on the symmetric arm.",
+    return strongest(
+        {
+            "the reach in the final pose": judge(
+                holds=abs(final[0][0] - final[0][1]) > 0.01, under=float(np.ptp(spread)) > 1
+            ),
+            "the largest reach on the way": judge(holds=bool(np.ptp(largest) > 0.01)),
+        },
+        f"The final reach is {final[0][0]:.4f} cm on the right and {final[0][1]:.4f} cm on the"
+        f" left; over all sequences of neighbours it runs from {min(spread):.4f} to"
+        f" {max(spread):.4f} cm. Between right and left it differs by the rounded data alone: on"
+        f" the symmetric arm it is {final[1][0]:.4f} cm for both. The largest reach on the way is"
+        f" {largest[0]:.4f} cm on either.",
     )
 
 
 @computes("S-36")
-def mirrored_pose_on_one_trajectory() -> Finding:
-    p = scaled(SCALE, symmetric())
-    turned = np.radians([-60.0, -120.0]) - p[0]  # the arm mirrored at the z axis
-    straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
-    allowed = bool(paper_rule.feasible(symmetric(), straight).all())
-    mirrored = bool(np.allclose(turned, p[3], atol=SMALL))
-    apart = aspect(p[[0, 3]], symmetric())
-    require(apart[0] * apart[1] < 0, "mirrored poses on either side of the singular line")
-    right = path_through(RIGHT)
-    return Finding(
-        judge(holds=not (allowed and mirrored)),
-        "On the symmetric arm point 4 is the mirror image of point 1, and the straight joint path"
-        f" between them is feasible throughout ({len(straight)} poses checked). The book's"
-        " right-hand way visits both too, stretched on the way (q2 from"
-        f" {np.degrees(right.q[:, 1].min()):.2f}° to {np.degrees(right.q[:, 1].max()):.2f}°).",
+def mirrored_pose_on_one_trajectory() -> Outcome:
+    scales = (1.0, 0.96, SCALE, 0.9, 0.8)
+    ends = np.array([path_through(o, s).final_pose for s in scales for o in (RIGHT, LEFT)])
+    flipped = other_posture(ends)
+    shut = ~paper_rule.feasible(robot(), flipped)
+    deep = -body_gap(flipped)
+    return strongest(
+        {
+            "the last link on the other side of the line from joint 1 to the tool": judge(
+                holds=bool(shut.all())
+            ),
+            "the whole arm mirrored at the z axis": judge(holds=not _mirror_image_is_reached()),
+        },
+        f"At the end of both paths, at {len(scales)} scales from 1 to 0.8, the second posture with"
+        f" the tool at the same place is infeasible in {int(shut.sum())} of {len(shut)} cases;"
+        f" bodies overlap there by {deep.min():.2f} to {deep.max():.2f} cm. The arm mirrored at the"
+        " z axis can be reached from the final pose, through the stretched pose: on the symmetric"
+        " arm point 4 is the mirror image of point 1, and the straight joint path between them is"
+        " feasible.",
     )
 
 
+def _mirror_image_is_reached() -> bool:
+    """Tell whether the symmetric arm gets from point 1 to its mirror image, point 4, directly."""
+    p = scaled(SCALE, symmetric())
+    mirrored = np.allclose(np.radians([-60.0, -120.0]) - p[0], p[3], atol=SMALL)
+    straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
+    return bool(mirrored and paper_rule.feasible(symmetric(), straight).all())
+
+
 @computes("S-37")
-def figure_10_for_11() -> Finding:
-    number, subject = paper.NAMED_FIGURE
-    showing = [figure for figure, shows in paper.CAPTIONS.items() if shows == subject]
-    return Finding(
-        judge(holds=showing == [number], corrected=len(showing) == 1),
-        f"The sentence names Figure {number}, whose caption announces {paper.CAPTIONS[number]};"
-        f" {subject} are announced by the caption of Figure {showing[0]} alone.",
+def figure_10_for_11() -> Outcome:
+    number, words = paper.ON_NUMERICAL_METHODS
+    said = {
+        figure: [word for word in words if word in caption.lower()]
+        for figure, caption in paper.CAPTIONS_AS_PRINTED.items()
+    }
+    whole = [figure for figure, found in said.items() if len(found) == len(words)]
+    return Outcome(
+        judge(holds=whole == [number], corrected=len(whole) == 1 and not said[number]),
+        f"Of the words {', '.join(words)}, by which the text says what is seen, the caption of"
+        f" Figure {number} has {len(said[number])} and that of Figure"
+        f" {', '.join(map(str, whole))} all {len(words)}. The next paragraph names Figure 11 for"
+        " the experiment.",
     )
 
 
 @computes("S-38")
-def sampling_is_costly() -> Finding:
+def sampling_is_costly() -> Outcome:
     rows = []
     for k in (2, 3, 6):
         error = 10.0**-k
         rows.append((k, effort.samples_needed(error), effort.closed_form_evaluations(error)))
     text = "; ".join(f"1e-{k}: {drawn:.3g} against {solved}" for k, drawn, solved in rows)
-    return Finding(
+    return Outcome(
         judge(holds=all(drawn > 100 * solved for _, drawn, solved in rows)),
         "At equal accuracy, configurations judged against solutions of Theorem 2, for a relative"
         f" error of the area of {text}. At the accuracy of a picture the cost is no obstacle.",
@@ -151,20 +215,25 @@ def sampling_is_costly() -> Finding:
 
 
 @computes("S-39")
-def no_continuous_boundary() -> Finding:
+def no_continuous_boundary() -> Outcome:
     errors = {n: effort.contour_error(n) for n in (50, 100, 200, 400)}
     closed = all(effort.contour_is_closed(n) for n in errors)
-    text = ", ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
-    on_it = (paper_rule.box(robot()).lower == drawn().q).any()
-    return Finding(
-        judge(holds=not closed, under=not on_it),
-        "True of drawn points. The same predicate on a grid gives one closed contour by marching"
-        f" squares; error of its area by evaluations: {text}.",
+    text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
+    return strongest(
+        {
+            "the random draws of which the sentence speaks": judge(
+                holds=distance_of_the_draw() > 0
+            ),
+            "every numerical method": judge(holds=not closed),
+        },
+        f"None of {len(drawn().q)} random configurations lies on the boundary. The same predicate"
+        " on a grid gives one closed contour by marching squares; relative error of its area by"
+        f" evaluations: {text}.",
     )
 
 
 @computes("S-40")
-def efficiency_and_volume() -> Finding:
+def efficiency_and_volume() -> Outcome:
     part = share_of_square()
     sizes = np.array([100, 1000, 10_000])
     free = [
@@ -172,36 +241,39 @@ def efficiency_and_volume() -> Finding:
         for n in sizes
     ]
     errors = np.sqrt(np.mean((np.array(free) / part - 1) ** 2, axis=1))
-    slope = float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
-    return Finding(
-        judge(holds=-0.6 < slope < -0.4),
-        f"The error of the area falls as the number of samples to the power {slope:.3f} (40 draws"
-        " each of 100, 1000 and 10,000): one more digit costs a hundredfold.",
+    law = np.sqrt((1 - part) / part / sizes)
+    holds = part < 1 and bool((np.abs(errors / law - 1) < 0.5).all())
+    text = "; ".join(f"{n}: {e:.1g}" for n, e in zip(sizes, errors, strict=True))
+    return Outcome(
+        judge(holds=holds),
+        "The relative error of the area falls as the square root of the number of samples"
+        f" (root mean square of 40 draws, by samples: {text}), so one more digit costs a"
+        " hundredfold.",
     )
 
 
 @computes("S-41")
-def overlap_comes_from_postures() -> Finding:
+def overlap_comes_from_postures() -> Outcome:
     areas, draw = workspace(), drawn()
-    free = draw.q[draw.free]
-    alone = ~paper_rule.feasible(robot(), other_posture(free))
-    weight = np.abs(det_jacobian(free))
-    drawn_area = float((weight * alone).sum() / len(draw.q) * (2 * np.pi) ** 2)
-    return Finding(
-        judge(holds=abs(drawn_area / areas["once"] - 1) < 0.05),
+    alone = ~paper_rule.feasible(robot(), other_posture(draw.q)) & draw.free
+    share = np.abs(det_jacobian(draw.q)) * alone * (2 * np.pi) ** 2
+    drawn_area, error = float(share.mean()), float(share.std() / np.sqrt(len(share)))
+    return Outcome(
+        judge(holds=areas["once"] > SMALL and abs(drawn_area - areas["once"]) < 4 * error),
         "A place shows both colours exactly where one of its two postures is safe:"
         f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² of safe places, without"
-        f" sampling. The draw gives {drawn_area:.1f} cm².",
+        f" sampling. The draw gives {drawn_area:.0f} cm², with a standard error of {error:.0f}.",
     )
 
 
 @computes("S-42")
-def lobes_show() -> Finding:
-    areas = workspace()
+def lobes_show() -> Outcome:
+    areas, parts = workspace(), enclosed().geoms
     same = abs(areas["enclosed"] - areas["once"]) < 1e-3
-    return Finding(
-        judge(holds=same),
-        f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in two lobes, is"
-        f" just the part with one safe posture ({areas['once']:.2f} cm²): the lateral shapes are"
-        " the places of both colours.",
+    sides = sorted(float(np.sign(part.centroid.x)) for part in parts)
+    return Outcome(
+        judge(holds=same and sides == [-1, 1]),
+        f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in {len(parts)}"
+        f" parts, is just the part with one safe posture ({areas['once']:.2f} cm²): the lateral"
+        " shapes, one on either side, are the places of both colours.",
     )

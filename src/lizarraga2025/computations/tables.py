@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from math import prod
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations.bounds import RESIDUAL, half_space_bound, pair_bound
+from lizarraga2025.computations.bounds import (
+    RESIDUAL,
+    HalfSpaceBound,
+    PairBound,
+    half_space_bound,
+    pair_bound,
+)
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import (
     corrected,
@@ -20,13 +31,24 @@ from lizarraga2025.evidence.arms import (
     robot,
     symbolic_robot,
 )
-from lizarraga2025.evidence.joint_region import vertices
-from lizarraga2025.evidence.rounding import HALF_DIGIT, contact, degrees, radii
-from lizarraga2025.verdicts import Finding, judge, undetermined
+from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL, contact, degrees, radii
+from lizarraga2025.verdicts import (
+    FAVOUR,
+    VERDICTS,
+    Outcome,
+    Verdict,
+    judge,
+    strongest,
+    undetermined,
+)
 from qbound import circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
+from qbound.forms.angles import TURN
 from qbound.model.robot import Robot
+from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
+
+Floats = NDArray[np.float64]
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 
@@ -49,7 +71,7 @@ def _tool_uses() -> dict[str, str]:
 
 
 @computes("T-1")
-def offsets() -> Finding:
+def offsets() -> Outcome:
     import sympy as sp
 
     arm, _ = symbolic_robot()
@@ -58,7 +80,7 @@ def offsets() -> Finding:
     cm = paper.offsets_in_cm()
     x, z = cm["x_{1,2}"], cm["z_{1,2}"]
     rounded = max(abs(x - 30 * 0.5), abs(z - 30 * np.sqrt(0.75)))
-    return Finding(
+    return Outcome(
         judge(holds=used == {row[3] for row in paper.TABLE_1} and rounded <= HALF_DIGIT),
         f"The place of the tool depends on exactly these {len(used)} lengths. Link 1 measures"
         f" {np.hypot(x, z):.4f} cm at {np.degrees(np.arctan2(z, x)):.4f}°, thirty centimetres at"
@@ -67,10 +89,10 @@ def offsets() -> Finding:
 
 
 @computes_each({f"T-1.{number}": row[3] for number, row in enumerate(paper.TABLE_1, start=1)})
-def offset(label: str) -> Finding:
+def offset(label: str) -> Outcome:
     _, values = symbolic_robot()
     in_file = {str(symbol): value for symbol, value in values.items()}
-    return Finding(
+    return Outcome(
         judge(holds=in_file[label] == paper.offsets_in_cm()[label] and bool(_tool_uses()[label])),
         f"{in_file[label]} cm in the robot file; the tool's place has it with the factor"
         f" {_tool_uses()[label].replace('*', ' ')}.",
@@ -80,24 +102,45 @@ def offset(label: str) -> Finding:
 # --- Table 2: forward kinematics ------------------------------------------------------------------
 
 
+Row = tuple[Any, Any]
+"""The printed vector and matrix of a row of Table 2, as SymPy matrices."""
+
+
 @cache
-def _printed_kinematics(turn: int = 1) -> dict[tuple[str, str], tuple[Any, Any]]:
+def _printed_kinematics(turn: int = 1) -> dict[tuple[str, str], Row]:
     """Return the rows of Table 2, worked out; the sense of R_y can be turned round."""
+    rows: dict[tuple[str, str], Row] = {}
+    for a, b, vector, matrix in paper.TABLE_2:
+        rows[a, b] = _vector(vector, rows), _matrix(matrix, rows, turn)
+    return rows
+
+
+def _vector(text: str, rows: Mapping[tuple[str, str], Row]) -> Any:
+    """Read a vector such as [0 0 z_{0,1}]^T, or a sum of earlier rows, each perhaps turned."""
     import sympy as sp
 
-    z01, z12, x12, x23 = (sp.Symbol(label, real=True) for *_, label in paper.TABLE_1)
-    # R_y(q) carries z towards x; SymPy's rot_axis2 turns the other way.
-    R1, R2 = (sp.rot_axis2(-turn * q) for q in joint_symbols(robot()))
-    r01, r12, r23 = sp.Matrix([0, 0, z01]), sp.Matrix([x12, 0, z12]), sp.Matrix([x23, 0, 0])
-    r02 = r01 + R1 * r12
-    return {
-        ("0", "0"): (sp.zeros(3, 1), sp.eye(3)),
-        ("0", "1"): (r01, R1),
-        ("1", "2"): (r12, R2),
-        ("2", "3"): (r23, sp.eye(3)),
-        ("0", "2"): (r02, R1 * R2),
-        ("0", "3"): (r02 + R1 * R2 * r23, R1 * R2),
-    }
+    if text.startswith("["):
+        entries = text.removeprefix("[").removesuffix("]^T").split(r"\ ")
+        return sp.Matrix([0 if x == "0" else sp.Symbol(x, real=True) for x in entries])
+    found = sp.zeros(3, 1)
+    for sign, a, b, c, d in re.findall(_TERM, text):
+        turned = rows[a, b][1] if a else sp.eye(3)
+        found += (-1 if sign == "-" else 1) * turned * rows[c, d][0]
+    return found
+
+
+def _matrix(text: str, rows: Mapping[tuple[str, str], Row], turn: int) -> Any:
+    """Read a rotation: I, R_y(q_1) or a product of earlier rows."""
+    import sympy as sp
+
+    if of_joint := re.fullmatch(r"R_y\(q_(\d)\)", text):
+        # R_y(q) carries z towards x; SymPy's rot_axis2 turns the other way.
+        return sp.rot_axis2(-turn * joint_symbols(robot())[int(of_joint[1]) - 1])
+    return prod((rows[a, b][1] for a, b in re.findall(r"R_\{(\d),(\d)\}", text)), start=sp.eye(3))
+
+
+_TERM: Final = r"([+-]?) ?(?:R_\{(\d),(\d)\})?\\mathbf\{r\}_\{(\d),(\d)\}"
+"""A term of a printed vector: sign, indices of a rotation if there is one, and of a vector."""
 
 
 @cache
@@ -113,10 +156,10 @@ def _agrees(a: str, b: str, turn: int = 1) -> bool:
 
 
 @computes("T-2")
-def kinematics() -> Finding:
+def kinematics() -> Outcome:
     rows = [_agrees(*row) for row in _printed_kinematics()]
     other = sum(_agrees(*row, turn=-1) for row in _printed_kinematics())
-    return Finding(
+    return Outcome(
         judge(holds=all(rows)),
         f"{sum(rows)} of {len(rows)} rows agree by identity with the frames derived from the file,"
         f" if R_y(q) carries z towards x, as eq. (29) has it; with the other sense {other} would.",
@@ -124,13 +167,14 @@ def kinematics() -> Finding:
 
 
 @computes_each({f"T-2.{number}": row[:2] for number, row in enumerate(paper.TABLE_2, start=1)})
-def row_of_kinematics(frames: tuple[str, str]) -> Finding:
+def row_of_kinematics(frames: tuple[str, str]) -> Outcome:
     vector, _ = _printed_kinematics()[frames]
     symbols = {symbol for component in vector for symbol in component.free_symbols}
-    return Finding(
-        judge(holds=_agrees(*frames)),
-        f"Vector (of {len(symbols)} symbols) and rotation equal the derived ones; the differences"
-        " simplify to zero.",
+    equal = _agrees(*frames)
+    return Outcome(
+        judge(holds=equal),
+        f"Vector (of {len(symbols)} symbols) and rotation {'equal' if equal else 'are not'} those"
+        " derived from the chain, by identity.",
     )
 
 
@@ -138,13 +182,14 @@ def row_of_kinematics(frames: tuple[str, str]) -> Finding:
 
 
 @computes_each({"T-3.1": 1, "T-3.2": 2, "T-3.3": 3, "T-4.2": 4})
-def offsets_of_a_pair(number: int) -> Finding:
+def offsets_of_a_pair(number: int) -> Outcome:
     pair = pairs()[number - 1]
     first, second = radii(robot(), pair)
     with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
     gap, limit = abs(first - second), contact(pair)
     slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm."
-    return Finding(
+    slip += " All hangs on one digit of a converted text: where the page has 9.09, nothing is off."
+    return Outcome(
         judge(holds=gap <= limit, corrected=with_9_09 <= limit),
         f"The points are {first:.4f} and {second:.4f} cm from the joint between them. The"
         f" difference of {gap:.4f} cm compares with {limit:.4f} cm that rounding to two decimals"
@@ -152,8 +197,8 @@ def offsets_of_a_pair(number: int) -> Finding:
     )
 
 
-@computes_each({"T-3.4": 1, "T-3.5": 2, "T-3.6": 3, "T-4.3": 4, "T-5.4": 5, "T-5.5": 6, "T-5.6": 7})
-def vector_of_a_boundary(number: int) -> Finding:
+@computes_each({"T-3.4": 1, "T-3.5": 2, "T-3.6": 3, "T-4.3": 4})
+def vector_of_a_pair(number: int) -> Outcome:
     import sympy as sp
 
     arm, _ = symbolic_robot()
@@ -163,7 +208,7 @@ def vector_of_a_boundary(number: int) -> Finding:
     ]
     left = [sp.expand(d - p) for d, p in zip(derived, printed, strict=True)]
     zero = sum(d == 0 for d in derived)
-    return Finding(
+    return Outcome(
         judge(holds=not any(left)),
         f"All {len(left)} components equal those derived from the chain; {zero} of them"
         f" {'is' if zero == 1 else 'are'} identically zero.",
@@ -171,14 +216,20 @@ def vector_of_a_boundary(number: int) -> Finding:
 
 
 @computes("T-3")
-def table_3() -> Finding:
-    rows = [row(n) for row in (offsets_of_a_pair, vector_of_a_boundary) for n in (1, 2, 3)]
-    right = sum(row.verdict == "confirmed" for row in rows)
-    return Finding(
-        judge(holds=right == len(rows)),
-        f"{right} of {len(rows)} rows are confirmed: three pairs of points whose radii agree to the"
-        " printed digits, and three vectors that follow from the chain.",
-    )
+def table_3() -> Outcome:
+    rows = [row(n) for row in (offsets_of_a_pair, vector_of_a_pair) for n in (1, 2, 3)]
+    return Outcome(_of_a_table(rows), f"{_in_words(rows)}.")
+
+
+def _of_a_table(rows: Iterable[Outcome]) -> Verdict:
+    """Return the verdict on a table: the least favourable of its rows."""
+    return max((row.verdict for row in rows), key=FAVOUR.index)
+
+
+def _in_words(rows: Sequence[Outcome]) -> str:
+    """Return how many rows have each verdict, such as "Of 3 rows 1 confirmed, 2 misprint"."""
+    counts = Counter(row.verdict for row in rows)
+    return f"Of {len(rows)} rows " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
 
 
 def _roots_of_b4(of: Robot) -> int:
@@ -191,21 +242,18 @@ def _roots_of_b4(of: Robot) -> int:
 
 
 @computes("T-4")
-def table_4() -> Finding:
-    rows = (unit_of_table_4(), offsets_of_a_pair(4), vector_of_a_boundary(4))
-    slips = sum(row.verdict == "misprint" for row in rows)
-    return Finding(
-        judge(holds=not slips, corrected=rows[2].verdict == "confirmed"),
-        f"{slips} slips in {len(rows)} rows: the unit (T-4.1) and one digit (T-4.2). The vector"
-        " itself follows from the chain (T-4.3).",
+def table_4() -> Outcome:
+    rows = (unit_of_table_4(), offsets_of_a_pair(4), vector_of_a_pair(4))
+    return Outcome(
+        _of_a_table(rows), f"{_in_words(rows)}: the unit (T-4.1), one digit (T-4.2), the vector."
     )
 
 
 @computes("T-4.1")
-def unit_of_table_4() -> Finding:
+def unit_of_table_4() -> Outcome:
     in_mm, in_cm = _roots_of_b4(in_millimetres()), _roots_of_b4(robot())
     far, near = radii(in_millimetres(), pairs(in_millimetres())[3])
-    return Finding(
+    return Outcome(
         judge(holds=in_mm > 0, corrected=in_cm == 4),
         f"In mm the points are {far:.2f} and {near:.2f} cm from joint 2, and the two components of"
         f" B_4 have {in_mm} roots: the bounds of Table 6 and the β_{{4,1,2}} of Figure 4 would not"
@@ -216,12 +264,12 @@ def unit_of_table_4() -> Finding:
 # --- Table 5: half-spaces -------------------------------------------------------------------------
 
 
-def _six_points(of: Robot) -> int:
-    """Count the points of Figure 5 that exist; none where the rule names no polygon."""
+def _corners(of: Robot) -> Floats:
+    """Return the points of Figure 5, rad; none where the rule names no polygon."""
     try:
-        return len(closed_form.vertices(of))
+        return np.array([corner.q for corner in closed_form.vertices(of)])
     except ValueError:
-        return 0
+        return np.zeros((0, 2))
 
 
 def _with_floor(height: float) -> Robot:
@@ -230,24 +278,17 @@ def _with_floor(height: float) -> Robot:
 
 
 @computes("T-5")
-def table_5() -> Finding:
+def table_5() -> Outcome:
     rows = [unit_of_the_floor(), unit_of_the_side_limits(), selection()]
-    rows += [vector_of_a_boundary(number) for number in (5, 6, 7)]
-    counts = {
-        verdict: sum(row.verdict == verdict for row in rows)
-        for verdict in ("confirmed", "misprint", "not determined by the paper")
-    }
-    return Finding(
-        judge(holds=counts["confirmed"] == len(rows), corrected=counts["misprint"] > 0),
-        f"Of {len(rows)} rows " + ", ".join(f"{n} {v}" for v, n in counts.items()) + ".",
-    )
+    rows += [vector_of_a_half_space(number) for number in (5, 6, 7)]
+    return Outcome(_of_a_table(rows), f"{_in_words(rows)}; the units are those of T-5.1 and T-5.2.")
 
 
 @computes("T-5.1")
-def unit_of_the_floor() -> Finding:
+def unit_of_the_floor() -> Outcome:
     height = {unit: paper.offsets_in_cm(mm_means=unit)["z_{min,1}"] for unit in ("mm", "cm")}
-    points = {unit: _six_points(_with_floor(h)) for unit, h in height.items()}
-    return Finding(
+    points = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
+    return Outcome(
         judge(holds=points["mm"] == 6, corrected=points["cm"] == 6),
         f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points; at"
         f" {height['mm']:.3f} cm the curve of the floor turns back before it reaches the upper side"
@@ -256,40 +297,57 @@ def unit_of_the_floor() -> Finding:
 
 
 @computes("T-5.2")
-def unit_of_the_side_limits() -> Finding:
+def unit_of_the_side_limits() -> Outcome:
+    region = _corners(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
     fits, seen = {}, []
     for unit in ("mm", "cm"):
         cm = paper.offsets_in_cm(mm_means=unit)
         offsets = (cm["x_{min,1}"], cm["x_{min,2}"])
         sides = (replace(w, offset=x) for w, x in zip(half_spaces(), offsets, strict=False))
-        moved = replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1]))
-        corners = np.array([vertex.q for vertex in closed_form.vertices(moved)])
-        fits[unit] = bool(np.allclose(corners, vertices()))
+        corners = _corners(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
+        fits[unit] = len(corners) == len(region) and np.allclose(corners, region)
         seen.append(f"x = ±{cm['x_{min,1}']:g} cm")
     base = abs(float(robot().point("6").at[0]))
-    return Finding(
+    return Outcome(
         undetermined(fits),
         f"With {' and with '.join(seen)} the six points are the same, for neither wall bounds the"
-        f" region. For cm speaks the base, whose corners stand at ±{base} cm, and the unit of all"
-        " other lengths.",
+        f" region. The unit of all other lengths and the base, whose corners stand at ±{base} cm,"
+        " speak for cm.",
     )
 
 
 @computes("T-5.3")
-def selection() -> Finding:
-    S_x, S_z = np.diag([1, 0, 0]), np.diag([0, 0, 1])
-    projections = all(
-        np.array_equal(S @ S, S) and np.array_equal(S, np.outer(n, n))
-        for S, n in ((S_x, [1, 0, 0]), (S_z, [0, 0, 1]))
+def selection() -> Outcome:
+    import sympy as sp
+
+    S = {name: sp.Matrix(rows) for name, rows in paper.SELECTION.items()}
+    selects = {"S_x": sp.diag(1, 0, 0), "S_z": sp.diag(0, 0, 1)}
+    normals = [sp.Matrix([int(x) for x in w.normal]) for w in half_spaces()]
+    of_walls = [S[name] for name, _ in paper.TABLE_5.values()]
+    products = all(n * n.T == of_wall for n, of_wall in zip(normals, of_walls, strict=True))
+    return Outcome(
+        judge(holds=selects == S and products),
+        "Each is zero but for a one in its place on the diagonal, a projection; it is n n^T with"
+        f" the normal n of the wall, for all {len(normals)} walls of the robot file.",
     )
-    of_file = all(
-        np.array_equal(np.outer(w.normal, w.normal), S)
-        for w, S in zip(half_spaces(), (S_x, S_x, S_z), strict=True)
-    )
-    return Finding(
-        judge(holds=projections and of_file),
-        "Both are projections, S S = S, the product n n^T of the wall's normal with itself; so are"
-        f" those of the {len(half_spaces())} walls of the robot file.",
+
+
+@computes_each({"T-5.4": 5, "T-5.5": 6, "T-5.6": 7})
+def vector_of_a_half_space(number: int) -> Outcome:
+    import sympy as sp
+
+    arm, _ = symbolic_robot()
+    derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
+    name, limit = paper.TABLE_5[number]
+    S = sp.Matrix(paper.SELECTION[name])
+    place, _ = _printed_kinematics()["0", "3"]
+    printed = S * (place - sp.Symbol(limit, real=True) * sp.ones(3, 1))
+    left = [sp.expand(d - p) for d, p in zip(derived, printed, strict=True)]
+    zero = sum(d == 0 for d in derived)
+    return Outcome(
+        judge(holds=not any(left)),
+        f"With the printed matrix and r_{{0,3}} of Table 2 the {len(left)} components are those"
+        f" derived from the chain; {zero} of them are identically zero.",
     )
 
 
@@ -297,7 +355,7 @@ def selection() -> Finding:
 
 
 @computes("T-6")
-def table_6() -> Finding:
+def table_6() -> Outcome:
     points = [label for label in paper.TABLE_6 if paper.indices(label)[0] < 5]
     found = [pair_bound(label) for label in points]
     rest = [half_space_bound(label) for label in paper.TABLE_6 if label not in points]
@@ -305,10 +363,10 @@ def table_6() -> Finding:
     atan2 = sum(bound.residual < RESIDUAL for bound in found)
     of_half_spaces = sum(bound.residual < RESIDUAL for bound in rest)
     total = len(paper.TABLE_6)
-    return Finding(
+    return Outcome(
         judge(holds=arctan + of_half_spaces == total, under=atan2 + of_half_spaces == total),
-        f"As printed, with arctan, {arctan + of_half_spaces} of {total} bounds are roots of their"
-        f" components; with atan2 all {atan2 + of_half_spaces}, those of the walls where they"
+        f"With arctan {arctan + of_half_spaces} of {total} bounds are roots of their components,"
+        f" with atan2 all {atan2 + of_half_spaces}; those of the walls where eq. (36) lets them"
         " exist.",
     )
 
@@ -316,48 +374,93 @@ def table_6() -> Finding:
 ROWS = {f"T-6.{row}": paper.indices(name) for row, name in enumerate(paper.EQUATION_29, start=1)}
 """The indices i and j of each row of Table 6."""
 
+SURROUNDS: Final = "bounds between which the region lies"
+SEPARATES: Final = "a range that ends where a collision begins"
+"""The two fair readings of a row, as words that complete "read as"."""
+
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] < 5})
-def window_of_a_pair(ij: tuple[int, ...]) -> Finding:
+def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
     upper, lower = (pair_bound(f"beta_{{{ij[0]},{ij[1]},{k}}}") for k in (1, 2))
-    turn = float(np.degrees(upper.value - lower.value))
-    inside = [] if upper.at_contact else _copies_inside(upper.contact, lower.value, upper.value)
-    home = lower.value < 0 < upper.value
-    plain = lower.plain < 0 < upper.plain and upper.plain_residual < RESIDUAL
-    text = f"From {degrees(lower.value)} to {degrees(upper.value)}, {turn:.0f}°: one root twice."
-    if inside:
-        text += f" The points meet inside it, at {degrees(inside[0])}, so the window lets the"
-        text += f" pair collide, and its ends are no contact ({upper.distance:.2f} cm apart)."
-    else:
-        text += " It holds home and runs from contact to contact."
-    if not plain:
-        text += f" With arctan it is {degrees(lower.plain)} to {degrees(upper.plain)}, no roots."
+    are_roots = max(upper.plain_residual, lower.plain_residual) < RESIDUAL
+    as_printed = are_roots and _surrounds(ij[0], lower.plain, upper.plain)
+    with_atan2 = _surrounds(ij[0], lower.value, upper.value)
+    at_contact = upper.at_contact and lower.at_contact
+    met = upper.distance <= upper.allowed
+    readings = {
+        SURROUNDS: judge(holds=as_printed, constrains=at_contact, under=with_atan2),
+        SEPARATES: judge(
+            holds=as_printed and at_contact and met,
+            under=with_atan2 and at_contact,
+            corrected=not at_contact,
+        ),
+    }
+    text = f"From {degrees(lower.value)} to {degrees(upper.value)}, a full turn. "
+    text += _ends_of_a_window(upper, lower)
+    if not are_roots:
+        text += f" These are the values with atan2; arctan gives {degrees(lower.plain)} and"
+        text += f" {degrees(upper.plain)}, which are no roots."
     if ij == (3, 3):
         shifted = [degrees(bound.plain + np.pi) for bound in (lower, upper)]
         text += f" With arctan + π where a < 0 it is {shifted[0]} to {shifted[1]}, without home."
-    good = home and not inside
-    met = upper.distance <= upper.allowed
-    return Finding(judge(holds=good and plain and met, under=good), text)
+    return strongest(readings, text)
 
 
-def _copies_inside(q: float, low: float, high: float) -> list[float]:
-    """Return the copies of an angle, modulo full turns, that lie inside an interval."""
-    copies = q + 2 * np.pi * np.arange(-3, 4)
-    return [float(x) for x in copies if low < x < high]
+def _surrounds(pair: int, low: float, high: float) -> bool:
+    """Tell whether the region lies between two values of the joint that a pair bounds."""
+    (joint,) = pair_vector(robot(), pairs()[pair - 1]).joints()
+    box = paper_rule.box(robot())
+    return bool(low <= box.lower[joint] + SMALL and box.upper[joint] - SMALL <= high)
+
+
+def _ends_of_a_window(upper: PairBound, lower: PairBound) -> str:
+    if not upper.at_contact:
+        copies = upper.contact + TURN * np.arange(-2, 3)
+        inside = next(q for q in copies if lower.value < q < upper.value)
+        return (
+            "The region lies in between, but no end cuts anything off: both are the root at which"
+            f" the points are {upper.distance:.2f} cm apart; they meet at {degrees(inside)}."
+        )
+    text = "The region lies in between, and each end is the root at which the points meet"
+    if upper.distance <= upper.allowed:
+        return f"{text}."
+    return f"{text}, here to within {upper.distance:.2f} cm, for a digit is off (T-4.2)."
 
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] > 4})
-def window_of_a_half_space(ij: tuple[int, ...]) -> Finding:
+def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
     i, j = ij
     upper, lower = (half_space_bound(f"beta_{{{i},{j},{k}}}") for k in (1, 2))
+    are_roots = max(upper.residual, lower.residual) < RESIDUAL
+    length = upper.q[:, 1] - lower.q[:, 1]
     form = components(robot(), robot().boundary(f"B{i}"))[j - 1]
-    s = (np.arange(200) + 0.5)[:, None] / 200
-    q2 = lower.q[:, 1] + s * (upper.q[:, 1] - lower.q[:, 1])
+    q2 = lower.q[:, 1] + (np.arange(200)[:, None] + 0.5) / 200 * length
     values = form(np.stack([np.broadcast_to(upper.q[:, 0], q2.shape), q2], -1))
-    wrong = 100 * float((values < 0).mean())
-    length = np.degrees(upper.q[:, 1] - lower.q[:, 1])
-    return Finding(
-        judge(holds=not wrong and upper.part == 100, under=not wrong),
-        f"Where it exists, {upper.part:.1f} % of a turn of q_1, it is {length.min():.0f}° to"
-        f" {length.max():.0f}° long, and the component is negative in {wrong:.1f} % of it.",
-    )
+    negative = float((values < 0).mean())
+    readings = {
+        SURROUNDS: judge(
+            holds=are_roots and _region_is_between(lower, upper),
+            constrains=bool(length.max() < TURN - SMALL),
+        ),
+        SEPARATES: judge(
+            holds=are_roots and not negative, corrected=bool((upper.slope <= 0).all())
+        ),
+    }
+    text = f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1. There it"
+    if np.ptp(length) < SMALL:
+        text += " is a full turn long, one root twice: the region lies in it, and so does any pose,"
+        text += f" a turn on or back. The component is negative in {100 * negative:.0f} % of it."
+    else:
+        text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
+        text += f" {np.degrees(length.max()):.0f}°; the region lies in it, and the component is"
+        text += f" negative in {100 * negative:.0f} % of it."
+    return strongest(readings, text)
+
+
+def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:
+    """Tell whether a grid over the region lies between two bounds, where these exist."""
+    box = paper_rule.box(robot())
+    q1, low, high = (x[::10, None] for x in (lower.q[:, 0], lower.q[:, 1], upper.q[:, 1]))
+    q2 = np.linspace(box.lower[1], box.upper[1], 200)
+    free = paper_rule.feasible(robot(), np.stack(np.broadcast_arrays(q1, q2), -1))
+    return bool(((low <= q2 + SMALL) & (q2 - SMALL <= high))[free].all())

@@ -44,8 +44,9 @@ def vertices(of: Robot | None = None) -> Floats:
 
 
 @cache
-def scaled(factor: float = SCALE, of: Robot | None = None) -> Floats:
-    """Return the polygon scaled about the centroid of its area, rad."""
+def scaled(factor: float | None = None, of: Robot | None = None) -> Floats:
+    """Return the polygon scaled about the centroid of its area, rad; by `SCALE` if no factor."""
+    factor = SCALE if factor is None else factor
     return polygon.scaled(vertices(of), factor, polygon.centroid(vertices(of)))
 
 
@@ -74,6 +75,35 @@ def body_gap(q: Floats, of: Robot | None = None) -> Floats:
     return np.asarray(np.min(list(found.values()), axis=0))
 
 
+@cache
+def least_gap_in_home_region() -> float:
+    """Return the least gap of two bodies in forty copies of the home region's outline, cm.
+
+    The copies are shrunk about the centroid, the largest by a thousandth: on the outline itself
+    bodies may touch.
+    """
+    home = by_clearances().components[0]
+    middle = np.array(home.centroid, dtype=float)
+    outline = np.concatenate([arc.points for arc in home.loops[0]])
+    factors = np.linspace(0, 0.999, 40)[:, None, None]
+    return float(body_gap(middle + factors * (outline - middle)).min())
+
+
+def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
+    """Return the least gap of base and link 2 on a grid over the windows, and its error, cm.
+
+    Between grid points the gap falls by at most what a corner of link 2 moves on the way there.
+    """
+    box, arm = paper_rule.box(robot()), robot()
+    axes = np.linspace(box.lower, box.upper, n).T
+    q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    between = float(bodies.gaps(arm, q)["0", "2"].min())
+    last = next(body for body in arm.bodies if body.frame == "2")
+    length = float(np.linalg.norm(last.polygon, axis=-1).max())
+    radii = np.array([np.linalg.norm(arm.joints[1].origin) + length, length])
+    return between, float(radii @ (box.upper - box.lower) / (n - 1) / 2)
+
+
 def bodies_allow(q: Floats) -> Bools:
     """Tell where no two bodies overlap and the tool keeps its limit."""
     return np.asarray((body_gap(q) > 0) & (floor()(q) >= 0))
@@ -90,6 +120,12 @@ def square(n: int = 360) -> Floats:
 def drawn() -> Sample:
     """Return the book's draw of 100,000 configurations, judged by the paper's rule."""
     return sample(robot(), 100_000, paper_rule.feasible, seed=11)
+
+
+def distance_of_the_draw() -> float:
+    """Return how near the draw comes to a bound: rad to a side of the box, cm to the limit."""
+    q, box = drawn().q, paper_rule.box(robot())
+    return float(np.abs(np.stack([*(q - box.lower).T, *(box.upper - q).T, floor()(q)])).min())
 
 
 def share_of_square() -> float:

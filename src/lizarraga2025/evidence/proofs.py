@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lizarraga2025 import printed as paper
 from qbound.model.frames import Frame, Frames, axis_rotation
 
 Array = NDArray[Any]
@@ -65,6 +66,51 @@ def general() -> General:
         ],
     )
     return General(chain, R_0a, R_ab, r_0a, r_ab, r_an, r_bm)
+
+
+VECTORS: Final = {
+    "r_ab": ("a", "b"),
+    "r_an": ("a", "a+n"),
+    "r_bm": ("b", "b+m"),
+    "r_0a": ("0", "a"),
+    "r_0b": ("0", "b"),
+    "r_0an": ("0", "a+n"),
+    "r_0bm": ("0", "b+m"),
+}
+"""From where to where the vectors of `printed.THEOREM_1` run."""
+
+ROTATIONS: Final = {"R_ab": ("a", "b"), "R_0a": ("0", "a"), "R_0b": ("0", "b")}
+
+
+def right_side(number: int, observer: str = "") -> Array:
+    """Work out the printed right side of an equation of Theorem 1 in the general chain.
+
+    Parameters
+    ----------
+    number : int
+    observer : str
+        Frame from which every vector is seen; without one each is seen from its first index, as
+        a vector is that a rotation transforms from there.
+    """
+    values = {name: _position(*ab, observer or ab[0]) for name, ab in VECTORS.items()}
+    values |= {name: _rotation_between(*ab) for name, ab in ROTATIONS.items()}
+    return np.asarray(paper.work_out(paper.THEOREM_1[number], values))
+
+
+def is_identity(number: int, left: tuple[str, str], seen_from: str, observer: str = "") -> bool:
+    """Tell whether an equation of Theorem 1 holds for every rotation and vector.
+
+    Parameters
+    ----------
+    number : int
+    left : tuple of str
+        Start and end of the vector on its left side.
+    seen_from : str
+        Frame from which the left side is seen.
+    observer : str
+        As in `right_side`.
+    """
+    return vanishes(_position(*left, seen_from) - right_side(number, observer))
 
 
 def quarter_turn() -> Frames:
@@ -173,6 +219,25 @@ def mirror() -> dict[str, bool]:
             sp.simplify(sp.sin((c / 2)[1] + sp.pi / 2 - gamma)) == 0
         ),
     }
+
+
+@cache
+def _position(a: str, b: str, observer: str) -> Array:
+    return _reduced(general().chain.position(a, b, observer))
+
+
+@cache
+def _rotation_between(a: str, b: str) -> Array:
+    return _reduced(general().chain.rotation(a, b))
+
+
+def _reduced(array: Array) -> Array:
+    """Write every entry in its shortest form under the conditions of unit length."""
+    import sympy as sp
+
+    ring, conditions = _ring()
+    entries = [ring.from_expr(sp.sympify(x)).rem(conditions).as_expr() for x in array.flat]
+    return np.array(entries).reshape(array.shape)
 
 
 def _rotation(letter: str) -> Array:

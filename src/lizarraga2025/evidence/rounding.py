@@ -21,6 +21,11 @@ def degrees(angle: Any) -> str:
     return f"{np.degrees(float(angle)):.4f}°"
 
 
+def counted(number: int, noun: str) -> str:
+    """Write how many there are of something: one curve, 2 curves."""
+    return f"one {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def _arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     """Return the vectors from the joint between a pair's points to the points, cm, home pose."""
     near, far = (of.point(name) for name in pair.points)
@@ -61,3 +66,20 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     """
     error = HALF_DIGIT * (2 + np.sqrt(2))
     return float(error * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
+
+
+def grid_error(inside: np.ndarray, cell: float) -> float:
+    """Bound the error of an area that was counted on a grid of one turn of both joints.
+
+    A cell whose neighbours answer alike is taken for what its middle says; the others may be in or
+    out. What is smaller than a cell and missed by every middle is not seen.
+
+    Parameters
+    ----------
+    inside : ndarray of bool, shape (n, n)
+        The answer at the middle of each cell.
+    cell : float
+        Area of a cell.
+    """
+    beside = [inside != np.roll(inside, step, axis) for axis in (0, 1) for step in (1, -1)]
+    return float(cell * np.any(beside, axis=0).sum())

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lizarraga2025.evidence.arms import robot, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled
+from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
+from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
+from lizarraga2025.evidence.rounding import SMALL
+from qbound.geometry import polygon
 from qbound.geometry.polylines import self_crossings
+from qbound.measures import scaling
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal, simple_orders, traverse
 from qbound.region import paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
+
+if TYPE_CHECKING:
+    import shapely
 
 Floats = NDArray[np.float64]
 
@@ -29,8 +37,10 @@ PLANE = [0, 2]
 """x and z of a place."""
 
 
-def path_through(order: Sequence[int], factor: float = SCALE, of: Robot | None = None) -> Traversal:
-    """Visit points of the scaled polygon in an order, from 0."""
+def path_through(
+    order: Sequence[int], factor: float | None = None, of: Robot | None = None
+) -> Traversal:
+    """Visit points of the scaled polygon in an order, from 0; by the book's scale if no factor."""
     return traverse(of or robot(), scaled(factor, of)[list(order)])
 
 
@@ -47,13 +57,51 @@ def simple_sequences() -> tuple[tuple[int, ...], ...]:
 
 @cache
 def neighbour_sequences() -> tuple[tuple[int, ...], ...]:
-    """Return the twelve sequences of five neighbouring points, in both directions."""
-    return tuple(tuple((s + d * i) % 6 for i in range(5)) for s in range(6) for d in (1, -1))
+    """Return the sequences of five neighbouring points, in both directions: twelve for six."""
+    n = len(vertices())
+    return tuple(tuple((s + d * i) % n for i in range(5)) for s in range(n) for d in (1, -1))
 
 
-def simple_neighbours(factor: float = SCALE) -> list[tuple[int, ...]]:
+def simple_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
     """Return the sequences of five neighbours whose tool path does not cross itself."""
-    return [o for o in neighbour_sequences() if crossings(path_through(o, factor)) == 0]
+    return [order for order in neighbour_sequences() if _is_simple(order, factor)]
+
+
+def structured_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
+    """Return the sequences of five neighbours that are feasible and do not cross themselves."""
+    return [order for order in feasible_neighbours(factor) if _is_simple(order, factor)]
+
+
+def _is_simple(order: tuple[int, ...], factor: float | None) -> bool:
+    return _crossings_either_way(min(order, order[::-1]), factor) == 0
+
+
+@cache
+def _crossings_either_way(order: tuple[int, ...], factor: float | None) -> int:
+    return crossings(path_through(order, factor))
+
+
+def is_feasible(order: Sequence[int], factor: float | None = None) -> bool:
+    """Tell whether the whole joint path through points of the scaled polygon keeps every bound.
+
+    The windows of Table 6 hold between two points that they hold at; of the tool's limit the least
+    height on each leg counts.
+    """
+    stops, box = scaled(factor)[list(order)], paper_rule.box(robot())
+    inside = (stops >= box.lower - SMALL) & (stops <= box.upper + SMALL)
+    heights = [_least_on_leg(*sorted(leg), factor) for leg in pairwise(order)]
+    return bool(inside.all() and min(heights) > -SMALL)
+
+
+@cache
+def _least_on_leg(i: int, j: int, factor: float | None) -> float:
+    """Return the least height of the tool above its limit between two scaled points, cm."""
+    return scaling.least_along_edges(floor(), scaled(factor)[[i, j]])[0]
+
+
+def feasible_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
+    """Return the sequences of five neighbours whose whole joint path is feasible."""
+    return [order for order in neighbour_sequences() if is_feasible(order, factor)]
 
 
 def asymmetry(of: Robot, factor: float) -> float:
@@ -86,9 +134,32 @@ def aspect(q: Floats, of: Robot | None = None) -> Floats:
     return np.asarray(np.sign(q[..., 1] - stretched(of)))
 
 
+def stretched_poses(factor: float | None = None) -> Floats:
+    """Return where the outline of the scaled polygon meets the singular line, rad."""
+    p = scaled(factor)
+    ends = np.stack([p, np.roll(p, -1, axis=0)], axis=1)
+    before, after = ends[:, 0, 1] - stretched(), ends[:, 1, 1] - stretched()
+    cut = before * after < 0
+    t = before[cut] / (before[cut] - after[cut])
+    return np.asarray(ends[cut, 0] + t[:, None] * (ends[cut, 1] - ends[cut, 0]))
+
+
 def is_cut_by_the_singular_line(q: Floats) -> bool:
     """Tell whether configurations lie on both sides of the singular line, or on it."""
     return bool(np.ptp(aspect(q)) > 0)
+
+
+def scale_without_singular_poses() -> float:
+    """Return the scale below which the polygon leaves the singular line outside.
+
+    The lowest point lies below the line and the centroid above it; scaled by s the segment between
+    them meets the line exactly for s at least the ratio of their distances in q2. Infinite where
+    the line does not meet the polygon at all.
+    """
+    q2, middle = vertices()[:, 1], polygon.centroid(vertices())[1]
+    toward = q2.min() if middle > stretched() else q2.max()
+    ratio = float((stretched() - middle) / (toward - middle))
+    return ratio if ratio <= 1 else np.inf
 
 
 def det_jacobian(q: Floats) -> Floats:
@@ -112,23 +183,32 @@ def other_posture(q: Floats) -> Floats:
 
 
 @cache
+def enclosed() -> shapely.MultiPolygon:
+    """Return what the tool's path round the exact region encloses, cm.
+
+    The path is followed in 4,000 steps an arc; parts below a thousandth of a cm^2, where two arcs
+    run on each other, are left out.
+    """
+    import shapely
+
+    s = np.linspace(0, 1, 4001)[:-1]
+    path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in by_windows().loops[0]])
+    faces = shapely.polygonize([shapely.node(shapely.LinearRing(path))])
+    whole = shapely.union_all(faces)
+    return shapely.MultiPolygon([p for p in getattr(whole, "geoms", [whole]) if p.area > 1e-3])
+
+
+@cache
 def workspace() -> dict[str, float]:
     """Return areas of the geometric workspace of the exact region by the paper's rule, cm^2.
 
     ``union`` of the images of both aspects, of this ``twice`` covered by both and ``once`` by one,
-    by the exact workspace; ``enclosed`` by the image of the region's boundary alone, by faces of
-    that closed path, whose outline is followed in 4,000 steps an arc.
+    by the exact workspace; ``enclosed`` by the image of the region's boundary alone.
     """
-    import shapely
-
     exact = find_workspace(planar_arm(robot()), paper_rule.problem(robot()), robot().home)
-    s = np.linspace(0, 1, 4001)[:-1]
-    path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in by_windows().loops[0]])
-    ring = shapely.LinearRing(path)
-    faces = shapely.union_all(shapely.polygonize([shapely.node(ring)]))
     return {
         "union": exact.area,
         "twice": exact.covered_twice,
         "once": exact.area - exact.covered_twice,
-        "enclosed": float(faces.area),
+        "enclosed": float(enclosed().area),
     }

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
+from collections.abc import Mapping
 from importlib import resources
-from typing import Final
+from typing import Any, Final
 
 from lizarraga2025.ledger.claims import Claim
+from lizarraga2025.ledger.latex import escaped
 from qbound import __version__
 
 YEAR: Final = 2026
 """Of the release; a test compares it with CITATION.cff."""
+
+RULES: Final = {
+    "paper": "Region by the paper's rule",
+    "clearance": "Region by the clearance rule",
+    "none": "",
+}
 
 PAPER: Final = r"""@article{Lizarraga2025,
   author  = {Lizarraga, J. A. and Navarro, D. M. and Mata-Romero, M. E. and Luque-Vega, L. F. and
@@ -46,13 +56,34 @@ def entry(claim: Claim) -> str:
     """Return the BibTeX entry of one claim: its place in the paper, verdict, anchor, version."""
     return f"""@misc{{qbound-{claim.id},
   author       = {{{{qbound maintainers}}}},
-  title        = {{{{What holds, entry {claim.id}: {_escaped(claim.where)}}}}},
-  howpublished = {{qbound {__version__}, {_escaped(page())}\\#{claim.anchor}}},
+  title        = {{{{What holds, entry {claim.id}: {escaped(claim.where)}}}}},
+  howpublished = {{qbound {__version__}, {escaped(page())}\\#{claim.anchor}}},
   year         = {{{YEAR}}},
   note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""
 
 
-def _escaped(text: str) -> str:
-    """Keep TeX's special characters as they are read."""
-    return "".join(f"\\{c}" if c in "_#%&$" else c for c in text)
+def result(recorded: Mapping[str, Any]) -> str:
+    """Return the BibTeX entry of a recorded result: value, error, robots, version, place."""
+    robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in recorded["robots"].items())
+    unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
+    error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
+    about = [recorded["reference"], RULES[recorded["rule"]], f"Robots: {robots}" if robots else ""]
+    words = [f"{value_text(recorded['value'])}{unit}{error}", *filter(None, about)]
+    return f"""@misc{{qbound-{anchor(recorded["id"])},
+  author       = {{{{qbound maintainers}}}},
+  title        = {{{{Result {escaped(recorded["id"])}}}}},
+  howpublished = {{qbound {recorded["version"]}, results.html\\#{anchor(recorded["id"])}}},
+  year         = {{{YEAR}}},
+  note         = {{{escaped(". ".join(words))}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
+}}"""
+
+
+def anchor(name: str) -> str:
+    """Return a result's anchor on the page of results."""
+    return "result-" + "-".join(re.findall(r"[a-z0-9]+|(?<![a-z0-9])-(?=[0-9])", name.lower()))
+
+
+def value_text(value: Any) -> str:
+    """Return a value as it is printed: numbers with the digits recorded, lists in brackets."""
+    return json.dumps(value, ensure_ascii=False) if not isinstance(value, str) else value

@@ -12,9 +12,22 @@ from lizarraga2025.computations import registry
 from lizarraga2025.computations.registry import Computation
 from lizarraga2025.ledger.entries import Entry, Evidence, entries
 from lizarraga2025.results import write_json
-from lizarraga2025.verdicts import Verdict
+from lizarraga2025.verdicts import VERDICTS, Verdict
 
-SCHEMA: Final = "qbound/claims/1"
+SCHEMA: Final = "qbound/claims/2"
+KEYS: Final = (
+    "id",
+    "kind",
+    "where",
+    "says",
+    "reading",
+    "verdict",
+    "finding",
+    "found",
+    "evidence",
+    "corrected",
+)
+"""The keys of a claim in ``results/claims.json``, in their order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,23 +51,33 @@ class Claim(Entry):
         return self.id.lower().replace(".", "-")
 
     def content(self) -> dict[str, Any]:
-        """Return the claim as ``results/claims.json`` holds it: there `corrected` is "mended"."""
-        return {
-            "id": self.id,
-            "kind": self.kind,
-            "where": self.where,
-            "says": self.says,
-            "verdict": self.verdict,
-            "found": self.found,
-            "evidence": asdict(self.evidence),
-            "mended": self.corrected,
-        }
+        """Return the claim as ``results/claims.json`` holds it."""
+        content = asdict(self)
+        return {key: content[key] for key in KEYS}
 
 
 def from_content(content: Mapping[str, Any]) -> Claim:
     """Return the claim of an entry of ``results/claims.json``."""
-    rest = {key: value for key, value in content.items() if key not in ("evidence", "mended")}
-    return Claim(**rest, evidence=Evidence(**content["evidence"]), corrected=content["mended"])
+    return Claim(**{**content, "evidence": Evidence(**content["evidence"])})
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many entries have a verdict, and on how many findings they rest."""
+
+    entries: int
+    findings: int
+
+
+def counts(ledger: Iterable[Claim]) -> dict[Verdict, Count]:
+    """Count the entries and the findings of every verdict.
+
+    A finding that entries with different verdicts share counts once for each of these verdicts.
+    """
+    by_verdict: dict[Verdict, list[str]] = {verdict: [] for verdict in VERDICTS}
+    for one in ledger:
+        by_verdict[one.verdict].append(one.finding)
+    return {v: Count(len(named), len(set(named))) for v, named in by_verdict.items()}
 
 
 def identifiers() -> tuple[str, ...]:

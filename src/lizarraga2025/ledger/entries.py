@@ -43,7 +43,11 @@ class Entry:
         Its place in the paper, such as "eq. (34), proof of Theorem 2".
     says : str
         A short paraphrase; formulas in plain text.
+    reading : str
+        How it is taken before it is judged: the strongest reading that the text allows.
     evidence : Evidence
+    finding : str
+        The id of the entry that carries the finding; its own where none is given.
     corrected : str
         What would hold in its place; empty where nothing is to be corrected.
     """
@@ -52,8 +56,15 @@ class Entry:
     kind: Kind
     where: str
     says: str
+    reading: str
     evidence: Evidence
+    finding: str = ""
     corrected: str = ""
+
+    def __post_init__(self) -> None:
+        """Let an entry that names no other carry its finding itself."""
+        if not self.finding:
+            object.__setattr__(self, "finding", self.id)
 
 
 @cache
@@ -69,7 +80,8 @@ def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
     Raises
     ------
     ValueError
-        If a key is unknown, missing or no text, a kind is none of `KINDS`, or an id stands twice.
+        If a key is unknown, missing or no text, a kind is none of `KINDS`, an id stands twice, or
+        a finding is no entry that carries its own.
     """
     found: dict[str, Entry] = {}
     for file in files:
@@ -78,7 +90,17 @@ def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
             if entry.id in found:
                 raise ValueError(f"{file.name}: the id {entry.id} stands twice in the ledger")
             found[entry.id] = entry
+    _check_findings(found)
     return found
+
+
+def _check_findings(found: Mapping[str, Entry]) -> None:
+    for entry in found.values():
+        carrier = found.get(entry.finding)
+        if carrier is None or carrier.finding != carrier.id:
+            raise ValueError(
+                f"{entry.id}: the finding {entry.finding!r} is no entry that carries its own"
+            )
 
 
 def _tables(file: Traversable) -> list[dict[str, Any]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
-from lizarraga2025.ledger import cite
+from lizarraga2025.ledger import cite, errata
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.verdicts import VERDICTS
@@ -18,27 +19,36 @@ HEADER = ("Entry", "What the paper says", "Verdict", "What was found")
 def ledger_table(ledger: Sequence[Claim]) -> str:
     """Return the ledger as HTML: a form that the page's script shows, and the table with all rows.
 
-    Each row has the entry's anchor as its id and carries its kind and verdict, a link to the
-    chapter that shows the evidence, the test, and the BibTeX entry to unfold.
+    Each row has the entry's anchor as its id and carries its kind and verdict, links to the entries
+    that rest on the same finding and to the chapter that shows the evidence, the test, and the
+    BibTeX entry to unfold.
     """
-    rows = "\n".join(_row(one) for one in ledger)
+    by_finding = _by_finding(ledger)
+    rows = "\n".join(_row(one, by_finding[one.finding]) for one in ledger)
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     return (
         f'<div class="ledger">\n{_controls()}\n<table class="ledger-table">\n'
-        f"<caption>The ledger: {len(ledger)} statements of the paper.</caption>\n"
+        f"<caption>The ledger: {len(ledger)} statements of the paper,"
+        f" {len(by_finding)} findings.</caption>\n"
         f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
     )
 
 
-def errata_table(ledger: Iterable[Claim]) -> str:
-    """Return printed, proposed and why for some entries, each with the command that repeats it."""
-    rows = "\n".join(_erratum(one) for one in ledger)
-    names = ("Entry", "Printed", "Proposed", "Why")
-    head = "".join(f'<th scope="col">{name}</th>' for name in names)
-    return (
-        f'<table class="ledger-table errata-table">\n<thead><tr>{head}</tr></thead>\n'
-        f"<tbody>\n{rows}\n</tbody>\n</table>"
-    )
+def _by_finding(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
+    """Return the entries by the finding that they rest on, each finding where it first occurs."""
+    found: dict[str, list[Claim]] = defaultdict(list)
+    for one in ledger:
+        found[one.finding].append(one)
+    return found
+
+
+def errata_list(parts: Mapping[str, Sequence[Claim]]) -> str:
+    """Return place, printed, proposed and why for parts of the `errata`, by the entry that leads.
+
+    Each names the entries that it is about, and the command that repeats the computation.
+    """
+    shown = "\n".join(_erratum(leader, entries) for leader, entries in parts.items())
+    return f'<div class="errata">\n{shown}\n</div>'
 
 
 def badge(verdict: str) -> str:
@@ -53,20 +63,51 @@ def link_to_chapter(one: Claim) -> str:
 
 
 def typeset(text: str) -> str:
-    """Return plain text as HTML: β_{1,1} and q_1 with subscripts, a minus sign for a hyphen."""
+    """Return plain text as HTML: β_{1,1} and q_1 with subscripts, a minus sign for a hyphen.
+
+    What stands between dollar signs is TeX, for the script that sets the book's formulas.
+    """
+    parts = text.split("$")
+    parts[::2] = map(_plain, parts[::2])
+    parts[1::2] = (f'<span class="math notranslate">\\({escape(p)}\\)</span>' for p in parts[1::2])
+    return "".join(parts)
+
+
+def _plain(text: str) -> str:
     text = re.sub(r"(?<=[\s(\[])-(?=[\s\w(])", "\N{MINUS SIGN}", text)
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"<sub>\1\2</sub>", escape(text))
 
 
-def _row(one: Claim) -> str:
+def _row(one: Claim, sharing: Sequence[Claim]) -> str:
     cells = (
         f'<th scope="row"><a href="#{one.anchor}">{one.id}</a></th>',
-        f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>',
-        f"<td>{badge(one.verdict)}</td>",
+        f"<td>{_statement(one)}</td>",
+        f"<td>{badge(one.verdict)}{_finding(one, sharing)}</td>",
         f"<td>{typeset(one.found)}{_corrected(one)}{_evidence(one)}{_citation(one)}</td>",
     )
     data = f'data-kind="{one.kind}" data-verdict="{one.verdict}"'
     return f'<tr id="{one.anchor}" {data}>{"".join(cells)}</tr>'
+
+
+def _statement(one: Claim) -> str:
+    return (
+        f'<span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}'
+        f'<p class="ledger-reading"><b>Reading:</b> {typeset(one.reading)}</p>'
+    )
+
+
+def _finding(one: Claim, sharing: Sequence[Claim]) -> str:
+    """Return links to the other entries that rest on the same finding, its carrier first."""
+    others = [other for other in sharing if other is not one]
+    if not others:
+        return ""
+    others.sort(key=lambda other: other.id != one.finding)
+    return f'<p class="ledger-finding">One finding with {_links(others)}</p>'
+
+
+def _links(entries: Iterable[Claim], page: str = "") -> str:
+    links = (f'<a class="unbroken" href="{page}#{one.anchor}">{one.id}</a>' for one in entries)
+    return ", ".join(links)
 
 
 def _corrected(one: Claim) -> str:
@@ -86,18 +127,25 @@ def _citation(one: Claim) -> str:
     )
 
 
-def _erratum(one: Claim) -> str:
-    ledger = f'<a href="{cite.page().rpartition("/")[2]}#{one.anchor}">{one.id}</a>'
-    words = (f"qbound claims {one.id}", "--recompute")
-    again = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
-    repeat = f"{link_to_chapter(one)}; <code>{again}</code>"
-    why = f'{typeset(one.found)}<p class="ledger-evidence">{repeat}</p>'
+def _erratum(leader: str, entries: Sequence[Claim]) -> str:
+    one = next(entry for entry in entries if entry.id == leader)
+    printed, proposed = errata.change(leader) or (one.says, one.corrected)
+    page = cite.page().rpartition("/")[2]
+    links = _links(entries, page)
+    words = (f"qbound claims {leader}", "--recompute")
+    command = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     return (
-        f'<tr><th scope="row">{ledger}<br>{badge(one.verdict)}</th>'
-        f'<td><span class="ledger-where">{typeset(one.where)}</span> {typeset(one.says)}</td>'
-        f"<td>{typeset(one.corrected)}</td>"
-        f"<td>{why}</td></tr>"
+        f'<dl class="erratum"><dt class="erratum-place">{typeset(one.where)}</dt>\n'
+        f"<dd>{badge(one.verdict)} {links}</dd>\n"
+        f"<dt>Printed</dt><dd>{_lines(printed)}</dd>\n"
+        f"<dt>Proposed</dt><dd>{_lines(proposed)}</dd>\n"
+        f"<dt>Why</dt><dd>{typeset(one.found)}"
+        f'<p class="ledger-evidence">{link_to_chapter(one)}; <code>{command}</code></p></dd></dl>'
     )
+
+
+def _lines(text: str) -> str:
+    return "".join(f"<div>{typeset(line)}</div>" for line in text.splitlines())
 
 
 def _controls() -> str:

@@ -1,0 +1,85 @@
+"""The directive ``{results}``: every recorded number, with an anchor and its citation to copy.
+
+It reads results/ as the chapters have written it. The page is whole without a script; with one,
+each citation gets a button.
+"""
+
+from __future__ import annotations
+
+from html import escape
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+from sphinx.util.typing import ExtensionMetadata
+
+from lizarraga2025 import recorded
+from lizarraga2025.ledger import cite
+
+HEADER = ("Result", "Value", "Unit", "Error", "About")
+
+
+class ResultTables(SphinxDirective):
+    """Show the results of every chapter in a table of its own."""
+
+    def run(self) -> list[nodes.Node]:
+        folder = Path(self.env.app.confdir).parent / "results"
+        for file in folder.glob("*.json"):
+            self.env.note_dependency(str(file))
+        return [section(*chapter) for chapter in chapters()]
+
+
+def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
+    """Return the results by chapter; one that two chapters state is listed at the first."""
+    entries = recorded.distinct(recorded.results())
+    return [(name, list(own)) for name, own in groupby(entries, lambda entry: entry["chapter"])]
+
+
+def section(chapter: str, entries: list[dict[str, Any]]) -> nodes.section:
+    """Return the section of a chapter."""
+    title = chapter.replace("_", " ").capitalize()
+    part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
+    part += [nodes.title("", title), nodes.raw("", table(entries), format="html")]
+    return part
+
+
+def table(entries: list[dict[str, Any]]) -> str:
+    """Return results as an HTML table."""
+    head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
+    rows = "\n".join(map(row, entries))
+    return (
+        '<div class="pst-scrollable-table-container"><table class="ledger-table results-table">\n'
+        f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>"
+    )
+
+
+def row(entry: dict[str, Any]) -> str:
+    """Return a result as a row whose id is its anchor."""
+    anchor, name = cite.anchor(entry["id"]), escape(entry["id"])
+    unit = "" if entry["unit"] == "1" else entry["unit"]
+    error = f"{entry['error']:g}" if entry["error"] else "exact"
+    rule = "" if entry["rule"] == "none" else f"{entry['rule']} rule"
+    about = ", ".join(word for word in (entry["reference"], rule) if word)
+    return (
+        f'<tr id="{anchor}"><th scope="row"><a href="#{anchor}">{name}</a></th>'
+        f"<td>{escape(cite.value_text(entry['value']))}</td><td>{escape(unit)}</td>"
+        f"<td>{error}</td><td>{escape(about)}{citation(entry)}</td></tr>"
+    )
+
+
+def citation(entry: dict[str, Any]) -> str:
+    """Return the BibTeX entry to unfold and to copy."""
+    label = f"Cite {escape(entry['id'])}"
+    return (
+        f'<details class="citation"><summary>{label}</summary>'
+        f"<pre>{escape(cite.result(entry))}</pre></details>"
+    )
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register the directive with Sphinx."""
+    app.add_directive("results", ResultTables)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

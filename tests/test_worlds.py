@@ -1,0 +1,63 @@
+"""Every entry of the ledger can turn: in some world its computation comes to another verdict."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from lizarraga2025 import printed as paper
+from lizarraga2025.evidence import arms
+from lizarraga2025.ledger.claims import claim, identifiers
+from support.worlds import robot_file, with_points, world
+from worlds import MISSING, WORLDS
+
+EXPECTED = tomllib.loads((Path(__file__).parent / "verdicts.toml").read_text(encoding="utf-8"))
+VERDICT = {name: verdict for kind in EXPECTED.values() for name, verdict in kind.items()}
+
+
+@pytest.mark.parametrize("name", identifiers())
+def test_in_another_world_an_entry_has_another_verdict(name: str) -> None:
+    if name in MISSING:
+        pytest.skip("no world yet")
+    with WORLDS[name]():
+        verdict = claim(name).verdict
+    assert verdict != VERDICT[name]
+
+
+def test_no_world_is_of_an_unknown_entry_and_none_is_listed_as_missing() -> None:
+    assert set(WORLDS) | set(MISSING) == set(identifiers())
+    assert not set(WORLDS) & set(MISSING)
+
+
+def test_a_world_alters_print_and_robot_and_leaves_no_trace() -> None:
+    printed, pairs = paper.TABLE_6["beta_{1,1,1}"], arms.pairs()
+    moved = with_points(robot_file(), p13=(9.09, 0.0, 5.25))
+    other = world(printed={"TABLE_6": {"beta_{1,1,1}": "0"}}, robots={"minervabot-v2": moved})
+    with other():
+        assert paper.TABLE_6["beta_{1,1,1}"] == "0"
+        assert paper.TABLE_6["beta_{1,1,2}"] != "0"
+        assert arms.robot().point("13").at[0] == 9.09
+    assert paper.TABLE_6["beta_{1,1,1}"] == printed
+    assert arms.robot().point("13").at[0] == 9.0
+    assert arms.pairs() == pairs
+
+
+def test_a_world_forgets_what_was_computed_before_and_inside_even_after_an_error() -> None:
+    before = claim("B-4.1.1").verdict
+    moved = with_points(robot_file(), p13=(9.09, 0.0, 5.25))
+    with world(robots={"minervabot-v2": moved})():
+        assert claim("B-4.1.1").verdict != before
+    with pytest.raises(ValueError, match="no claim"), world(robots={"minervabot-v2": moved})():
+        claim("B-0")
+    assert claim("B-4.1.1").verdict == before
+
+
+def test_a_replaced_function_is_seen_where_it_was_imported_by_name() -> None:
+    from lizarraga2025.computations import theorem_1
+
+    kept = theorem_1.robot
+    with world(replaced={"lizarraga2025.evidence.arms.robot": arms.symmetric})():
+        assert theorem_1.robot is arms.symmetric
+    assert theorem_1.robot is kept

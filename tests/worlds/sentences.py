@@ -1,0 +1,264 @@
+"""Worlds in which the entries of ``statements/sentences.toml`` come to other verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+from lizarraga2025 import printed as paper
+from lizarraga2025.evidence import arms, joint_region, proofs
+from qbound import HarmonicForm, load_robot
+from qbound.boundary.functions import position
+from qbound.geometry import polygon
+from qbound.model import frames
+from qbound.model.robot import Body, Prismatic, Robot
+from qbound.sampling import Sample
+from support.worlds import (
+    World,
+    robot_file,
+    with_boundaries,
+    with_joints,
+    with_points,
+    world,
+)
+
+PAPER = "minervabot-v2"
+ARM = robot_file(PAPER)
+EVIDENCE = "lizarraga2025.evidence"
+
+
+def arm(of: Robot) -> World:
+    """Return a world in which the paper's robot is another one."""
+    return world(robots={PAPER: of})
+
+
+def with_contacts(q1: tuple[float, float], q2: tuple[float, float]) -> Robot:
+    """Return the robot with its pairs in contact at other angles: the ends of q1 and q2, deg."""
+    (low1, high1), (low2, high2) = np.radians([q1, q2])
+
+    def seen(name: str, base: str, q: tuple[float, float]) -> np.ndarray:
+        return ARM.frames(np.array(q)).position(base, name, base)
+
+    return with_points(
+        ARM,
+        p6=seen("7", "0", (high1, 0.0)),
+        p8=seen("9", "0", (low1, 0.0)),
+        p10=seen("11", "1", (0.0, high2)),
+        p12=seen("13", "1", (0.0, low2)),
+    )
+
+
+def without_bounds() -> Robot:
+    """Return a robot whose windows are all one full turn, the same, and whose limit is far off."""
+    r = -10.0
+    points = {"p7": (r, 0, 0), "p9": (r, 0, 0), "p11": (r, 0, 0), "p13": (r, 0, 0)}
+    near = ARM.joints[0].origin - [r, 0, 0], ARM.joints[1].origin - [r, 0, 0]
+    points |= {"p6": near[0], "p8": near[0], "p10": near[1], "p12": near[1]}
+    free = with_boundaries(with_points(ARM, **points), B7={"offset": -100.0})
+    return replace(free, home=np.array([0.1, 0.1]))
+
+
+def with_bodies(of: Robot, factor: float) -> Robot:
+    """Return a robot whose bodies are shrunk about their middles."""
+    bodies = tuple(
+        replace(body, polygon=polygon.scaled(body.polygon, factor, body.polygon.mean(axis=0)))
+        for body in of.bodies
+    )
+    return replace(of, bodies=bodies)
+
+
+def used(*names: str) -> Robot:
+    """Return the robot with these boundaries in use and no others."""
+    return with_boundaries(ARM, **{b.name: {"used": b.name in names} for b in ARM.boundaries})
+
+
+def tilted() -> Robot:
+    """Return the robot with its second axis out of the normal of the plane."""
+    return with_joints(ARM, q2={"axis": np.array([1.0, 1.0, 0.0]) / np.sqrt(2)})
+
+
+def sliding_in_place_of_turning() -> Robot:
+    """Return the robot with two slides, along x and z, in place of its joints."""
+    joints = tuple(
+        joint.as_type(Prismatic, axis=axis, limits=(-9.0, 9.0))
+        for joint, axis in zip(ARM.joints, np.eye(3)[[0, 2]], strict=True)
+    )
+    return replace(ARM, joints=joints)
+
+
+def linear_tool() -> HarmonicForm:
+    """Return the tool's place as a linear function of the joints."""
+    return position(sliding_in_place_of_turning(), ARM.tool)
+
+
+def third_joint(**changes: Any) -> Callable[[], Robot]:
+    """Return the arm with a slide and other boundaries, as a function."""
+    return lambda: with_boundaries(SLIDING(), **changes)
+
+
+def turning_third_joint() -> Robot:
+    """Return the arm with a third joint that turns about y, where the slide was."""
+    of = SLIDING()
+    turning = of.joints[2].as_type(type(ARM.joints[0]), axis=np.array([0.0, 1.0, 0.0]), limits=None)
+    return replace(of, joints=(*of.joints[:2], turning))
+
+
+def slide_that_moves_nothing() -> Robot:
+    """Return the arm with a slide that comes after all points."""
+    of = SLIDING()
+    return replace(of, points=ARM.points, boundaries=ARM.boundaries)
+
+
+def about_home(factor: float | None = None, of: Robot | None = None) -> np.ndarray:
+    """Return the polygon scaled about the home pose in place of its centroid."""
+    factor = joint_region.SCALE if factor is None else factor
+    return polygon.scaled(joint_region.vertices(of), factor, np.zeros(2))
+
+
+def on_the_boundary() -> Sample:
+    """Return configurations drawn from the boundary itself."""
+    q = np.concatenate([arc.points for arc in joint_region.by_windows().loops[0]])
+    return Sample(q, arms.tool_form()(q), np.ones(len(q), dtype=bool))
+
+
+class OtherSign(proofs.General):
+    """The chain of Theorem 1 with one sign of eq. (16) changed."""
+
+    @property
+    def B(self) -> np.ndarray:
+        """The vector of eq. (16), with a plus before its last term."""
+        return np.asarray(self.r_ab + self.R_ab @ self.r_bm + self.r_an)
+
+
+def other_sign() -> proofs.General:
+    """Return the general chain with eq. (16) changed."""
+    return OtherSign(**vars(GENERAL()))
+
+
+def skew_rotation(axis: Any, angle: Any) -> Any:
+    """Return a rotation with one sign changed."""
+    turn = np.array(ROTATION(axis, angle))
+    turn[0, 2] = -turn[0, 2]
+    return turn
+
+
+@contextmanager
+def held_on_the_other_side() -> Iterator[None]:
+    """Hold joints at the values of the other sign."""
+
+    def restrict(form: HarmonicForm, held: Mapping[int, float]) -> HarmonicForm:
+        return RESTRICT(form, {joint: -value for joint, value in held.items()})
+
+    with world()(), patch.object(HarmonicForm, "restrict", restrict):
+        yield
+
+
+ROTATION, RESTRICT = frames.axis_rotation, HarmonicForm.restrict
+SLIDING, GENERAL = arms.sliding, proofs.general
+
+HIGH_LIMIT = arm(with_boundaries(ARM, B7={"offset": 30.0}))
+"""The tool's limit so high that its curve bends outward and straight edges keep it."""
+LOW_LIMIT = arm(with_boundaries(ARM, B7={"offset": -100.0}))
+CEILING = arm(with_boundaries(ARM, B7={"normal": np.array([0.0, 0.0, -1.0]), "offset": -70.0}))
+"""The tool has to stay below 70 cm: a hole in the region."""
+ONE_ASPECT = arm(with_contacts((-136.0, 76.0), (-50.0, 44.0)))
+"""The region ends before the singular line."""
+LITTLE_OF_THE_OTHER = arm(with_contacts((-136.0, 76.0), (-58.0, 44.0)))
+"""The region ends at q2 = -61.5 deg, just beyond the singular line."""
+UNBOUNDED = arm(without_bounds())
+SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
+SLIDES = arm(sliding_in_place_of_turning())
+POINT_LIKE = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1e-3})
+HARDLY_SCALED = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.99})
+LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
+DRAWN_ON_IT = world(replaced={f"{EVIDENCE}.joint_region.drawn": on_the_boundary})
+SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
+OUT_OF_REACH = world(replaced={f"{EVIDENCE}.arms.sliding": third_joint(B7={"offset": 1000.0})})
+
+WORLDS: dict[str, World] = {
+    "S-1": CEILING,
+    "S-2": HIGH_LIMIT,
+    "S-3": HIGH_LIMIT,
+    "S-4": POINT_LIKE,
+    "S-5": LINEAR,
+    "S-6": DRAWN_ON_IT,
+    "S-7": UNBOUNDED,
+    "S-8": CEILING,
+    "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
+    "S-10": HIGH_LIMIT,
+    "S-10.1": LITTLE_OF_THE_OTHER,
+    "S-11": world(replaced={"qbound.model.frames.axis_rotation": skew_rotation}),
+    "S-11.1": world(printed={"THEOREM_1": {15: "r_ab + R_ab @ r_bm + r_an"}}),
+    "S-12": arm(
+        replace(
+            ARM,
+            bodies=(
+                Body("0", np.array([(-40.0, 0.0), (40.0, 0.0), (40.0, 2.0), (-40.0, 2.0)])),
+                *ARM.bodies[1:],
+            ),
+        )
+    ),
+    "S-13": arm(used("B1", "B2", "B3", "B7")),
+    "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
+    "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
+    "S-16": SIGN_OF_16,
+    "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
+    "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
+    "S-19": SYMMETRIC,
+    "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),
+    "S-20.1": arm(with_boundaries(ARM, B5={"offset": -60.0}, B6={"offset": -60.0})),
+    "S-21": SLIDES,
+    "S-21.1": world(
+        printed={
+            "TABLE_6": {
+                "beta_{1,1,1}": paper.TABLE_6["beta_{1,1,2}"],
+                "beta_{1,1,2}": paper.TABLE_6["beta_{1,1,1}"],
+            }
+        }
+    ),
+    "S-22": arm(used("B7")),
+    "S-23": arm(used("B7")),
+    "S-23.1": arm(with_boundaries(ARM, B7={"offset": 60.0})),
+    "S-24": LOW_LIMIT,
+    "S-25": HIGH_LIMIT,
+    "S-26": HIGH_LIMIT,
+    "S-27": HIGH_LIMIT,
+    "S-28": arm(with_bodies(ARM, 0.5)),
+    "S-29": LINEAR,
+    "S-30": arm(tilted()),
+    "S-30.1": ONE_ASPECT,
+    "S-31": arm(tilted()),
+    "S-32": HIGH_LIMIT,
+    "S-33": HARDLY_SCALED,
+    "S-34": POINT_LIKE,
+    "S-35": SYMMETRIC,
+    "S-36": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.3}),
+    "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
+    "S-38": UNBOUNDED,
+    "S-39": DRAWN_ON_IT,
+    "S-40": UNBOUNDED,
+    "S-41": UNBOUNDED,
+    "S-42": ONE_ASPECT,
+    "S-43": world(replaced={f"{EVIDENCE}.arms.sliding": turning_third_joint}),
+    "S-44": world(replaced={f"{EVIDENCE}.arms.sliding": slide_that_moves_nothing}),
+    "S-45": world(replaced={f"{EVIDENCE}.arms.of_slides": lambda: ARM}),
+    "S-46": OUT_OF_REACH,
+    "S-47": OUT_OF_REACH,
+    "S-48": held_on_the_other_side,
+    "S-49": held_on_the_other_side,
+    "S-50": CEILING,
+    "S-51": world(printed={"EQUATION_29": {"beta_{1,1}": "x_1_7*cos(q1) - x_0_6 - z_1_7*sin(q1)"}}),
+    "S-52": LITTLE_OF_THE_OTHER,
+    "S-53": HIGH_LIMIT,
+    "S-54": POINT_LIKE,
+    "S-55": world(replaced={f"{EVIDENCE}.joint_region.scaled": about_home}),
+    "S-56": SIGN_OF_16,
+}
+
+MISSING: list[str] = []
+"""Ids that have no world yet."""
