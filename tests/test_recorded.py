@@ -14,18 +14,24 @@ from typing import Any
 
 import jupytext
 import mpmath as mp
+import numpy as np
 import pytest
 from bs4 import BeautifulSoup
 from pybtex.database import parse_string
+from scipy.spatial import cKDTree
 
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
+from lizarraga2025.evidence.joint_region import scaled
+from lizarraga2025.evidence.rounding import grid_error
+from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.latex import escaped
 from qbound import load_robot
 from qbound.cli import main
 from qbound.model.robotfile import robot_text
+from qbound.paths.traversal import traverse
 from qbound.symbols import with_symbols
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -245,6 +251,30 @@ def test_a_sample_is_within_five_standard_errors_of_the_exact_part() -> None:
     sampled, exact = RESULTS["safe_and_unsafe.sampled"], RESULTS["safe_and_unsafe.paper"]
     assert abs(sampled["value"] - exact["value"]) < sampled["error"]
     assert sampled["error"] > 5 * 10
+
+
+def test_asymmetry_holds_to_its_error() -> None:
+    """Against dense points of both paths: no nearer than one of them, no farther than their gap."""
+    arm = load_robot("minervabot-v2")
+    points = scaled(0.95)
+    paths = [
+        traverse(arm, points[list(order)], step=2e-3).tool[:, [0, 2]] for order in (RIGHT, LEFT)
+    ]
+    mirrored = paths[0] * [-1, 1]
+    trees = cKDTree(mirrored), cKDTree(paths[1])
+    brute = max(trees[0].query(paths[1])[0].max(), trees[1].query(mirrored)[0].max())
+    gap = max(np.linalg.norm(np.diff(path, axis=0), axis=1).max() for path in paths)
+    entry = RESULTS["asymmetry.minervabot-v2.0.95"]
+    assert brute - gap <= entry["value"] <= brute + entry["error"] + gap
+    assert gap < 0.2 * brute
+
+
+def test_an_area_on_a_grid_is_within_its_error() -> None:
+    n = 200
+    x = (np.arange(n) + 0.5) * 2 * np.pi / n - np.pi
+    inside = np.hypot(*np.meshgrid(x, x)) < 2
+    cell = (2 * np.pi / n) ** 2
+    assert 0 < abs(cell * inside.sum() - 4 * np.pi) < grid_error(inside, cell) < 2
 
 
 # --- robots ---------------------------------------------------------------------------------------

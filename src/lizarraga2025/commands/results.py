@@ -18,7 +18,7 @@ def add_to(commands: Any) -> None:
         "results",
         help="every number that the book states",
         description="Print recorded numbers: all, those of a chapter, or those of an id.",
-        epilog="example: qbound results region/vertex.1",
+        epilog="example: qbound results paper.area --bibtex",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="vertex.1, region/vertex.1, region/")
     form = parser.add_mutually_exclusive_group()
