@@ -41,9 +41,9 @@ class Witness:
 def beyond_limits(text: str, cells: Sequence[Any]) -> Evidence | None:
     """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
     depths = [
-        (sign * (check.number(end) - q[j]), f"{joint['name']}.{side}", i, k)
-        for j, joint in enumerate(check.Robot(text).joints)
-        for side, sign, end in zip(SIDES, (1, -1), joint.get("limits", ()), strict=False)
+        (sign * (end - q[j]), f"{joint.name}.{side}", i, k)
+        for j, joint in enumerate(check.read_robot(text).joints)
+        for side, sign, end in zip(SIDES, (1, -1), joint.limits or (), strict=False)
         for i, cell in enumerate(cells)
         for k, q in enumerate(cell)
     ]
