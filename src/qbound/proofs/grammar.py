@@ -21,6 +21,9 @@ from qbound.proofs.verdict import Verdict
 MOST_BYTES = 2_000_000
 MOST_POINTS = 20_000
 MOST_TRIANGLES = 20_000
+GRAMMAR = 2
+"""What the producers write."""
+
 SCHEMAS = {"qbound/certificate/1": 1, "qbound/certificate/2": 2}
 
 DECIMAL = re.compile(r"-?[0-9]{1,40}([.][0-9]{1,40})?([eE][+-]?[0-9]{1,2})?")

@@ -1,6 +1,6 @@
 """What a certificate is about: sets of configurations, in the exact decimals that are written out.
 
-A statement is the JSON of `qbound/certificate/1`: lists of points, every joint value a decimal in
+A statement is what a certificate writes of it: lists of points, every joint value a decimal in
 the robot file's own unit of angle or length, the inside of a polygon on the left of its loops.
 """
 
@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound import check
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
+from qbound.proofs import grammar
+from qbound.proofs.cells import check_polygon
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
 from qbound.region.loops import behind
@@ -92,9 +93,11 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     i, j = free
     places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
-    triangles = [list(triangle) for triangle in triangulate(places)]
+    triangulated = triangulate(places)
+    triangles = [list(triangle) for triangle in triangulated]
     statement = {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
-    check.read_cells(statement)  # exact: the triangles tile the polygon
+    corners = tuple(tuple(tuple(point) for point in loop) for loop in rows)
+    check_polygon(grammar.Statement("polygon", Fraction(0), corners, tuple(triangulated)))
     return statement
 
 
