@@ -9,6 +9,7 @@ from typing import Any
 from qbound.check import number
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import check_targets, write_text
+from qbound.cli.terminal import say
 from qbound.cli.values import box, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
@@ -68,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output and answer.text:
         write_text(options.output, answer.text)
     if options.output != "-" or not answer.text:
-        print("\n".join([answer.said, *certificate_lines(robot, answer)]))
+        say(answer.said, *certificate_lines(robot, answer))
     return STATUS[answer.verdict]
 
 
@@ -96,10 +97,10 @@ def _say_bracket(robot: Robot, found: Bracket, output: str | None) -> int:
     safe, proof = found.safe
     unsafe, refutation = found.unsafe
     if proof is not None and proof.verdict == "proved":
-        print("\n".join([f"scale {safe}: proved", *certificate_lines(robot, proof)]))
+        say(f"scale {safe}: proved", *certificate_lines(robot, proof))
         if output:
             write_text(output, proof.text)
     if refutation is not None and refutation.verdict == "refuted":
-        print("\n".join([f"scale {unsafe}: refuted", *certificate_lines(robot, refutation)]))
+        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

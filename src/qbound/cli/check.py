@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.cli.terminal import say
 from qbound.model.robotfile import robot_text
 from qbound.proofs import check_arb
 
@@ -37,5 +38,5 @@ def run(options: argparse.Namespace) -> int:
     status = check.main([options.certificate, *pin])
     if options.arb and status < 2:
         text = Path(options.certificate).read_text(encoding="utf-8")
-        print(f"python-flint: {check_arb.verify(text)}")
+        say(f"python-flint: {check_arb.verify(text)}")
     return status

@@ -24,6 +24,8 @@ def read_points(robot: Robot, file: str) -> list[Point]:
             rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
     except UnicodeDecodeError:
         raise ValueError(f"{file}: not UTF-8 text") from None
+    except csv.Error as error:  # a cell of more than 128 kB, say
+        raise ValueError(f"{file}: no table of joint values: {error}") from None
     names = [joint.name for joint in robot.joints]
     if rows and [cell.strip() for cell in rows[0][1]] == names:
         del rows[0]
