@@ -27,6 +27,7 @@ from qbound.proofs import certify as prover
 from qbound.proofs import check_arb, grammar, statements
 from qbound.proofs.cells import cells_of
 from qbound.proofs.certify import bracket_scale, certify
+from qbound.proofs.forest import silent
 from qbound.proofs.triangulation import triangulate
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
@@ -401,8 +402,8 @@ def test_the_checkers_see_a_fault_of_the_prover(monkeypatch, name):
     place, fault = FAULTS[name]
     if place == "bound":
         monkeypatch.setattr(prover, "second_order", fault)
-        monkeypatch.setattr(prover.search, "__defaults__", (fault,))
-        monkeypatch.setattr(prover.search_all, "__defaults__", (fault,))
+        monkeypatch.setattr(prover.search, "__defaults__", (fault, silent))
+        monkeypatch.setattr(prover.search_all, "__defaults__", (fault, silent))
     else:
         monkeypatch.setattr(prover, place, fault)
     seen = 0

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from qbound.forms.bending import with_slides
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.forest import Forest, Search
+from qbound.proofs.forest import Forest, Search, Tell, silent
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -28,7 +28,9 @@ BATCH = 4096
 """Cells that are bounded at a time: each has up to 32 pairs of corners."""
 
 
-def search_box(form: HarmonicForm, low: Floats, high: Floats, most: int) -> Search:
+def search_box(
+    form: HarmonicForm, low: Floats, high: Floats, most: int, tell: Tell = silent
+) -> Search:
     """Halve a box until the bound is positive on each part.
 
     Parameters
@@ -51,6 +53,7 @@ def search_box(form: HarmonicForm, low: Floats, high: Floats, most: int) -> Sear
         forest.close(numbers[proved])
         leaves, opened = leaves + int(proved.sum()), opened + len(centres)
         centres, halves, numbers, parts = (x[~proved] for x in (centres, halves, numbers, parts))
+        tell(1 - float(parts.sum()))
         if not len(centres) or opened > most:
             break
         joints = bound.worst_joints(centres, halves)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.boxes import search_box
 from qbound.proofs.cells import Cell, cells_of
-from qbound.proofs.forest import Forest, Search
+from qbound.proofs.forest import Forest, Search, Tell, silent
 from qbound.proofs.grammar import GRAMMAR, read_statement
 from qbound.proofs.grammar_robot import read_robot
 from qbound.proofs.minorant import Bound
@@ -47,6 +48,9 @@ MOST_CELLS = 200_000
 
 FIRST_LOOK = 1000
 """Cells opened for one boundary at first: enough to see that most sets are not safe."""
+
+SEARCHING = 0.99
+"""Part of the work that is told of as the search; the rest is the check of what it found."""
 
 DEEPEST = 60
 """Cuts on top of each other before a search gives up; the checkers follow 120."""
@@ -82,7 +86,12 @@ class Certificate:
 
 
 def certify(
-    text: str, statement: Statement, *, most: int = MOST_CELLS, bound: Bound = second_order
+    text: str,
+    statement: Statement,
+    *,
+    most: int = MOST_CELLS,
+    bound: Bound = second_order,
+    tell: Tell = silent,
 ) -> Certificate:
     """Prove or refute that every boundary in use holds all over a set.
 
@@ -97,6 +106,13 @@ def certify(
     bound : callable
         The lower bound on a simplex; the checkers only follow `minorant.second_order`. A box has
         its own, see `boxes`.
+    tell : callable
+        Told how far it is, from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If robot or statement is none that a certificate can hold, in a sentence that says why.
 
     Examples
     --------
@@ -126,7 +142,9 @@ def certify(
         return _refuted(text, robot, statement, cells, evidence)
     corners = [cell.corners for cell in cells]
     for few in (min(most, FIRST_LOOK), most):
-        searches = search_all(robot, statement, corners, few, bound)
+        searches = search_all(
+            robot, statement, corners, few, bound, lambda part: tell(SEARCHING * part)
+        )
         verdict = _verdict(searches)
         if verdict is not Verdict.UNDECIDED:
             break
@@ -160,7 +178,12 @@ def _verdict(searches: dict[str, Search]) -> Verdict:
 
 
 def search_all(
-    robot: Robot, statement: Statement, cells: Sequence[Any], most: int, bound: Bound = second_order
+    robot: Robot,
+    statement: Statement,
+    cells: Sequence[Any],
+    most: int,
+    bound: Bound = second_order,
+    tell: Tell = silent,
 ) -> dict[str, Search]:
     """Search every boundary in use that can be violated at all.
 
@@ -171,12 +194,27 @@ def search_all(
     """
     corners = np.array(cells, dtype=float) * units(robot)
     forms = _forms(robot, statement)
-    if statement["set"] == "box":
-        return {name: search_box(form, corners[0, 0], corners[0, 1], most) for name, form in forms.items()}
-    return {name: search(form, corners, most, bound) for name, form in forms.items()}
+    found = {}
+    for k, (name, form) in enumerate(forms.items()):
+        told = partial(_tell_of_all, tell, k, len(forms))
+        if statement["set"] == "box":
+            found[name] = search_box(form, corners[0, 0], corners[0, 1], most, told)
+        else:
+            found[name] = search(form, corners, most, bound, told)
+    return found
 
 
-def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_order) -> Search:
+def _tell_of_all(tell: Tell, k: int, count: int, part: float) -> None:
+    tell((k + part) / count)
+
+
+def search(
+    form: HarmonicForm,
+    cells: Floats,
+    most: int,
+    bound: Bound = second_order,
+    tell: Tell = silent,
+) -> Search:
     """Cut cells across the edge that bends most until the bound is positive on each.
 
     Parameters
@@ -198,6 +236,7 @@ def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_o
         forest.close(numbers[proved])
         leaves, opened = leaves + int(proved.sum()), opened + len(cells)
         cells, numbers, roots, parts = (x[~proved] for x in (cells, numbers, roots, parts))
+        tell(1 - float(parts.sum()) / forest.size)
         if not len(cells) or opened > most:
             break
         edges = worst_edges(form, cells)
@@ -251,7 +290,7 @@ def _confirmed(
     }
     text = json_text(content)
     try:
-        _, said = check.check(text)
+        said = check.check(text)[1]
     except ValueError as error:
         said = f"not confirmed in exact arithmetic: {error}"
         return Certificate(Verdict.UNDECIDED, "", said, searches)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Tell = Callable[[float], None]
+"""Is told how far work is, from 0 to 1."""
+
+
+def silent(part: float) -> None:
+    """Tell nobody."""
+    del part
 
 
 @dataclass(frozen=True, eq=False)
