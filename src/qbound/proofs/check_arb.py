@@ -75,12 +75,21 @@ def verify(text: str | bytes) -> Verdict:
     from flint import ctx
 
     with ctx.workprec(BITS):
-        content = read_certificate(text)
-        cells = _exact_cells(content)
-        if content.witness is not None:
-            _check_witness(content, cells, content.witness)
-        else:
-            _check_proof(content, cells)
+        try:
+            return _verified(text)
+        except (ValueError, MemoryError):
+            raise
+        except Exception as error:  # a fault of ours is no answer
+            raise ValueError("the check of this file failed") from error
+
+
+def _verified(text: str | bytes) -> Verdict:
+    content = read_certificate(text)
+    cells = _exact_cells(content)
+    if content.witness is not None:
+        _check_witness(content, cells, content.witness)
+    else:
+        _check_proof(content, cells)
     return content.verdict
 
 
@@ -118,11 +127,11 @@ def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
     if {boundary.name for boundary in needed} != set(content.proof):
         refuse("the boundaries of the proof are not those that need one")
     reach = reach_of(robot, content.statement.points)
+    work.add(sum(100 * 3 ** len(joints_of(boundary)) for boundary in needed))
     for boundary in needed:
         trees = content.proof[boundary.name]
         if len(trees) != len(cells):
             refuse(f"{shown(boundary.name)}: {len(trees)} trees for {len(cells)} cells")
-        work.add(100 * 3 ** len(joints_of(boundary)))
         waves = waves_of(robot, boundary, margin, reach)
         leaf = _Leaf(robot, waves, work)
         for cell, tree in zip(cells, trees, strict=True):
