@@ -168,21 +168,22 @@ def number(value: Any, where: str = "number") -> Fraction:
 
 
 def _bounded(value: Fraction, where: str, largest: Fraction) -> Fraction:
-    demand(abs(value) <= largest, f"{where}: a number of more than 10^{len(str(int(largest))) - 1}")
+    demand(abs(value) <= largest, f"{where}: the number is too large")
     return value
 
 
 def shown(value: Any) -> str:
     """Write a value for a message: short, in ASCII, on one line."""
-    if type(value) is not str:
-        return f"a value of another type ({type(value).__name__})"
-    return ascii(value if len(value) <= 60 else f"{value[:57]}...")
+    if type(value) is str:
+        return ascii(value if len(value) <= 60 else f"{value[:57]}...")
+    names = {dict: "a table", list: "a list", int: "a number", bool: "a truth value"}
+    return names.get(type(value), "a value of another type")
 
 
 # --- reading: the robot's text as TOML ------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class TomlFloat:
     """A float as the robot's text writes it; so it is neither rounded nor taken for a string."""
 
@@ -190,7 +191,7 @@ class TomlFloat:
 
 
 TOKEN = re.compile(
-    r"""(?P<string> "(?:[^"\\\n]|\\.){0,300}" | '[^'\n]{0,300}' )
+    r"""(?P<string> "(?:[^"\\\n]|\\[^\n]){0,300}" | '[^'\n]{0,300}' )
       | (?P<comment> \#[^\n]* )
       | (?P<mark> [=,\[\]{}\n] )
       | (?P<blanks> [ \t\r]+ )
@@ -652,29 +653,34 @@ def _triangles(loops: Sequence[Sequence[Point]], value: Any) -> tuple[Cell, ...]
     points = [q for loop in loops for q in loop]
     plane = [j for j, column in enumerate(zip(*points, strict=True)) if len({*column}) > 1]
     demand(len(plane) == 2, f"statement: points: {len(plane)} joints of a polygon vary, not two")
-    cells, inner = list[Cell](), set[tuple[Point, Point]]()
+    numbers = {q: k for k, q in enumerate(points)}  # equal points have one number
+    cells, inner = list[Cell](), set[tuple[int, int]]()
     for i, item in enumerate(list_of(value, "statement: triangles", 1, MAX_TRIANGLES)):
         where = f"statement: triangles[{i}]"
-        a, b, c = (points[index_of(k, where, len(points))] for k in list_of(item, where, 3, 3))
-        demand(_anticlockwise(a, b, c, plane), f"{where}: not anticlockwise")
-        for edge in ((a, b), (b, c), (c, a)):
-            demand(
-                edge not in inner, f"{where}: an edge that another triangle has in this direction"
-            )
+        corners = [points[index_of(k, where, len(points))] for k in list_of(item, where, 3, 3)]
+        demand(_anticlockwise(corners, plane), f"{where}: not anticlockwise")
+        for edge in _edges([numbers[q] for q in corners]):
+            demand(edge not in inner, f"{where}: another triangle lies on this side of an edge")
             inner.add(edge)
-        cells.append(Simplex((a, b, c)))
+        cells.append(Simplex(tuple(corners)))
     for i, loop in enumerate(loops):
-        for k, edge in enumerate(zip(loop, [*loop[1:], loop[0]], strict=True)):
+        for k, (a, b) in enumerate(_edges([numbers[q] for q in loop])):
             where = f"statement: points[{i}][{k}]: the edge that begins here"
-            demand(edge in inner, f"{where} is not of one triangle, or occurs twice")
-            demand(edge[::-1] not in inner, f"{where} has a triangle on either side")
-            inner.remove(edge)
-    for edge in inner:
-        demand(edge[::-1] in inner, "statement: triangles: an edge of a triangle is in no loop")
+            demand((a, b) in inner, f"{where} is of no triangle, or occurs twice")
+            demand((b, a) not in inner, f"{where} has a triangle on either side")
+            inner.remove((a, b))
+    for a, b in inner:
+        demand((b, a) in inner, "statement: triangles: an edge of one triangle is in no loop")
     return tuple(cells)
 
 
-def _anticlockwise(a: Point, b: Point, c: Point, plane: Sequence[int]) -> bool:
+def _edges(loop: Sequence[int]) -> Iterable[tuple[int, int]]:
+    """Return the pairs of neighbours around a loop."""
+    return zip(loop, [*loop[1:], loop[0]], strict=True)
+
+
+def _anticlockwise(corners: Sequence[Point], plane: Sequence[int]) -> bool:
+    a, b, c = corners
     (x, y), (u, v) = ([q[j] - a[j] for j in plane] for q in (b, c))
     return x * v - y * u > 0
 
@@ -1202,8 +1208,10 @@ def verify_witness(robot: Robot, statement: Statement, name: str, q: Point) -> N
     if name in robot.beyond(q):
         return
     boundary = next((b for b in robot.boundaries if b.name == name), None)
-    demand(boundary is not None, f"boundary: the witness is within {shown(name)}, or there is none")
-    assert boundary is not None
+    if boundary is None:
+        raise Refused(
+            f"boundary: {shown(name)} is no boundary in use and no limit that is violated"
+        )
     form = boundary_form(motions(robot), boundary, boundary.gap(statement.margin))
     value, _ = function_of(robot, form).value_and_slopes(q)
     demand(value.x + value.r < 0, f"boundary: the witness does not violate {shown(name)}")
@@ -1256,6 +1264,7 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
         If it shows nothing: a `ValueError` that names what is wrong and where.
     """
     Ball.work = 0
+    phase_of.cache_clear()  # so that the work does not depend on what was checked before
     demand(
         pin is None or re.fullmatch("[0-9a-f]{64}", pin), "the pin is no hash of 64 digits 0-9a-f"
     )
@@ -1373,9 +1382,9 @@ def _longest(cells: Iterable[Cell], j: int) -> Fraction:
 
 
 def written(x: Fraction) -> str:
-    """Write a decimal with all its digits, or a long one with an exponent."""
+    """Write a decimal with all its digits."""
     digits = 0
-    while x.denominator != 1 and digits < 200:
+    while x.denominator != 1:
         x, digits = x * 10, digits + 1
     whole = str(abs(int(x))).rjust(digits + 1, "0")
     point = len(whole) - digits
@@ -1391,6 +1400,7 @@ def main(arguments: Sequence[str]) -> int:
         status, said = _answer(arguments)
         return status if _printed(said) else 2
     except KeyboardInterrupt:
+        _printed("not proved: interrupted")
         return 130
 
 
@@ -1454,7 +1464,8 @@ def _printed(said: str) -> bool:
     """Print a text in ASCII and tell whether it arrived."""
     safe = "".join(c if c == "\n" or " " <= c <= "~" else ascii(c)[1:-1] for c in said)
     try:
-        print(safe, flush=True)
+        sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
+        sys.stdout.flush()
     except (OSError, ValueError, AttributeError):
         _silence()
         return False
