@@ -51,7 +51,7 @@ MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
 
 MAX_WORK = 5_000_000
-"""Multiplications of balls; every cell that a tree visits counts as `CELL_WORK` of them."""
+"""Multiplications of balls; each cell that a tree visits counts as `CELL_WORK` of them."""
 
 CELL_WORK = 50
 
@@ -195,7 +195,7 @@ TOKEN = re.compile(
       | (?P<comment> \#[^\n]* )
       | (?P<mark> [=,\[\]{}\n] )
       | (?P<blanks> [ \t\r]+ )
-      | (?P<word> [^"'\#=,\[\]{}\n\ \t\r]{1,100} )
+      | (?P<word> [^"'\#=,\[\]{}\n\ \t\r]+ )
       | (?P<other> . )""",
     re.VERBOSE | re.DOTALL,
 )
@@ -212,7 +212,8 @@ def scan(text: str) -> None:
     for token in TOKEN.finditer(text):
         kind, found = token.lastgroup, token.group()
         where = f"robot: line {line}"
-        demand(kind != "other", f"{where}: a string or a word that is too long or does not end")
+        demand(kind != "other", f"{where}: a string that is too long or does not end")
+        demand(kind != "word" or len(found) <= 100, f"{where}: the word {shown(found)} is too long")
         if kind in ("string", "word"):
             between.append(found)
             demand(len(between) == 1, f"{where}: {shown(found)} follows another word or string")
@@ -495,12 +496,12 @@ class Simplex:
         """Return the mean of its corners."""
         return tuple(sum(column) / len(self.corners) for column in zip(*self.corners, strict=True))
 
-    @property
+    @cached_property
     def steps(self) -> list[Point]:
         """Return the steps from its centre to its corners."""
         return [tuple(x - m for x, m in zip(q, self.centre, strict=True)) for q in self.corners]
 
-    @property
+    @cached_property
     def signs(self) -> list[tuple[int, ...]]:
         """Return the signs by which each step leads to corners: as it is."""
         return [(1,) * len(self.centre)]
@@ -540,12 +541,12 @@ class Box:
         """Return its middle."""
         return tuple((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
 
-    @property
+    @cached_property
     def steps(self) -> list[Point]:
         """Return the step to its high corner; `signs` turns it to the others."""
         return [tuple(b - m for m, b in zip(self.centre, self.high, strict=True))]
 
-    @property
+    @cached_property
     def signs(self) -> list[tuple[int, ...]]:
         """Return the signs of the steps to all corners; those of held joints do not matter."""
         ends = [(1, -1) if a != b else (1,) for a, b in zip(self.low, self.high, strict=True)]
@@ -1035,10 +1036,11 @@ class Function:
                     slopes[j] = slopes[j] - z.im if w > 0 else slopes[j] + z.im
         for wave in self.sliding:
             z = wave.amplitude * phase_product(wave.turns, phases, products)
-            value += z.re * monomial(wave.powers, q)
+            factor = monomial(wave.powers, q)
+            value += z.re * factor
             for j, (w, p) in enumerate(zip(wave.turns, wave.powers, strict=True)):
                 if w:
-                    slopes[j] -= z.im * monomial(wave.powers, q) * Ball(w << BITS)
+                    slopes[j] -= z.im * factor * Ball(w << BITS)
                 if p:
                     lower = (*wave.powers[:j], p - 1, *wave.powers[j + 1 :])
                     slopes[j] += z.re * monomial(lower, q) * Ball(p << BITS)
@@ -1153,6 +1155,7 @@ def least_of_twice(
         for i, j in itertools.combinations(moving, 2)
         if bend[i][j]
     ]
+    spend(len(signs) * (len(linear) + len(mixed)) // 10)  # sums are that much faster
     doubled = [term.r for _, term in linear] + [term.r for _, _, term in mixed]
     fixed = constant.x - sum(term.x for _, term in square)
     error = constant.r + sum(term.r for _, term in square) + 2 * sum(doubled)
