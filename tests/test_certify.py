@@ -24,8 +24,10 @@ from qbound.measures.scaling import least
 from qbound.model.robot import Pair
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import certify as prover
-from qbound.proofs import check_arb, statements
+from qbound.proofs import check_arb, grammar, statements
+from qbound.proofs.cells import cells_of
 from qbound.proofs.certify import bracket_scale, certify
+from qbound.proofs.forest import silent
 from qbound.proofs.triangulation import triangulate
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
@@ -42,6 +44,14 @@ def paper_robot():
 
 def robot_of(text):
     return parse_robot(tomllib.loads(text))
+
+
+def corners_of(statement):
+    """Corners of each cell, as the second checker sees them; joints of any kind."""
+    rows = tuple(tuple(tuple(map(Fraction, p)) for p in loop) for loop in statement["points"])
+    triangles = tuple(map(tuple, statement.get("triangles", ())))
+    read = grammar.Statement(statement["set"], Fraction(0), rows, triangles)
+    return [cell.corners for cell in cells_of(read, grammar.GRAMMAR)]
 
 
 def margins(robot, q):
@@ -208,7 +218,7 @@ def test_a_polygon_with_a_hole_is_cut_into_triangles_that_tile_it(seed):
     hole = [["0.1", "0"], ["0", "-0.1"], ["-0.1", "0"], ["0", "0.1"]]
     loops = [outer, hole] if np.diff(angles).max() < 2 else [outer]
     statement = statements.filled(loops)
-    cells = check.read_cells(statement)
+    cells = corners_of(statement)
     doubled = [(b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells]
     wanted = sum(polygon.area(np.array(loop, float)) for loop in loops)
     assert float(sum(doubled)) / 2 == pytest.approx(wanted)
@@ -227,7 +237,7 @@ AWKWARD = {
 def test_awkward_polygons_are_cut_exactly(name):
     loop = [corner.split() for corner in AWKWARD[name]]
     statement = statements.filled([loop])
-    cells = check.read_cells(statement)
+    cells = corners_of(statement)
     doubled = sum(
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells
     )
@@ -240,7 +250,7 @@ def test_awkward_polygons_are_cut_exactly(name):
 def test_a_hole_may_touch_the_outline():
     loops = [["0 0", "4 0", "4 4", "0 4"], ["0 0", "1 2", "2 1"]]
     statement = statements.filled([[corner.split() for corner in loop] for loop in loops])
-    assert len(check.read_cells(statement)) == 5
+    assert len(corners_of(statement)) == 5
 
 
 @pytest.mark.parametrize(
@@ -269,7 +279,7 @@ def test_a_polygon_that_crosses_itself_is_refused():
 
 def unconfirmed(text, statement):
     """The file that the search alone would write; None if even the search does not believe it."""
-    robot, cells = robot_of(text), check.read_cells(statement)
+    robot, cells = robot_of(text), corners_of(statement)
     searches = prover.search_all(robot, statement, cells, 20_000)
     if any(found.left or found.violation is not None for found in searches.values()):
         return None
@@ -286,7 +296,7 @@ def unconfirmed(text, statement):
     )
 
 
-FOREST = prover._Forest
+FOREST = prover.Forest
 
 
 def bound_with(**faults):
@@ -363,13 +373,13 @@ FAULTS = {
     "a dropped wave": ("_forms", forms_with(a_dropped_wave)),
     "halves exchanged": ("halved", shuffled_halves),
     "cut at a third": ("halved", third),
-    "the next edge's letter": ("_Forest", forest_with(cut=lambda self, n, e: CUT(self, n, (e + 1) % 3))),
-    "a leaf left out": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[:-1])),
-    "a leaf too many": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root) + ".")),
-    "trees in postorder": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[::-1])),
-    "one tree for all cells": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, 0))),
+    "the next edge's letter": ("Forest", forest_with(cut=lambda self, n, e: CUT(self, n, (e + 1) % 3))),
+    "a leaf left out": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root)[:-1])),
+    "a leaf too many": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root) + ".")),
+    "trees in postorder": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root)[::-1])),
+    "one tree for all cells": ("Forest", forest_with(_tree=lambda self, root: TREE(self, 0))),
     "a root off by one": (
-        "_Forest",
+        "Forest",
         forest_with(_tree=lambda self, root: TREE(self, (root + 1) % self.size)),
     ),
     "degrees off": ("units", lambda robot: UNITS(robot) * 0.97),
@@ -392,8 +402,8 @@ def test_the_checkers_see_a_fault_of_the_prover(monkeypatch, name):
     place, fault = FAULTS[name]
     if place == "bound":
         monkeypatch.setattr(prover, "second_order", fault)
-        monkeypatch.setattr(prover.search, "__defaults__", (fault,))
-        monkeypatch.setattr(prover.search_all, "__defaults__", (fault,))
+        monkeypatch.setattr(prover.search, "__defaults__", (fault, silent))
+        monkeypatch.setattr(prover.search_all, "__defaults__", (fault, silent))
     else:
         monkeypatch.setattr(prover, place, fault)
     seen = 0

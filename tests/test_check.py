@@ -143,9 +143,9 @@ def test_pi_is_enclosed():
 
 def functions_of(text, margin="0"):
     ours = check.read_robot(text)
-    moves = check.motions(ours)
+    kinematics = check.Kinematics(ours)
     gaps = {boundary: boundary.gap(Fraction(margin)) for boundary in ours.boundaries}
-    forms = {b.name: check.boundary_form(moves, b, gap) for b, gap in gaps.items()}
+    forms = {b.name: check.boundary_form(kinematics, b, gap) for b, gap in gaps.items()}
     return {name: check.function_of(ours, form) for name, form in forms.items()}
 
 

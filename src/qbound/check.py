@@ -50,7 +50,7 @@ MAX_CONFIGURATIONS, MAX_TRIANGLES = 20_000, 20_000
 MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
 
-MAX_WORK = 5_000_000
+MAX_WORK = 4_000_000
 """Multiplications of balls; each cell that a tree visits counts as `CELL_WORK` of them."""
 
 CELL_WORK = 50
@@ -973,21 +973,37 @@ def motions(robot: Robot) -> list[Motion]:
     return found
 
 
-def boundary_form(moves: Sequence[Motion], boundary: Boundary, gap: Fraction) -> Form:
+class Kinematics:
+    """Where the points of a robot are; what two boundaries need is found once."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.moves = motions(robot)
+        self.known: dict[tuple[int, Place], tuple[VectorForm, Form]] = {}
+
+    def seen(self, frame: int, place: Place) -> tuple[VectorForm, Form]:
+        """Return a place as it is seen from a frame before it, and its squared distance."""
+        if (frame, place) not in self.known:
+            if frame == place.frame:
+                still, at = (0,) * len(self.moves), vector(place.at)
+                found: tuple[VectorForm, Form] = {still: at}, {still: dot(at, at)}
+            else:
+                found = self.moves[frame].carry(*self.seen(frame + 1, place))
+            self.known[frame, place] = found
+        return self.known[frame, place]
+
+
+def boundary_form(kinematics: Kinematics, boundary: Boundary, gap: Fraction) -> Form:
     """Return the boundary function: |r|^2 - gap^2 of a pair, normal . r - gap of a half-space."""
-    still = (0,) * len(moves)
+    still = (0,) * len(kinematics.moves)
     *near, far = sorted(boundary.places, key=lambda place: place.frame)
-    first = near[0].frame if near else 0
-    at = vector(far.at)
-    u, square = {still: at}, {still: dot(at, at)}
-    for move in reversed(moves[first : far.frame]):
-        u, square = move.carry(u, square)
+    u, square = kinematics.seen(near[0].frame if near else 0, far)
     if boundary.normal is not None:
         normal = unit_vector(boundary.normal)
         form = {key: dot(normal, v) for key, v in u.items()}
         add_to(form, still, ZERO - real(gap))
         return form
-    base = vector(near[0].at)  # (u - base)^2 = u^2 - 2 base . u + base^2
+    square = {**square}  # (u - base)^2 = u^2 - 2 base . u + base^2
+    base = vector(near[0].at)
     for key, v in u.items():
         add_to(square, key, ZERO - TWO * dot(base, v))
     add_to(square, still, dot(base, base) - real(gap**2))
@@ -1198,9 +1214,9 @@ def verify_proof(robot: Robot, statement: Statement, value: Any) -> None:
     for name, trees in proof.items():
         for tree in list_of(trees, f"proof: {shown(name)}", count, count):
             demand(type(tree) is str and tree, f"proof: {shown(name)}: a tree is a text")
-    moves = motions(robot)
+    kinematics = Kinematics(robot)
     for boundary in needed:
-        form = boundary_form(moves, boundary, boundary.gap(statement.margin))
+        form = boundary_form(kinematics, boundary, boundary.gap(statement.margin))
         function = function_of(robot, form)
         for i, (cell, tree) in enumerate(zip(statement.cells, proof[boundary.name], strict=True)):
             prove(function, cell, tree, f"proof: {shown(boundary.name)}[{i}]")
@@ -1215,7 +1231,7 @@ def verify_witness(robot: Robot, statement: Statement, name: str, q: Point) -> N
         raise Refused(
             f"boundary: {shown(name)} is no boundary in use and no limit that is violated"
         )
-    form = boundary_form(motions(robot), boundary, boundary.gap(statement.margin))
+    form = boundary_form(Kinematics(robot), boundary, boundary.gap(statement.margin))
     value, _ = function_of(robot, form).value_and_slopes(q)
     demand(value.x + value.r < 0, f"boundary: the witness does not violate {shown(name)}")
 
