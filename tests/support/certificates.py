@@ -13,11 +13,11 @@ def certificate(robot: str, statement: dict[str, Any], grammar: int = 2, depth: 
     """Prove a statement, cutting where a cell is longest; `ValueError` where that does not end."""
     ours = check.read_robot(robot)
     read = check.read_statement(statement, grammar, len(ours.joints))
-    moves, proof, check.Ball.work = check.motions(ours), {}, 0
+    kinematics, proof, check.Ball.work = check.Kinematics(ours), {}, 0
     for boundary in ours.boundaries:
         gap = boundary.gap(read.margin)
         if boundary.needs_proof(read.margin):
-            function = check.function_of(ours, check.boundary_form(moves, boundary, gap))
+            function = check.function_of(ours, check.boundary_form(kinematics, boundary, gap))
             proof[boundary.name] = [tree(function, cell, depth) for cell in read.cells]
     return text(robot, statement, grammar, verdict="proved", proof=proof)
 
