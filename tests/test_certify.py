@@ -10,6 +10,7 @@ import tomllib
 from fractions import Fraction
 from functools import cache
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from scipy.optimize import minimize
 
 from qbound import check, cli
 from qbound.boundary.functions import clearance
+from qbound.cli.values import box
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
@@ -530,3 +532,178 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
     assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
     error = capsys.readouterr().err
     assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
+
+
+# --- the checker beside the certificate -----------------------------------------------------------
+
+SCALED = ["certify", "minervabot-v2", "--scale", "0.96"]
+
+
+@pytest.mark.parametrize("output", [[], ["-o", "{0}/mine.json"], ["-o", "{0}/beside/mine.json"]])
+def test_the_checker_is_put_beside_the_certificate_and_runs_as_told(tmp_path, capsys, output):
+    folder = tmp_path / "beside"
+    if "beside" in "".join(output):
+        folder.mkdir()
+    files = [part.format(tmp_path) for part in output]
+    assert cli.main([*SCALED, "--with-checker", str(folder), *files]) == 0
+    *_, told = capsys.readouterr().out.splitlines()
+    name = "mine.json" if output else "certificate.json"
+    assert sorted(file.name for file in folder.iterdir()) == sorted(["check.py", name])
+    assert not files or Path(files[1]).read_bytes() == (folder / name).read_bytes()
+    command = told.split(": ")[1].split()
+    assert command[0] == "python"
+    done = subprocess.run(
+        [sys.executable, "-I", *command[1:]], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0
+    assert "proved" in done.stdout
+
+
+def test_a_refutation_and_the_largest_scale_have_their_checker_too(tmp_path):
+    one, other = tmp_path / "one", tmp_path / "other"
+    assert cli.main([*SCALED[:3], "0.97", "--with-checker", str(one)]) == 1
+    assert cli.main([*SCALED[:2], "--largest-scale", "--with-checker", str(other)]) == 0
+    assert check.main([str(one / "certificate.json")]) == 1
+    assert check.main([str(other / "certificate.json")]) == 0
+
+
+def test_certificate_and_checker_are_written_together_or_not_at_all(tmp_path, capsys, monkeypatch):
+    file = tmp_path / "file"
+    file.write_text("mine")
+    for folder in (file, tmp_path / "missing" / "folder"):
+        assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
+        assert str(folder) in capsys.readouterr().err
+    assert file.read_text() == "mine"
+    folder = tmp_path / "both"
+    folder.mkdir()
+    (folder / "check.py").mkdir()
+    assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
+    assert [entry.name for entry in folder.iterdir()] == ["check.py"]
+    monkeypatch.setattr("qbound.cli.certify.write_all", stopped)
+    assert cli.main([*SCALED, "--with-checker", str(tmp_path / "new")]) == 130
+    assert not (tmp_path / "new").exists()
+
+
+def stopped(*_, **__):
+    raise KeyboardInterrupt
+
+
+# --- on a terminal --------------------------------------------------------------------------------
+
+LONG = {
+    "certify": ([*SCALED], "searching for a proof: "),
+    "pave": (["pave", "minervabot-v2", "--tolerance", "0.05"], "paving: "),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_long_work_says_how_far_it_is_on_a_terminal_only(name, capsys, monkeypatch):
+    words, shown = LONG[name]
+    assert cli.main(words) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("qbound.cli.progress.is_terminal", lambda: True)
+    monkeypatch.setattr("qbound.cli.progress.EVERY", 0)
+    assert cli.main(words) == 0
+    error = capsys.readouterr().err
+    assert f"{shown}99 %" in error or len(error.split(shown)) > 3
+    assert error.endswith("\r\033[K")
+
+
+def test_certify_tells_of_its_way_from_nought_to_one():
+    text, robot = paper_robot()
+    told = []
+    certify(text, statements.home_polygon(robot, 0.96), tell=told.append)
+    assert 0 <= told[0] < 0.2
+    assert told[-1] == pytest.approx(prover.SEARCHING)
+    assert told == sorted(told)
+
+
+STOPPED = {
+    "certify": (SCALED, "qbound.cli.certify.certify"),
+    "pave": (["pave", "minervabot-v2"], "qbound.cli.pave.pave"),
+    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.connected.connection"),
+}
+
+
+@pytest.mark.parametrize("name", STOPPED)
+def test_ctrl_c_ends_in_one_line_and_writes_nothing(name, tmp_path, capsys, monkeypatch):
+    words, work = STOPPED[name]
+    monkeypatch.setattr(work, stopped)
+    option = "-o" if name == "certify" else "--json"
+    assert cli.main([*words, option, str(tmp_path / "file.json")]) == 130
+    assert capsys.readouterr().err == "qbound: stopped\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_answer_is_folded_between_points(tmp_path, capsys):
+    file = str(tmp_path / "cert.json")
+    assert cli.main(["certify", "minervabot-v2", "--region", "-o", file]) == 0
+    certified = capsys.readouterr().out.splitlines()
+    assert cli.main(["check", file]) == 0
+    for lines in (certified, capsys.readouterr().out.splitlines()):
+        assert max(map(len, lines)) <= 100
+        assert all(line.count("(") == line.count(")") for line in lines)
+
+
+@pytest.mark.parametrize("content", ["", "hello", "{}", "[1, 2]", '{"schema": 1}', "\x00\xff"])
+def test_what_is_no_certificate_is_refused_in_plain_words(tmp_path, capsys, content):
+    file = tmp_path / "file.json"
+    file.write_bytes(content.encode("latin-1"))
+    for options in ([], ["--arb"]):
+        assert cli.main(["check", str(file), *options]) == 2
+        said = capsys.readouterr().out
+        assert said.startswith("not proved: ")
+        assert "Error" not in said
+        assert "\n" not in said.rstrip("\n")
+
+
+def test_units_stand_beside_the_volume_of_a_paving(capsys):
+    cli.main(["pave", "minervabot-v2", "--tolerance", "0.2"])
+    volume = capsys.readouterr().out.splitlines()[0].split(" ")
+    assert volume[3] == volume[6] == "rad^2"
+    cli.main(["pave", "rp-telescopic-boom", "--tolerance", "0.5"])
+    assert "rad m" in capsys.readouterr().out.splitlines()[0]
+
+
+# --- what no certificate can hold -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('type = "pair"', 'type = "rope"', "'rope' is none of pair, half-space"),
+        ('type = "revolute"', 'type = "screw"', "'screw' is none of revolute, prismatic"),
+    ],
+)
+def test_a_type_that_the_checker_does_not_know_is_refused_in_a_sentence(
+    monkeypatch, old, new, says
+):
+    """A type that a robot may have is not yet one that a certificate can hold."""
+    text, robot = paper_robot()
+    monkeypatch.setattr(prover, "parse_robot", lambda table: robot)
+    with pytest.raises(ValueError, match=says):
+        certify(text.replace(old, new), statements.box(["0", "0"], ["1", "1"]))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "margin", "says"),
+    [
+        (["-2000", "0"], ["0", "0"], "0", "an angle .* is too large"),
+        (["0", "0"], ["1", "1"], "-1", "the margin is negative"),
+        (["0", "0"], ["1", "1"], "1e99999", "no decimal"),
+        (["0"], ["1"], "0", "wanted 2"),
+    ],
+)
+def test_a_statement_that_no_certificate_can_hold_is_refused_before_the_search(
+    low, high, margin, says
+):
+    text, _ = paper_robot()
+    with pytest.raises(ValueError, match=says):
+        certify(text, {"set": "box", "margin": margin, "points": [[low, high]]})
+
+
+@pytest.mark.parametrize("value", ["+20deg", "20.", ".5", "2_0", "1e1deg", "0.2rad"])
+def test_joint_values_as_people_type_them_become_decimals_of_the_grammar(value):
+    low, high = [f"q1={value}:30deg", "q2=-60deg:-50deg"], grammar.DECIMAL
+    ends = box(paper_robot()[1], low)
+    assert all(high.fullmatch(text) for end in ends for text in end)
