@@ -6,6 +6,7 @@ import argparse
 import shlex
 import tomllib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,6 @@ from typing import Any
 from qbound import check
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import check_targets, write_all
-from qbound.cli.folders import check_folder, made_folder
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
 from qbound.cli.values import box, held
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
     check_targets([options.output], sources=[options.robot])
     if options.with_checker is not None:
-        check_folder(options.with_checker)
+        _check_folder(options.with_checker)
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
     margin = as_decimal("--margin", options.margin)
@@ -107,7 +107,7 @@ def _write(options: argparse.Namespace, answer: Certificate) -> None:
         write_all(list(files.items()))
         return
     beside, checker = _beside(options)
-    with made_folder(options.with_checker):
+    with _made_folder(options.with_checker):
         same = [file for file in files if file != "-" and Path(file).resolve() == beside.resolve()]
         if not same:
             files[str(beside)] = answer.text
@@ -119,6 +119,31 @@ def _beside(options: argparse.Namespace) -> tuple[Path, Path]:
     folder, output = Path(options.with_checker), options.output
     name = "certificate.json" if output in (None, "-") else Path(output).name
     return folder / name, folder / "check.py"
+
+
+def _check_folder(name: str) -> None:
+    """Refuse, before any work, a folder that is none and could not be made."""
+    folder = Path(name)
+    if folder.is_dir():
+        return
+    if folder.exists() or folder.is_symlink():
+        raise ValueError(f"{name}: is no folder")
+    if not folder.resolve().parent.is_dir():
+        raise ValueError(f"{name}: No such file or directory: {folder.resolve().parent}")
+
+
+@contextmanager
+def _made_folder(name: str) -> Iterator[None]:
+    """Make a folder if it is missing, for as long as what is written into it succeeds."""
+    folder = Path(name)
+    new = not folder.is_dir()
+    folder.mkdir(exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        if new:
+            folder.rmdir()
+        raise
 
 
 def _how_to_check(options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
