@@ -514,7 +514,9 @@ class Simplex:
         """Cut it across an edge: the half with the first end, and the half with the second."""
         edges = [*itertools.combinations(range(len(self.corners)), 2)]
         number = ord(letter) - ord("a")
-        demand(0 <= number < len(edges), f"the letter {shown(letter)} names no edge of a cell")
+        demand(
+            0 <= number < len(edges), f"proof: the letter {shown(letter)} names no edge of a cell"
+        )
         i, j = edges[number]
         ends = zip(self.corners[i], self.corners[j], strict=True)
         middle = tuple((x + y) / 2 for x, y in ends)
@@ -560,7 +562,7 @@ class Box:
         """Cut it at the middle of a joint: the lower half and the upper one."""
         j = ord(letter) - ord("a")
         wide = 0 <= j < len(self.low) and self.low[j] != self.high[j]
-        demand(wide, f"the letter {shown(letter)} names no joint that a box may be cut in")
+        demand(wide, f"proof: the letter {shown(letter)} names no joint that a box may be cut in")
         below = (*self.high[:j], self.centre[j], *self.high[j + 1 :])
         above = (*self.low[:j], self.centre[j], *self.low[j + 1 :])
         return Box(self.low, below), Box(above, self.high)
