@@ -37,7 +37,10 @@ DEEPEST = 120
 """Cuts on top of each other."""
 
 MOST_WORK = 15_000_000
-"""Products that a check may take, about 20 seconds; counted before they are made."""
+"""Products that a check may take, some 15 seconds; counted before they are made."""
+
+WAVES_WORK, CUT_WORK = 30, 50
+"""Products for each value of a boundary function that is interpolated, and for each letter."""
 
 
 def verify(text: str | bytes) -> Verdict:
@@ -127,7 +130,7 @@ def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
     if {boundary.name for boundary in needed} != set(content.proof):
         refuse("the boundaries of the proof are not those that need one")
     reach = reach_of(robot, content.statement.points)
-    work.add(sum(100 * 3 ** len(joints_of(boundary)) for boundary in needed))
+    work.add(sum(WAVES_WORK * 3 ** len(joints_of(boundary)) for boundary in needed))
     for boundary in needed:
         trees = content.proof[boundary.name]
         if len(trees) != len(cells):
@@ -146,7 +149,7 @@ def _can_be_violated(boundary: Boundary, margin: Any) -> bool:
 def _covers(leaf: _Leaf, cell: Cell, tree: str, work: _Work) -> bool:
     """Tell whether a tree ends with its last leaf, and the form is positive on every leaf."""
     todo = [(cell, 0)]
-    work.add(50 * len(tree))
+    work.add(CUT_WORK * len(tree))
     for letter in tree:
         if not todo:
             refuse("something follows a tree")
