@@ -975,6 +975,10 @@ def motions(robot: Robot) -> list[Motion]:
     return found
 
 
+MAX_KNOWN = 200
+"""Views that are kept: with six joints each has 729 vectors, about half a megabyte."""
+
+
 class Kinematics:
     """Where the points of a robot are; what two boundaries need is found once."""
 
@@ -985,6 +989,8 @@ class Kinematics:
     def seen(self, frame: int, place: Place) -> tuple[VectorForm, Form]:
         """Return a place as it is seen from a frame before it, and its squared distance."""
         if (frame, place) not in self.known:
+            if len(self.known) >= MAX_KNOWN:
+                self.known.clear()
             if frame == place.frame:
                 still, at = (0,) * len(self.moves), vector(place.at)
                 found: tuple[VectorForm, Form] = {still: at}, {still: dot(at, at)}

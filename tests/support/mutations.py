@@ -260,7 +260,7 @@ def in_robot(rng: random.Random, data: Json) -> None:
         return
     kind = rng.randrange(4)
     if kind == 0:  # a number
-        spots = [m for m in re.finditer(r"-?[0-9]+\.[0-9]+", robot)]
+        spots = [*re.finditer(r"-?[0-9]+\.[0-9]+", robot)]
         if not spots:
             return
         spot = rng.choice(spots)
@@ -273,12 +273,14 @@ def in_robot(rng: random.Random, data: Json) -> None:
     elif kind == 2:  # a word for another of its sort
         pairs = [("revolute", "prismatic"), ('"pair"', '"half-space"'), ('"deg"', '"rad"'),
                  ("false", "true"), ("used = false", ""), ("clearance", "offset"),
-                 ("radius = ", "radius = -"), ("clearance = ", "clearance = -"), ("limits", "rpy")]  # fmt: skip
+                 ("radius = ", "radius = -"), ("clearance = ", "clearance = -"),
+                 ("limits", "rpy")]  # fmt: skip
         a, b = rng.choice(pairs)
         robot = robot.replace(*((a, b) if a in robot else (b, a)), rng.choice((1, -1)))
     else:
-        added = ["x = 1", "[[body]]", "[extra]", "home.q1 = 0", "used = false", 'at = ["1", "2", "3"]',
-                 "limits = [-90, 90]", "radius = 0.5", "rpy = [0, 90, 0]", "clearance = 0"]  # fmt: skip
+        added = ["x = 1", "[[body]]", "[extra]", "home.q1 = 0", "used = false", "radius = 0.5",
+                 'at = ["1", "2", "3"]', "limits = [-90, 90]", "rpy = [0, 90, 0]",
+                 "clearance = 0"]  # fmt: skip
         lines = robot.split("\n")
         lines.insert(rng.randrange(len(lines)), rng.choice(added))
         robot = "\n".join(lines)
