@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from qbound.boundary.functions import clearance, margin_of
+from qbound.extras import require
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.proofs import grammar_robot as exact
@@ -111,6 +111,9 @@ def witness(
 
 def _lowest_in_box(form: HarmonicForm, low: Floats, high: Floats, q: Floats) -> Floats:
     """Return the configuration of a box where a form is lowest, by a descent from two places."""
+    require("scipy")
+    from scipy.optimize import minimize
+
     bounds, found = list(zip(low, high, strict=True)), [q]
     for start in (q, (low + high) / 2):
         end = minimize(form, start, jac=form.gradient, bounds=bounds, method="L-BFGS-B").x
