@@ -480,6 +480,7 @@ ROBOT_TEXTS = {
     "an infinite offset": ("offset = 11.32", "offset = -inf"),
     "a dotted key": ("tool =", "home.q3 = 0.0\ntool ="),
     "a string on more lines": ('name = "MinervaBotV2"', 'name = """MinervaBotV2"""'),
+    "a string that is written with too much": ('"MinervaBotV2"', '"' + r"\n" * 151 + '"'),
     "a date": ("22.5", "1979-05-27"),
     "a used that is no truth value": ("\nused = false", "\nused = 0"),
     "an unused boundary that is wrong": ("\nused = false", "\nused = false\nclearance = -1"),
