@@ -1355,9 +1355,8 @@ def proof_of(robot: Robot, statement: Statement) -> str:
 
 def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
     """Say where the set was refuted."""
-    margin = f"{written(statement.margin)} {robot.length_unit}"
-    limit = name in robot.beyond(q)
-    asked = "" if limit else f", asked for with a margin of {margin},"
+    margin = f" with a margin of {written(statement.margin)} {robot.length_unit}"
+    asked = "" if name in robot.beyond(q) else margin
     return f"refuted: {name!a}{asked} is violated at {_values(robot, q)}, which is in the set"
 
 
@@ -1386,8 +1385,8 @@ def _point(q: Point) -> str:
 
 
 def _values(robot: Robot, q: Point) -> str:
-    values = zip(robot.joints, q, strict=True)
-    return ", ".join(f"{joint.name!a} = {written(x)}" for joint, x in values)
+    values = enumerate(zip(robot.joints, q, strict=True))
+    return ", ".join(f"{joint.name!a} = {written(x)} {robot.unit(j)}" for j, (joint, x) in values)
 
 
 def goes_round(robot: Robot, statement: Statement) -> list[int]:
