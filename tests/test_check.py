@@ -480,6 +480,7 @@ ROBOT_TEXTS = {
     "an infinite offset": ("offset = 11.32", "offset = -inf"),
     "a dotted key": ("tool =", "home.q3 = 0.0\ntool ="),
     "a string on more lines": ('name = "MinervaBotV2"', 'name = """MinervaBotV2"""'),
+    "a string that is written with too much": ('"MinervaBotV2"', '"' + r"\n" * 151 + '"'),
     "a date": ("22.5", "1979-05-27"),
     "a used that is no truth value": ("\nused = false", "\nused = 0"),
     "an unused boundary that is wrong": ("\nused = false", "\nused = false\nclearance = -1"),
@@ -523,7 +524,10 @@ def test_the_answer_is_written_from_what_was_verified():
     assert first == f"robot 'MinervaBotV2', sha256 {check.digest(paper_robot()[0])}"
     assert second.startswith("proved: every configuration of the set keeps 'B1', 'B2', 'B3', 'B4'")
     assert shown == ["set: box in ('q1' in deg, 'q2' in deg)", "(-4, 0.5) (8, 8)"]
-    assert "'q1' = 4, 'q2' = 4" in check.check(json.dumps(box_witness())).said
+    assert (
+        "'B7' with a margin of 100 cm is violated at 'q1' = 4 deg, 'q2' = 4 deg"
+        in check.check(json.dumps(box_witness())).said
+    )
 
 
 @pytest.mark.parametrize("high", ["180", "179.999"])

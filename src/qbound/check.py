@@ -191,7 +191,7 @@ class TomlFloat:
 
 
 TOKEN = re.compile(
-    r"""(?P<string> "(?:[^"\\\n]|\\[^\n]){0,300}" | '[^'\n]{0,300}' )
+    r"""(?P<string> "[^"\\\n]*(?:\\[^\n][^"\\\n]*)*" | '[^'\n]*' )
       | (?P<comment> \#[^\n]* )
       | (?P<mark> [=,\[\]{}\n] )
       | (?P<blanks> [ \t\r]+ )
@@ -199,6 +199,9 @@ TOKEN = re.compile(
       | (?P<other> . )""",
     re.VERBOSE | re.DOTALL,
 )
+LONGEST = {"string": 302, "word": 100}
+"""Characters as they are written, quotes included."""
+
 MAX_NESTED = 8
 
 
@@ -210,22 +213,23 @@ def scan(text: str) -> None:
     """
     line, depth, between = 1, 0, list[str]()
     for token in TOKEN.finditer(text):
-        kind, found = token.lastgroup, token.group()
-        where = f"robot: line {line}"
-        demand(kind != "other", f"{where}: a string that is too long or does not end")
-        demand(kind != "word" or len(found) <= 100, f"{where}: the word {shown(found)} is too long")
+        kind, found, where = str(token.lastgroup), token.group(), f"robot: line {line}"
+        demand(kind != "other", f"{where}: a string that does not end")
+        demand(len(found) <= LONGEST.get(kind, MAX_ROBOT), f"{where}: {shown(found)} is too long")
         if kind in ("string", "word"):
             between.append(found)
             demand(len(between) == 1, f"{where}: {shown(found)} follows another word or string")
             demand(kind == "string" or found.count(".") <= 1, f"{where}: a word with two dots")
         if kind == "mark":
-            bare = between and between[0][0] not in "\"'"
-            dotted = found == "=" and bare and "." in between[0]
-            demand(not dotted, f"{where}: the key {shown(between[0] if dotted else '')} has a dot")
+            demand(found != "=" or not any(map(_is_dotted, between)), f"{where}: a key with a dot")
             depth += (found in "[{") - (found in "]}")
             demand(depth <= MAX_NESTED, f"{where}: more than {MAX_NESTED} brackets in each other")
             line += found == "\n"
             between.clear()
+
+
+def _is_dotted(key: str) -> bool:
+    return "." in key and key[0] not in "\"'"
 
 
 def read_toml(text: str) -> Any:
@@ -1351,9 +1355,8 @@ def proof_of(robot: Robot, statement: Statement) -> str:
 
 def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
     """Say where the set was refuted."""
-    margin = f"{written(statement.margin)} {robot.length_unit}"
-    limit = name in robot.beyond(q)
-    asked = "" if limit else f", asked for with a margin of {margin},"
+    margin = f" with a margin of {written(statement.margin)} {robot.length_unit}"
+    asked = "" if name in robot.beyond(q) else margin
     return f"refuted: {name!a}{asked} is violated at {_values(robot, q)}, which is in the set"
 
 
@@ -1382,8 +1385,8 @@ def _point(q: Point) -> str:
 
 
 def _values(robot: Robot, q: Point) -> str:
-    values = zip(robot.joints, q, strict=True)
-    return ", ".join(f"{joint.name!a} = {written(x)}" for joint, x in values)
+    values = enumerate(zip(robot.joints, q, strict=True))
+    return ", ".join(f"{joint.name!a} = {written(x)} {robot.unit(j)}" for j, (joint, x) in values)
 
 
 def goes_round(robot: Robot, statement: Statement) -> list[int]:
