@@ -10,6 +10,7 @@ import tomllib
 from fractions import Fraction
 from functools import cache
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from scipy.optimize import minimize
 
 from qbound import check, cli
 from qbound.boundary.functions import clearance
+from qbound.cli.values import box
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
@@ -24,8 +26,10 @@ from qbound.measures.scaling import least
 from qbound.model.robot import Pair
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import certify as prover
-from qbound.proofs import check_arb, statements
+from qbound.proofs import check_arb, grammar, statements
+from qbound.proofs.cells import cells_of
 from qbound.proofs.certify import bracket_scale, certify
+from qbound.proofs.forest import silent
 from qbound.proofs.triangulation import triangulate
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
@@ -42,6 +46,14 @@ def paper_robot():
 
 def robot_of(text):
     return parse_robot(tomllib.loads(text))
+
+
+def corners_of(statement):
+    """Corners of each cell, as the second checker sees them; joints of any kind."""
+    rows = tuple(tuple(tuple(map(Fraction, p)) for p in loop) for loop in statement["points"])
+    triangles = tuple(map(tuple, statement.get("triangles", ())))
+    read = grammar.Statement(statement["set"], Fraction(0), rows, triangles)
+    return [cell.corners for cell in cells_of(read, grammar.GRAMMAR)]
 
 
 def margins(robot, q):
@@ -208,7 +220,7 @@ def test_a_polygon_with_a_hole_is_cut_into_triangles_that_tile_it(seed):
     hole = [["0.1", "0"], ["0", "-0.1"], ["-0.1", "0"], ["0", "0.1"]]
     loops = [outer, hole] if np.diff(angles).max() < 2 else [outer]
     statement = statements.filled(loops)
-    cells = check.read_cells(statement)
+    cells = corners_of(statement)
     doubled = [(b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells]
     wanted = sum(polygon.area(np.array(loop, float)) for loop in loops)
     assert float(sum(doubled)) / 2 == pytest.approx(wanted)
@@ -227,7 +239,7 @@ AWKWARD = {
 def test_awkward_polygons_are_cut_exactly(name):
     loop = [corner.split() for corner in AWKWARD[name]]
     statement = statements.filled([loop])
-    cells = check.read_cells(statement)
+    cells = corners_of(statement)
     doubled = sum(
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells
     )
@@ -240,7 +252,7 @@ def test_awkward_polygons_are_cut_exactly(name):
 def test_a_hole_may_touch_the_outline():
     loops = [["0 0", "4 0", "4 4", "0 4"], ["0 0", "1 2", "2 1"]]
     statement = statements.filled([[corner.split() for corner in loop] for loop in loops])
-    assert len(check.read_cells(statement)) == 5
+    assert len(corners_of(statement)) == 5
 
 
 @pytest.mark.parametrize(
@@ -269,7 +281,7 @@ def test_a_polygon_that_crosses_itself_is_refused():
 
 def unconfirmed(text, statement):
     """The file that the search alone would write; None if even the search does not believe it."""
-    robot, cells = robot_of(text), check.read_cells(statement)
+    robot, cells = robot_of(text), corners_of(statement)
     searches = prover.search_all(robot, statement, cells, 20_000)
     if any(found.left or found.violation is not None for found in searches.values()):
         return None
@@ -286,7 +298,7 @@ def unconfirmed(text, statement):
     )
 
 
-FOREST = prover._Forest
+FOREST = prover.Forest
 
 
 def bound_with(**faults):
@@ -363,13 +375,13 @@ FAULTS = {
     "a dropped wave": ("_forms", forms_with(a_dropped_wave)),
     "halves exchanged": ("halved", shuffled_halves),
     "cut at a third": ("halved", third),
-    "the next edge's letter": ("_Forest", forest_with(cut=lambda self, n, e: CUT(self, n, (e + 1) % 3))),
-    "a leaf left out": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[:-1])),
-    "a leaf too many": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root) + ".")),
-    "trees in postorder": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, root)[::-1])),
-    "one tree for all cells": ("_Forest", forest_with(_tree=lambda self, root: TREE(self, 0))),
+    "the next edge's letter": ("Forest", forest_with(cut=lambda self, n, e: CUT(self, n, (e + 1) % 3))),
+    "a leaf left out": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root)[:-1])),
+    "a leaf too many": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root) + ".")),
+    "trees in postorder": ("Forest", forest_with(_tree=lambda self, root: TREE(self, root)[::-1])),
+    "one tree for all cells": ("Forest", forest_with(_tree=lambda self, root: TREE(self, 0))),
     "a root off by one": (
-        "_Forest",
+        "Forest",
         forest_with(_tree=lambda self, root: TREE(self, (root + 1) % self.size)),
     ),
     "degrees off": ("units", lambda robot: UNITS(robot) * 0.97),
@@ -392,8 +404,8 @@ def test_the_checkers_see_a_fault_of_the_prover(monkeypatch, name):
     place, fault = FAULTS[name]
     if place == "bound":
         monkeypatch.setattr(prover, "second_order", fault)
-        monkeypatch.setattr(prover.search, "__defaults__", (fault,))
-        monkeypatch.setattr(prover.search_all, "__defaults__", (fault,))
+        monkeypatch.setattr(prover.search, "__defaults__", (fault, silent))
+        monkeypatch.setattr(prover.search_all, "__defaults__", (fault, silent))
     else:
         monkeypatch.setattr(prover, place, fault)
     seen = 0
@@ -520,3 +532,178 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
     assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
     error = capsys.readouterr().err
     assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
+
+
+# --- the checker beside the certificate -----------------------------------------------------------
+
+SCALED = ["certify", "minervabot-v2", "--scale", "0.96"]
+
+
+@pytest.mark.parametrize("output", [[], ["-o", "{0}/mine.json"], ["-o", "{0}/beside/mine.json"]])
+def test_the_checker_is_put_beside_the_certificate_and_runs_as_told(tmp_path, capsys, output):
+    folder = tmp_path / "beside"
+    if "beside" in "".join(output):
+        folder.mkdir()
+    files = [part.format(tmp_path) for part in output]
+    assert cli.main([*SCALED, "--with-checker", str(folder), *files]) == 0
+    *_, told = capsys.readouterr().out.splitlines()
+    name = "mine.json" if output else "certificate.json"
+    assert sorted(file.name for file in folder.iterdir()) == sorted(["check.py", name])
+    assert not files or Path(files[1]).read_bytes() == (folder / name).read_bytes()
+    command = told.split(": ")[1].split()
+    assert command[0] == "python"
+    done = subprocess.run(
+        [sys.executable, "-I", *command[1:]], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0
+    assert "proved" in done.stdout
+
+
+def test_a_refutation_and_the_largest_scale_have_their_checker_too(tmp_path):
+    one, other = tmp_path / "one", tmp_path / "other"
+    assert cli.main([*SCALED[:3], "0.97", "--with-checker", str(one)]) == 1
+    assert cli.main([*SCALED[:2], "--largest-scale", "--with-checker", str(other)]) == 0
+    assert check.main([str(one / "certificate.json")]) == 1
+    assert check.main([str(other / "certificate.json")]) == 0
+
+
+def test_certificate_and_checker_are_written_together_or_not_at_all(tmp_path, capsys, monkeypatch):
+    file = tmp_path / "file"
+    file.write_text("mine")
+    for folder in (file, tmp_path / "missing" / "folder"):
+        assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
+        assert str(folder) in capsys.readouterr().err
+    assert file.read_text() == "mine"
+    folder = tmp_path / "both"
+    folder.mkdir()
+    (folder / "check.py").mkdir()
+    assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
+    assert [entry.name for entry in folder.iterdir()] == ["check.py"]
+    monkeypatch.setattr("qbound.cli.certify.write_all", stopped)
+    assert cli.main([*SCALED, "--with-checker", str(tmp_path / "new")]) == 130
+    assert not (tmp_path / "new").exists()
+
+
+def stopped(*_, **__):
+    raise KeyboardInterrupt
+
+
+# --- on a terminal --------------------------------------------------------------------------------
+
+LONG = {
+    "certify": ([*SCALED], "searching for a proof: "),
+    "pave": (["pave", "minervabot-v2", "--tolerance", "0.05"], "paving: "),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_long_work_says_how_far_it_is_on_a_terminal_only(name, capsys, monkeypatch):
+    words, shown = LONG[name]
+    assert cli.main(words) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("qbound.cli.progress.is_terminal", lambda: True)
+    monkeypatch.setattr("qbound.cli.progress.EVERY", 0)
+    assert cli.main(words) == 0
+    error = capsys.readouterr().err
+    assert f"{shown}99 %" in error or len(error.split(shown)) > 3
+    assert error.endswith("\r\033[K")
+
+
+def test_certify_tells_of_its_way_from_nought_to_one():
+    text, robot = paper_robot()
+    told = []
+    certify(text, statements.home_polygon(robot, 0.96), tell=told.append)
+    assert 0 <= told[0] < 0.2
+    assert told[-1] == pytest.approx(prover.SEARCHING)
+    assert told == sorted(told)
+
+
+STOPPED = {
+    "certify": (SCALED, "qbound.cli.certify.certify"),
+    "pave": (["pave", "minervabot-v2"], "qbound.cli.pave.pave"),
+    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.connected.connection"),
+}
+
+
+@pytest.mark.parametrize("name", STOPPED)
+def test_ctrl_c_ends_in_one_line_and_writes_nothing(name, tmp_path, capsys, monkeypatch):
+    words, work = STOPPED[name]
+    monkeypatch.setattr(work, stopped)
+    option = "-o" if name == "certify" else "--json"
+    assert cli.main([*words, option, str(tmp_path / "file.json")]) == 130
+    assert capsys.readouterr().err == "qbound: stopped\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_answer_is_folded_between_points(tmp_path, capsys):
+    file = str(tmp_path / "cert.json")
+    assert cli.main(["certify", "minervabot-v2", "--region", "-o", file]) == 0
+    certified = capsys.readouterr().out.splitlines()
+    assert cli.main(["check", file]) == 0
+    for lines in (certified, capsys.readouterr().out.splitlines()):
+        assert max(map(len, lines)) <= 100
+        assert all(line.count("(") == line.count(")") for line in lines)
+
+
+@pytest.mark.parametrize("content", ["", "hello", "{}", "[1, 2]", '{"schema": 1}', "\x00\xff"])
+def test_what_is_no_certificate_is_refused_in_plain_words(tmp_path, capsys, content):
+    file = tmp_path / "file.json"
+    file.write_bytes(content.encode("latin-1"))
+    for options in ([], ["--arb"]):
+        assert cli.main(["check", str(file), *options]) == 2
+        said = capsys.readouterr().out
+        assert said.startswith("not proved: ")
+        assert "Error" not in said
+        assert "\n" not in said.rstrip("\n")
+
+
+def test_units_stand_beside_the_volume_of_a_paving(capsys):
+    cli.main(["pave", "minervabot-v2", "--tolerance", "0.2"])
+    volume = capsys.readouterr().out.splitlines()[0].split(" ")
+    assert volume[3] == volume[6] == "rad^2"
+    cli.main(["pave", "rp-telescopic-boom", "--tolerance", "0.5"])
+    assert "rad m" in capsys.readouterr().out.splitlines()[0]
+
+
+# --- what no certificate can hold -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('type = "pair"', 'type = "rope"', "'rope' is none of pair, half-space"),
+        ('type = "revolute"', 'type = "screw"', "'screw' is none of revolute, prismatic"),
+    ],
+)
+def test_a_type_that_the_checker_does_not_know_is_refused_in_a_sentence(
+    monkeypatch, old, new, says
+):
+    """A type that a robot may have is not yet one that a certificate can hold."""
+    text, robot = paper_robot()
+    monkeypatch.setattr(prover, "parse_robot", lambda table: robot)
+    with pytest.raises(ValueError, match=says):
+        certify(text.replace(old, new), statements.box(["0", "0"], ["1", "1"]))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "margin", "says"),
+    [
+        (["-2000", "0"], ["0", "0"], "0", "an angle .* is too large"),
+        (["0", "0"], ["1", "1"], "-1", "the margin is negative"),
+        (["0", "0"], ["1", "1"], "1e99999", "no decimal"),
+        (["0"], ["1"], "0", "wanted 2"),
+    ],
+)
+def test_a_statement_that_no_certificate_can_hold_is_refused_before_the_search(
+    low, high, margin, says
+):
+    text, _ = paper_robot()
+    with pytest.raises(ValueError, match=says):
+        certify(text, {"set": "box", "margin": margin, "points": [[low, high]]})
+
+
+@pytest.mark.parametrize("value", ["+20deg", "20.", ".5", "2_0", "1e1deg", "0.2rad"])
+def test_joint_values_as_people_type_them_become_decimals_of_the_grammar(value):
+    low, high = [f"q1={value}:30deg", "q2=-60deg:-50deg"], grammar.DECIMAL
+    ends = box(paper_robot()[1], low)
+    assert all(high.fullmatch(text) for end in ends for text in end)

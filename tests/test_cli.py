@@ -106,7 +106,7 @@ def test_robots_lists_and_shows(capsys):
         (("region", "no-such-robot"), "no-such-robot"),
         (("region", "minervabot-v2", "--slice", "q9=1"), "no joint 'q9'"),
         (("region", "minervabot-v2", "--slice", "q1=1deg"), "1 that are not held"),
-        (("contains", "minervabot-v2", "0"), "1 values for 2 joints"),
+        (("contains", "minervabot-v2", "0"), "1 value for 2 joints"),
         (("contains", "minervabot-v2", "nan", "0"), "'nan' is no value"),
         (("contains", "minervabot-v2", "0", "0", "--weights", "0", "1"), "weights"),
         (("robots", "show", "nobody"), "no robot 'nobody'"),

@@ -158,7 +158,7 @@ def test_a_report_on_a_workspace_says_what_was_asked():
     assert not found.all_safe
     content, lines = workspace_document(found), list(workspace_lines(found))
     follows_schema(content, "workspace")
-    assert "at (-45, 20): safe postures 1" in lines
+    assert "at (-45, 20) cm: safe postures 1" in lines
     assert "go: no, from component 0 to component 1" in lines
     assert len(content["at"][0]["postures"]) == 2
     names = {arc["boundary"] for loop in content["go"]["separated_by"] for arc in loop["arcs"]}
@@ -181,7 +181,7 @@ def test_a_paving_is_told_alike_as_json_and_in_words():
     content = paving_document(MINERVA, paving)
     assert content["volume"]["inner"] <= REGION.area <= content["volume"]["outer"]
     n = {word: sum(len(c["index"]) for c in groups) for word, groups in content["cells"].items()}
-    volume, undecided, cells = paving_lines(paving)
+    volume, undecided, cells = paving_lines(MINERVA, paving)
     assert cells == ", ".join(f"{count} cells {word}" for word, count in n.items())
     assert undecided == f"{100 * content['undecided']:.3g} % of the range is undecided"
     assert f"{content['volume']['inner']:.9g}" in volume

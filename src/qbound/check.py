@@ -2,199 +2,1513 @@
 
     python check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]
 
-Exit status: 0 proved, 1 refuted, 2 malformed, proves nothing, or is about another robot. The file
-holds a robot as text, a set of configurations made of simplices (segments, triangles, ...), and for
-each boundary and simplex a tree: "." is a leaf, a letter halves the simplex across an edge: leaves
-cover the set. A boundary function is a sum of waves, beta = sum Re A exp(i w . q). On a leaf with
-centre m, beta(m) + grad beta(m) . d - 1/2 sum |A| (w . d)^2 > 0 is verified at each corner m + d;
-this bounds beta(m + d) from below and is concave in d, so that it is positive in between as well.
+A certificate says of a robot that every configuration of a set keeps every boundary (proved), or
+that one of them does not (refuted). This file is for a stranger who wants to trust that answer: it
+imports nothing but the standard library, uses no floating point, and can be copied and run alone.
+The grammar of certificates is a page of the book, "The certificate"; what it does not list is
+refused here. Read from top to bottom:
+
+    reading       the file, the robot's text, the set: every key, type, count and size is known
+    cells         the set is cut into simplices or is one box; trees cut them further
+    balls         complex numbers with their error, made of whole numbers
+    waves         each boundary as a sum of waves, from the robot's joints and points
+    the bound     on each leaf of a tree, why the boundary is positive there
+    the answer    a statement that is written from what was verified, and an exit status
+
+Exit status: 0 proved, 1 refuted by a witness that was verified, 2 anything else, 130 interrupted.
+The second argument pins the robot: its file, or the SHA-256 of that file's text.
 """
-import collections, hashlib, json, math, pathlib, re, sys, tomllib
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import math
+import os
+import re
+import sys
+import tomllib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, pairwise, permutations, product
-from operator import add, mul, sub
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
 
-BITS, MAX_FILE, MAX_WORK, MAX_JOINTS, MAX_DEPTH = 128, 2_000_000, 1_000_000, 6, 120
-DECIMAL = r"[+-]?\d[\d_]{0,40}(\.\d[\d_]{0,40})?([eE][+-]?\d{1,2})?"
-def demand(condition, text):
-    if not condition: raise ValueError(text)
-def number(value) -> Fraction:
-    text = str(value) if type(value) is int and abs(value) < 10**30 else value
-    demand(type(text) is str and re.fullmatch(DECIMAL, text, re.ASCII), "not a decimal number")
-    return Fraction(text.replace("_", ""))
-class Ball:
-    """The complex numbers no farther than r from x + i y; x, y, r in units of 2^-BITS."""
-    def __init__(self, x, y=0, r=0): self.x, self.y, self.r = x, y, r
-    def __add__(self, b): return Ball(self.x + b.x, self.y + b.y, self.r + b.r)
-    def __sub__(self, b): return Ball(self.x - b.x, self.y - b.y, self.r + b.r)
-    def __abs__(self): return Ball(math.isqrt(self.x**2 + self.y**2) + self.r + (self.y != 0))
-    def __mul__(self, b):
-        Ball.work += 1; demand(Ball.work < MAX_WORK, "too much work")
-        x, y = self.x * b.x - self.y * b.y, self.x * b.y + self.y * b.x
-        r = (abs(self.x) + abs(self.y)) * b.r + self.r * (abs(b.x) + abs(b.y) + b.r)
-        return Ball(x >> BITS, y >> BITS, -(-r >> BITS) + (2 if (x | y) % (1 << BITS) else 0))
-def ball(x):
-    m, rest = divmod(Fraction(x).numerator << BITS, Fraction(x).denominator)
-    return Ball(m, 0, int(rest != 0))
-ZERO, ONE, HALF, I = Ball(0), Ball(1 << BITS), Ball(1 << BITS - 1), Ball(0, 1 << BITS)
-PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
-def exp_i(angle):
-    """Taylor's series: fewer than 2^8 terms, each cut by a unit that later ones raise to < e^32."""
-    demand(abs(angle).x < 32 << BITS, "an angle of more than five turns")
-    term, sums, i = 1 << BITS, [0, 0], 0
-    while term not in (0, -1):
-        sums[i % 2] += -term if i % 4 > 1 else term
-        i, term = i + 1, (term * angle.x >> BITS) // (i + 1)
-    return Ball(*sums, angle.r + (1 << 56) if angle.x or angle.r else 0)
-def vector(values, direction=False):
-    x, y, z = exact = [number(value) for value in values]
-    square = 4**BITS / (x * x + y * y + z * z) if direction else Fraction(4**BITS)
-    root = math.isqrt(int(square))
-    return [ball(value) * Ball(root, 0, int(root**2 != square)) for value in exact]
-def dot(u, v): return sum(map(mul, u, v), ZERO)
-def turned(u, axis):
-    """Return a, b, c: the vector u turned by t about a unit axis is a + b exp(it) + c exp(-it)."""
-    along, (x, y, z) = [dot(axis, u) * a for a in axis], axis
-    cross = [I * c for c in (y * u[2] - z * u[1], z * u[0] - x * u[2], x * u[1] - y * u[0])]
-    rows = list(zip(map(sub, u, along), cross))
-    return along, [(a - c) * HALF for a, c in rows], [(a + c) * HALF for a, c in rows]
+MAX_FILE = 2_000_000
+"""Bytes of a certificate, and of a robot file that pins it."""
 
-class Robot:
-    def __init__(self, text) -> None:
-        table = tomllib.loads(text, parse_float=str)
-        rows = [table["joint"], table["point"], table.get("boundary", [])]
-        self.name, self.joints, self.still = table["name"], table["joint"], (0,) * len(rows[0])
-        self.points, self.walls = ({row["name"]: row for row in part if row.get("used", True)}
-                                   for part in rows[1:])
-        self.frames = [self.joints[0]["parent"], *(joint["frame"] for joint in self.joints)]
-        self.radian = {"deg": ball(PI / 180), "rad": ONE}[table["angle_unit"]]
-        self.turns = [{"revolute": 1, "prismatic": 0}[joint["type"]] for joint in self.joints]
-        names = [self.frames, *([row["name"] for row in part] for part in rows)]
-        demand(all(len({*x}) == len(x) for x in names), "a name is used twice")
-        chain = [joint["parent"] for joint in self.joints] == self.frames[:-1]
-        demand(chain and len(self.joints) <= MAX_JOINTS, f"no chain of up to {MAX_JOINTS} joints")
-    def waves(self, wall, margin):
-        """Return the distance to keep, and the boundary function as {k: A}: the sum of A times all
-        exp(i k_j q_j), or q_j to the power k_j for the joints that slide."""
-        pair, still = {"pair": 1, "half-space": 0}[wall["type"]], self.still
-        ends = [self.points[name] for name in (wall["points"] if pair else [wall["point"]])]
-        gap = sum(number(end.get("radius", 0)) for end in ends) + margin
-        gap += number(wall.get("clearance", 0) if pair else wall["offset"])
-        ends.sort(key=lambda end: self.frames.index(end["frame"]))
-        first, last = (self.frames.index(end["frame"]) for end in (ends[0], ends[-1]))
-        u = {still: vector(ends[-1]["at"])}  # the far point, seen from frame after frame
-        for j in reversed(range(first if pair else 0, last)):
-            joint, axis = self.joints[j], vector(self.joints[j]["axis"], direction=True)
-            new = [(k, s, a) for k, v in u.items() for s, a in zip((0, 1, -1), turned(v, axis))]
-            if not self.turns[j]: new = [*((k, 0, v) for k, v in u.items()), (still, 1, axis)]
-            u = {(*k[:j], s, *k[j + 1 :]): a for k, s, a in new}
-            for i, angle in enumerate(joint.get("rpy", [])):
-                fixed, angle = [Ball((i == k) << BITS) for k in range(3)], ball(number(angle))
-                steps = ONE, exp_i(angle * self.radian), exp_i(ZERO - angle * self.radian)
-                u = {k: [dot(x, steps) for x in zip(*turned(v, fixed))] for k, v in u.items()}
-            u[still] = list(map(add, u[still], vector(joint["origin"])))
-        if pair: u[still] = list(map(sub, u[still], vector(ends[0]["at"])))
-        form = {still: ZERO - ball(gap**2 if pair else gap)}
-        other = u if pair else {still: vector(wall["normal"], direction=True)}
-        for (k, a), (l, b) in product(u.items(), other.items()):
-            key = tuple(map(add, k, l))
-            if max(map(abs, map(mul, key, self.turns))) < 2:  # turns keep lengths: the rest cancels
-                form[key] = form.get(key, ZERO) + dot(a, b)
-        return gap, {k: a for k, a in form.items() if a.x or a.y or a.r}
-    def bounds(self, waves, corners):
-        """Return the bound at each corner; of one point, the value. For a wave times slides the
-        product rule bounds the second derivative along d; a lone square bends upwards."""
-        centre = [sum(x) / len(corners) for x in zip(*corners)]
-        steps, low = [[*map(sub, corner, centre)] for corner in corners], [ZERO] * len(corners)
-        for k, a in waves.items():
-            if (w := [*map(mul, k, self.turns)]) < [*self.still]: continue  # mirrored, see a + a
-            a = a + a if any(w) else a
-            slides = [j for j, power in enumerate(k) if not self.turns[j] for _ in range(power)]
-            at, *turns = (ball(sum(map(mul, w, x))) * self.radian for x in (centre, *steps))
-            wave, lone = a * exp_i(at), not any(w) and sum(k) == max(k) == 2 and a.x > a.r
-            for i, step in enumerate(steps):
-                u = Ball(max(abs(turn).x for turn in turns)) if slides else turns[i]
-                x, dx, y, dy, ddy = wave, I * wave * turns[i], abs(a), abs(a) * u, abs(a) * u * u
-                for j in slides:
-                    x, dx = x * ball(centre[j]), dx * ball(centre[j]) + x * ball(step[j])
-                    q, d = (ball(max(abs(row[j]) for row in rows)) for rows in (corners, steps))
-                    y, dy, ddy = y * q, dy * q + y * d, ddy * q + (dy + dy) * d
-                low[i] += x + dx - (ZERO if lone else ddy * HALF)
-        return low
-    def proves(self, waves, cell, tree, depth=0):
-        """Walk a tree, an iterator of letters; of a cut cell the half with end i comes first."""
-        if (letter := next(tree, "")) == ".":
-            return all(low.x > low.r for low in self.bounds(waves, cell))
-        demand(depth < MAX_DEPTH and "a" <= letter <= "z", "a tree ends early, or no tree")
-        i, k = [*combinations(range(len(cell)), 2)][ord(letter) - ord("a")]
-        middle = tuple((x + y) / 2 for x, y in zip(cell[i], cell[k]))
-        halves = ([middle if j == end else x for j, x in enumerate(cell)] for end in (k, i))
-        return all(self.proves(waves, half, tree, depth + 1) for half in halves)
-    def beyond(self, q):
-        rows = [(j["name"], x, j["limits"]) for j, x in zip(self.joints, q) if "limits" in j]
-        low, high = ({n for n, x, ends in rows if s * x < s * number(ends[s < 0])} for s in (1, -1))
-        return {f"{name}.lower" for name in low} | {f"{name}.upper" for name in high}
-def read_cells(statement) -> list:  # of simplices, each a list of corners
-    loops = [[tuple(map(number, point)) for point in loop] for loop in statement["points"]]
-    kind, points = statement["set"], [point for loop in loops for point in loop]
-    demand(kind in ("path", "box", "polygon") and min(map(len, loops)) > 1, "an unknown set")
-    if kind == "path": return [list(ends) for loop in loops for ends in pairwise(loop)]
-    if kind == "box":  # cut once for each order in which low ends may turn into high ones
-        orders = permutations(j for j, (x, y) in enumerate(zip(*points, strict=True)) if x != y)
-        ups = [[order[:k] for k in range(len(order) + 1)] for order in orders]
-        return [[tuple(x[j in up] for j, x in enumerate(zip(*points))) for up in o] for o in ups]
-    free = [j for j, values in enumerate(zip(*points)) if len({*values}) > 1]
-    cells = [[points[i] for i in triangle] for triangle in statement["triangles"]]
-    edges = collections.Counter(edge for loop in loops for edge in pairwise([*loop, loop[0]]))
-    demand(all((b, a) not in edges for a, b in edges), "a loop goes back along itself")
-    for a, b, c in cells:  # anticlockwise, their edges adding up to the loops: they tile the inside
-        (x, y), (u, v) = ([p[j] - a[j] for j in free] for p in (b, c))
-        demand(x * v > y * u, "a triangle is not anticlockwise")
-        edges.subtract([(a, b), (b, c), (c, a)])
-    demand(all(n == edges[b, a] for (a, b), n in edges.items()), "the triangles miss the polygon")
-    return cells
-def unique(pairs):
-    demand(len(dict(pairs)) == len(pairs), "a key is there twice")
-    return dict(pairs)
-def digest(text) -> str: return hashlib.sha256(text.encode()).hexdigest()
+MAX_ROBOT = 500_000
+"""Characters of the robot's text."""
 
-def check(text: str | bytes, pin: str | None = None) -> tuple[bool, str]:
-    """Return whether the statement is refuted (else it is proved), and what is to be said of it."""
-    Ball.work, content = 0, json.loads(text, object_pairs_hook=unique)
-    robot, sha256, verdict = Robot(content["robot"]), digest(content["robot"]), content["verdict"]
-    demand(sha256 == content["sha256"] and pin in (None, sha256), f"another robot: sha256 {sha256}")
-    cells, margin = read_cells(content["statement"]), number(content["statement"]["margin"])
-    demand(content["schema"] == "qbound/certificate/1" and cells and margin >= 0, "no statement")
-    demand({len(q) for cell in cells for q in cell} == {len(robot.joints)}, "not one value a joint")
-    said = f"robot {robot.name!a}, sha256 {sha256}\n{verdict}: "
-    walls = {name: robot.waves(wall, margin) for name, wall in robot.walls.items()}
-    if ["proved", "refuted"].index(verdict):
-        name, cell = content["boundary"], cells[content["cell"]]
-        weights = [number(x) for x in content["weights"]]
-        demand(len(weights) == len(cell), "a witness has one weight for each corner of its cell")
-        demand(min(weights) >= 0 and sum(weights) == 1, "the weights of no configuration")
-        q = [sum(map(mul, x, weights)) for x in zip(*cell, strict=True)]
-        [value] = robot.bounds(walls[name][1], [q]) if name in walls else [ZERO]
-        demand(name in robot.beyond(q) or value.x + value.r < 0, "the witness violates nothing")
-        return True, f"{said}{name!a} is violated at {[float(x) for x in q]}"
-    demand(not any(robot.beyond(q) for cell in cells for q in cell), "beyond a limit of a joint")
-    for name, (gap, waves) in walls.items():  # a pair with nothing to keep is at least 0 apart
-        if gap or robot.walls[name]["type"] != "pair":
-            for cell, letters in zip(cells, content["proof"][name], strict=True):
-                tree = iter(letters)
-                demand(robot.proves(waves, cell, tree) and not next(tree, ""), f"{name}: no proof")
-    return False, f"{said}{[*walls]} and limits, all over {json.dumps(content['statement']):.1500}"
+MAX_JOINTS, MAX_ROWS, MAX_CORNERS = 6, 2_000, 1_000
+"""Joints; points, boundaries or bodies; corners of the outline of a body."""
 
-def main(arguments: list[str]) -> int:
+MAX_CONFIGURATIONS, MAX_TRIANGLES = 20_000, 20_000
+
+MAX_DEPTH = 120
+"""Cuts on top of each other in a tree."""
+
+MAX_WORK = 4_000_000
+"""Multiplications of balls; each cell that a tree visits counts as `CELL_WORK` of them."""
+
+CELL_WORK = 50
+
+LARGEST, LARGEST_DIRECTION = Fraction(10**100), Fraction(10**308)
+"""Sizes of numbers."""
+
+LARGEST_ANGLE = {"deg": Fraction(1800), "rad": Fraction(30)}
+"""Sizes of angles whose cosine is needed."""
+
+Table = dict[str, Any]
+Point = tuple[Fraction, ...]
+"""One exact value for each joint, or three coordinates."""
+
+
+class Refused(ValueError):
+    """Why a file proves nothing, in a sentence that names what and where."""
+
+
+def demand(condition: object, text: str) -> None:
+    """Refuse the file unless a condition holds."""
+    if not condition:
+        raise Refused(text)
+
+
+# --- reading: JSON --------------------------------------------------------------------------------
+
+
+def read_json(data: bytes) -> Any:
+    """Read JSON of which no key stands twice, and whose only numbers are indices."""
+    demand(len(data) <= MAX_FILE, f"the file has more than {MAX_FILE} bytes")
     try:
-        with pathlib.Path(arguments[0]).open("rb") as file: text = file.read(MAX_FILE + 1)
-        demand(len(text) <= MAX_FILE, f"more than {MAX_FILE} bytes")
-        demand("" not in arguments[1:] and arguments[-1] != "--sha256", "a pin without a value")
-        pin = arguments[2:] if "--sha256" in arguments else [
-            digest(pathlib.Path(file).read_text("utf-8-sig")) for file in arguments[1:]]
-        status, said = check(text, *pin)
-    except Exception as error:  # whatever a hostile file sets off
-        status, said = 2, f"not proved: {type(error).__name__}: {str(error)!a:.300}"
-    print(said)
-    return int(status)
-if __name__ == "__main__": sys.exit(main(sys.argv[1:]))
+        return json.loads(
+            data.decode("utf-8"),
+            object_pairs_hook=_unique,
+            parse_int=_index,
+            parse_float=_no_number,
+            parse_constant=_no_number,
+        )
+    except UnicodeDecodeError:
+        raise Refused("the file is not UTF-8 text") from None
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno}, column {error.colno}"
+        raise Refused(f"the file is not JSON: {where}: {error.msg}") from None
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> Table:
+    table = dict(pairs)
+    demand(len(table) == len(pairs), "the file has a key twice in one object")
+    return table
+
+
+def _index(text: str) -> int:
+    known = re.fullmatch("0|[1-9][0-9]{0,8}", text)
+    demand(known, f"the file has the number {shown(text)}: bare numbers are indices of 0 or more")
+    return int(text)
+
+
+def _no_number(text: str) -> Any:
+    raise Refused(f"the file has the number {shown(text)}: decimals are written as strings")
+
+
+# --- reading: types -------------------------------------------------------------------------------
+# Each of these returns a value of its type, or refuses the file and names the place. `True` is an
+# integer to `isinstance`, so types are compared by `type(...) is`.
+
+
+def table_of(
+    value: Any, where: str, required: Iterable[str], optional: Iterable[str] = ()
+) -> Table:
+    """Return a table that has all required keys, and no others but the optional ones."""
+    demand(type(value) is dict, f"{where}: a table is wanted")
+    needed, allowed = {*required}, {*required, *optional}
+    unknown = [key for key in value if key not in allowed]
+    demand(not unknown, f"{where}: unknown key {shown(next(iter(unknown), ''))}")
+    missing = sorted(needed - {*value})
+    demand(not missing, f"{where}: the key {shown(next(iter(missing), ''))} is missing")
+    return {**value}
+
+
+def list_of(value: Any, where: str, least: int, most: int) -> list[Any]:
+    """Return a list of `least` to `most` items."""
+    wanted = str(least) if least == most else f"{least} to {most}"
+    fits = type(value) is list and least <= len(value) <= most
+    demand(fits, f"{where}: a list of {wanted} is wanted")
+    return [*value]
+
+
+def text_of(value: Any, where: str, most: int) -> str:
+    """Return a text of 1 to `most` characters."""
+    fits = type(value) is str and 1 <= len(value) <= most
+    demand(fits, f"{where}: a text of 1 to {most} characters is wanted")
+    return str(value)
+
+
+def one_of(value: Any, where: str, choices: Sequence[str]) -> str:
+    """Return a text that is among some."""
+    fits = type(value) is str and value in choices
+    demand(fits, f"{where}: {' or '.join(choices)} is wanted")
+    return str(value)
+
+
+def index_of(value: Any, where: str, count: int) -> int:
+    """Return a number from 0 to `count` - 1."""
+    demand(type(value) is int and 0 <= value < count, f"{where}: 0 to {count - 1} is wanted")
+    return int(value)
+
+
+def number(value: Any, where: str = "number") -> Fraction:
+    """Return the exact value of a decimal of a certificate: a string such as "-12.5"."""
+    form = "-?[0-9]{1,40}([.][0-9]{1,40})?([eE][+-]?[0-9]{1,2})?"
+    known = type(value) is str and re.fullmatch(form, value)
+    demand(known, f'{where}: {shown(value)} is no decimal number in quotes, such as "-12.5"')
+    return _bounded(Fraction(value), where, LARGEST)
+
+
+def _bounded(value: Fraction, where: str, largest: Fraction) -> Fraction:
+    demand(abs(value) <= largest, f"{where}: the number is too large")
+    return value
+
+
+def shown(value: Any) -> str:
+    """Write a value for a message: short, in ASCII, on one line."""
+    if type(value) is str:
+        return ascii(value if len(value) <= 60 else f"{value[:57]}...")
+    names = {dict: "a table", list: "a list", int: "a number", bool: "a truth value"}
+    return names.get(type(value), "a value of another type")
+
+
+# --- reading: the robot's text as TOML ------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class TomlFloat:
+    """A float as the robot's text writes it; so it is neither rounded nor taken for a string."""
+
+    text: str
+
+
+TOKEN = re.compile(
+    r"""(?P<string> "[^"\\\n]*(?:\\[^\n][^"\\\n]*)*" | '[^'\n]*' )
+      | (?P<comment> \#[^\n]* )
+      | (?P<mark> [=,\[\]{}\n] )
+      | (?P<blanks> [ \t\r]+ )
+      | (?P<word> [^"'\#=,\[\]{}\n\ \t\r]+ )
+      | (?P<other> . )""",
+    re.VERBOSE | re.DOTALL,
+)
+LONGEST = {"string": 302, "word": 100}
+"""Characters as they are written, quotes included."""
+
+MAX_NESTED = 8
+
+
+def scan(text: str) -> None:
+    """Refuse a text on which the reader of TOML would work for long, before it sees it.
+
+    Dotted keys cost it the square of their number of parts, tables in tables more than that. No
+    robot needs either: between two marks there is at most one string or word.
+    """
+    line, depth, between = 1, 0, list[str]()
+    for token in TOKEN.finditer(text):
+        kind, found, where = str(token.lastgroup), token.group(), f"robot: line {line}"
+        demand(kind != "other", f"{where}: a string that does not end")
+        demand(len(found) <= LONGEST.get(kind, MAX_ROBOT), f"{where}: {shown(found)} is too long")
+        if kind in ("string", "word"):
+            between.append(found)
+            demand(len(between) == 1, f"{where}: {shown(found)} follows another word or string")
+            demand(kind == "string" or found.count(".") <= 1, f"{where}: a word with two dots")
+        if kind == "mark":
+            demand(found != "=" or not any(map(_is_dotted, between)), f"{where}: a key with a dot")
+            depth += (found in "[{") - (found in "]}")
+            demand(depth <= MAX_NESTED, f"{where}: more than {MAX_NESTED} brackets in each other")
+            line += found == "\n"
+            between.clear()
+
+
+def _is_dotted(key: str) -> bool:
+    return "." in key and key[0] not in "\"'"
+
+
+def read_toml(text: str) -> Any:
+    """Read TOML after a `scan`."""
+    scan(text)
+    try:
+        return tomllib.loads(text, parse_float=TomlFloat)
+    except ValueError as error:  # also an integer of thousands of digits
+        raise Refused(f"robot: no TOML: {error}") from None
+
+
+def toml_number(value: Any, where: str, largest: Fraction = LARGEST) -> Fraction:
+    """Return the exact value of an integer or a float."""
+    if type(value) is int:
+        return _bounded(Fraction(value), where, largest)
+    text = value.text.replace("_", "") if isinstance(value, TomlFloat) else ""
+    form = "[+-]?[0-9]{1,100}([.][0-9]{1,100})?([eE][+-]?[0-9]{1,3})?"
+    demand(re.fullmatch(form, text), f"{where}: a finite number is wanted")
+    return _bounded(Fraction(text), where, largest)
+
+
+def vector_of(value: Any, where: str, largest: Fraction = LARGEST) -> Point:
+    """Return three numbers."""
+    return tuple(toml_number(x, where, largest) for x in list_of(value, where, 3, 3))
+
+
+def direction_of(value: Any, where: str) -> Point:
+    """Return three numbers that are not all 0."""
+    vector = vector_of(value, where, LARGEST_DIRECTION)
+    demand(any(vector), f"{where}: a direction must not be 0")
+    return vector
+
+
+def size_of(value: Any, where: str) -> Fraction:
+    """Return a number of 0 or more."""
+    size = toml_number(value, where)
+    demand(size >= 0, f"{where}: a number of 0 or more is wanted")
+    return size
+
+
+# --- reading: the robot ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint; all numbers as the robot file writes them, in its units."""
+
+    name: str
+    turns: bool
+    origin: Point
+    rpy: Point
+    axis: Point
+    limits: tuple[Fraction, Fraction] | None
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point with a radius, in the frame of this number: frame j + 1 is moved by joint j."""
+
+    frame: int
+    at: Point
+    radius: Fraction
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A pair keeps `distance` plus both radii apart; else one place keeps to a side of a plane."""
+
+    name: str
+    places: tuple[Place, ...]
+    normal: Point | None
+    distance: Fraction
+
+    def gap(self, margin: Fraction) -> Fraction:
+        """Return the distance that is asked for: with radii and margin."""
+        return self.distance + sum(place.radius for place in self.places) + margin
+
+    def needs_proof(self, margin: Fraction) -> bool:
+        """Tell whether anything can violate it: two places are always at least 0 apart."""
+        return self.normal is not None or self.gap(margin) != 0
+
+
+@dataclass(frozen=True)
+class Robot:
+    """What a robot's text says, as far as it bears on statements."""
+
+    name: str
+    length_unit: str
+    angle_unit: str
+    joints: tuple[Joint, ...]
+    boundaries: tuple[Boundary, ...]
+
+    def unit(self, j: int) -> str:
+        """Return the unit of a joint's values."""
+        return self.angle_unit if self.joints[j].turns else self.length_unit
+
+    def beyond(self, q: Point) -> list[str]:
+        """Return the names of the limits that a configuration is beyond."""
+        found = []
+        for joint, value in zip(self.joints, q, strict=True):
+            low, high = joint.limits or (value, value)
+            found += [f"{joint.name}.lower"] * (value < low) + [f"{joint.name}.upper"] * (
+                value > high
+            )
+        return found
+
+
+def read_robot(text: str) -> Robot:
+    """Read the robot's text: every table, key, type and bound is known."""
+    required = ("schema", "name", "length_unit", "angle_unit", "home", "tool", "joint", "point")
+    file = table_of(read_toml(text), "robot", required, ("boundary", "body"))
+    demand(type(file["schema"]) is int and file["schema"] == 1, "robot: schema: 1 is wanted")
+    angle_unit = one_of(file["angle_unit"], "robot: angle_unit", ("deg", "rad"))
+    rows = list_of(file["joint"], "robot: joint", 1, MAX_JOINTS)
+    joints = tuple(_joint(row, f"robot: joint[{j}]", angle_unit) for j, row in enumerate(rows))
+    frames = _chain(rows)
+    places = _places(file["point"], frames)
+    _read_home(file["home"], joints)
+    _known(file["tool"], "robot: tool", places)
+    _read_bodies(file.get("body", []), frames)
+    _different("joint", [joint.name for joint in joints])
+    return Robot(
+        name=_label(file["name"], "robot: name"),
+        length_unit=one_of(file["length_unit"], "robot: length_unit", ("m", "cm", "mm")),
+        angle_unit=angle_unit,
+        joints=joints,
+        boundaries=_boundaries(file.get("boundary", []), places, joints),
+    )
+
+
+def _label(value: Any, where: str) -> str:
+    return text_of(value, where, 200)
+
+
+def _known(value: Any, where: str, names: Iterable[str]) -> str:
+    """Return a label that is one of some names."""
+    name = _label(value, where)
+    demand(name in names, f"{where}: nothing is called {shown(name)}")
+    return name
+
+
+def _different(what: str, names: Sequence[str]) -> None:
+    demand(len({*names}) == len(names), f"robot: {what}: a name is used twice")
+
+
+def _joint(value: Any, where: str, angle_unit: str) -> Joint:
+    required = ("name", "type", "parent", "frame", "origin", "axis")
+    row = table_of(value, where, required, ("rpy", "limits", "velocity"))
+    turns = one_of(row["type"], f"{where}.type", ("revolute", "prismatic")) == "revolute"
+    demand(turns or "limits" in row, f"{where}: a prismatic joint needs limits")
+    rpy = vector_of(row.get("rpy", [0, 0, 0]), f"{where}.rpy")
+    within = all(abs(angle) <= LARGEST_ANGLE[angle_unit] for angle in rpy)
+    demand(within, f"{where}.rpy: an angle of more than five turns")
+    speed = toml_number(row.get("velocity", 1), f"{where}.velocity")
+    demand(speed > 0, f"{where}.velocity: a number of more than 0 is wanted")
+    return Joint(
+        name=_label(row["name"], f"{where}.name"),
+        turns=turns,
+        origin=vector_of(row["origin"], f"{where}.origin"),
+        rpy=rpy,
+        axis=direction_of(row["axis"], f"{where}.axis"),
+        limits=_limits(row["limits"], f"{where}.limits", turns, angle_unit)
+        if "limits" in row
+        else None,
+    )
+
+
+def _limits(value: Any, where: str, turns: bool, angle_unit: str) -> tuple[Fraction, Fraction]:
+    low, high = (toml_number(x, where) for x in list_of(value, where, 2, 2))
+    demand(low < high, f"{where}: the first one must be less")
+    widest = 100 * (Fraction(360) if angle_unit == "deg" else 2 * PI)
+    demand(not turns or high - low <= widest, f"{where}: more than 100 turns apart")
+    return low, high
+
+
+def _chain(rows: Sequence[Table]) -> list[str]:
+    """Return the frames of the joints, the base first, which hang on each other one by one."""
+    parents = [_label(row["parent"], "robot: joint: parent") for row in rows]
+    frames = parents[:1] + [_label(row["frame"], "robot: joint: frame") for row in rows]
+    demand(parents == frames[:-1], "robot: joint: each parent is the frame of the joint before")
+    _different("frames", frames)
+    return frames
+
+
+def _places(value: Any, frames: Sequence[str]) -> dict[str, Place]:
+    places, rows = dict[str, Place](), list_of(value, "robot: point", 1, MAX_ROWS)
+    for i, item in enumerate(rows):
+        where = f"robot: point[{i}]"
+        row = table_of(item, where, ("name", "frame", "at"), ("radius",))
+        name = _label(row["name"], f"{where}.name")
+        demand(name not in places, f"{where}: the name {shown(name)} is used twice")
+        demand(name not in frames, f"{where}: {shown(name)} is the name of a frame")
+        places[name] = Place(
+            frame=frames.index(_known(row["frame"], f"{where}.frame", frames)),
+            at=vector_of(row["at"], f"{where}.at"),
+            radius=size_of(row.get("radius", 0), f"{where}.radius"),
+        )
+    return places
+
+
+def _boundaries(
+    value: Any, places: dict[str, Place], joints: Sequence[Joint]
+) -> tuple[Boundary, ...]:
+    """Read all boundaries and return those in use."""
+    rows = [
+        _boundary(row, f"robot: boundary[{i}]", places)
+        for i, row in enumerate(list_of(value, "robot: boundary", 0, MAX_ROWS))
+    ]
+    limits = [f"{joint.name}.{side}" for joint in joints for side in ("lower", "upper")]
+    names = [boundary.name for boundary, _ in rows]
+    _different("boundary", names)
+    demand(not {*names} & {*limits}, "robot: boundary: the name of a joint limit")
+    return tuple(boundary for boundary, used in rows if used)
+
+
+def _boundary(value: Any, where: str, places: dict[str, Place]) -> tuple[Boundary, bool]:
+    """Return a boundary, and whether it is in use."""
+    sort = value.get("type") if type(value) is dict else None
+    pair = one_of(sort, f"{where}: type", ("pair", "half-space")) == "pair"
+    required, optional = (
+        (("points",), ("clearance",)) if pair else (("point", "normal", "offset"), ())
+    )
+    row = table_of(value, where, ("name", "type", *required), ("used", *optional))
+    used = row.get("used", True)
+    demand(type(used) is bool, f"{where}.used: true or false is wanted")
+    ends = list_of(row["points"], f"{where}.points", 2, 2) if pair else [row["point"]]
+    names = [_known(end, f"{where}: point", places) for end in ends]
+    demand(len({*names}) == len(names), f"{where}.points: two different points are wanted")
+    boundary = Boundary(
+        name=_label(row["name"], f"{where}.name"),
+        places=tuple(places[name] for name in names),
+        normal=None if pair else direction_of(row["normal"], f"{where}.normal"),
+        distance=size_of(row.get("clearance", 0), f"{where}.clearance")
+        if pair
+        else toml_number(row["offset"], f"{where}.offset"),
+    )
+    return boundary, used
+
+
+def _read_home(value: Any, joints: Sequence[Joint]) -> None:
+    """Verify the home pose, which bears on no statement."""
+    for name, angle in table_of(value, "robot: home", [joint.name for joint in joints]).items():
+        toml_number(angle, f"robot: home: {shown(name)}")
+
+
+def _read_bodies(value: Any, frames: Sequence[str]) -> None:
+    """Verify the outlines of bodies, which bear on no statement."""
+    for i, item in enumerate(list_of(value, "robot: body", 0, MAX_ROWS)):
+        where = f"robot: body[{i}]"
+        row = table_of(item, where, ("frame", "polygon"))
+        _known(row["frame"], f"{where}.frame", frames)
+        for corner in list_of(row["polygon"], f"{where}.polygon", 3, MAX_CORNERS):
+            for x in list_of(corner, f"{where}.polygon", 2, 2):
+                toml_number(x, f"{where}.polygon")
+
+
+# --- cells ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Simplex:
+    """A point, segment, triangle, ... with its corners."""
+
+    corners: tuple[Point, ...]
+
+    @cached_property
+    def centre(self) -> Point:
+        """Return the mean of its corners."""
+        return tuple(sum(column) / len(self.corners) for column in zip(*self.corners, strict=True))
+
+    @cached_property
+    def steps(self) -> list[Point]:
+        """Return the steps from its centre to its corners."""
+        return [tuple(x - m for x, m in zip(q, self.centre, strict=True)) for q in self.corners]
+
+    @cached_property
+    def signs(self) -> list[tuple[int, ...]]:
+        """Return the signs by which each step leads to corners: as it is."""
+        return [(1,) * len(self.centre)]
+
+    def largest(self, w: Sequence[int]) -> Fraction:
+        """Return the largest abs(w . d) over the steps d to its corners."""
+        return max(abs(_dot(w, step)) for step in self.steps)
+
+    def halves(self, letter: str) -> tuple[Simplex, Simplex]:
+        """Cut it across an edge: the half with the first end, and the half with the second."""
+        edges = [*itertools.combinations(range(len(self.corners)), 2)]
+        number = ord(letter) - ord("a")
+        demand(
+            0 <= number < len(edges), f"proof: the letter {shown(letter)} names no edge of a cell"
+        )
+        i, j = edges[number]
+        ends = zip(self.corners[i], self.corners[j], strict=True)
+        middle = tuple((x + y) / 2 for x, y in ends)
+        return self._with(j, middle), self._with(i, middle)
+
+    def _with(self, i: int, corner: Point) -> Simplex:
+        return Simplex((*self.corners[:i], corner, *self.corners[i + 1 :]))
+
+
+@dataclass(frozen=True)
+class Box:
+    """All configurations between a low and a high corner; where they agree a joint is held."""
+
+    low: Point
+    high: Point
+
+    @property
+    def corners(self) -> tuple[Point, Point]:
+        """Return the two corners: every coordinate of every corner is in one of them."""
+        return self.low, self.high
+
+    @cached_property
+    def centre(self) -> Point:
+        """Return its middle."""
+        return tuple((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
+
+    @cached_property
+    def steps(self) -> list[Point]:
+        """Return the step to its high corner; `signs` turns it to the others."""
+        return [tuple(b - m for m, b in zip(self.centre, self.high, strict=True))]
+
+    @cached_property
+    def signs(self) -> list[tuple[int, ...]]:
+        """Return the signs of the steps to all corners; those of held joints do not matter."""
+        ends = [(1, -1) if a != b else (1,) for a, b in zip(self.low, self.high, strict=True)]
+        return [*itertools.product(*ends)]
+
+    def largest(self, w: Sequence[int]) -> Fraction:
+        """Return the largest abs(w . d) over the steps d to its corners: all terms of one sign."""
+        return _dot([abs(x) for x in w], self.steps[0])
+
+    def halves(self, letter: str) -> tuple[Box, Box]:
+        """Cut it at the middle of a joint: the lower half and the upper one."""
+        j = ord(letter) - ord("a")
+        wide = 0 <= j < len(self.low) and self.low[j] != self.high[j]
+        demand(wide, f"proof: the letter {shown(letter)} names no joint that a box may be cut in")
+        below = (*self.high[:j], self.centre[j], *self.high[j + 1 :])
+        above = (*self.low[:j], self.centre[j], *self.low[j + 1 :])
+        return Box(self.low, below), Box(above, self.high)
+
+
+Cell = Simplex | Box
+
+
+def _dot(u: Iterable[int | Fraction], v: Iterable[Fraction]) -> Fraction:
+    return sum((x * y for x, y in zip(u, v, strict=True)), Fraction(0))
+
+
+# --- reading: the set -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A set, as the decimals that were read, and the cells that make it up."""
+
+    kind: str
+    margin: Fraction
+    loops: tuple[tuple[Point, ...], ...]
+    cells: tuple[Cell, ...]
+
+
+def read_statement(value: Any, grammar: int, joints: int) -> Statement:
+    """Read a statement about a robot of so many joints."""
+    sort = value.get("set") if type(value) is dict else None
+    kind = one_of(sort, "statement: set", ("box", "path", "polygon"))
+    triangles = ("triangles",) if kind == "polygon" else ()
+    table = table_of(value, "statement", ("set", "margin", "points", *triangles))
+    margin = number(table["margin"], "statement: margin")
+    demand(margin >= 0, "statement: margin: a length of 0 or more is wanted")
+    loops = _read_loops(table["points"], {"box": 1}.get(kind, MAX_CONFIGURATIONS), joints)
+    if kind == "box":
+        cells = _box_cells(loops[0], grammar)
+    elif kind == "path":
+        cells = _segments(loops)
+    else:
+        cells = _triangles(loops, table["triangles"])
+    return Statement(kind, margin, loops, cells)
+
+
+def _read_loops(value: Any, most: int, joints: int) -> tuple[tuple[Point, ...], ...]:
+    loops, left = list[tuple[Point, ...]](), MAX_CONFIGURATIONS
+    for i, item in enumerate(list_of(value, "statement: points", 1, most)):
+        where = f"statement: points[{i}]"
+        loop = list_of(item, where, 2, MAX_CONFIGURATIONS)
+        left -= len(loop)
+        demand(left >= 0, f"{where}: more than {MAX_CONFIGURATIONS} configurations in all")
+        loops.append(tuple(configuration(q, f"{where}[{k}]", joints) for k, q in enumerate(loop)))
+    return tuple(loops)
+
+
+def configuration(value: Any, where: str, joints: int) -> Point:
+    """Return one value for each joint."""
+    return tuple(number(x, where) for x in list_of(value, where, joints, joints))
+
+
+def _box_cells(corners: Sequence[Point], grammar: int) -> tuple[Cell, ...]:
+    demand(
+        len(corners) == 2, "statement: points[0]: a box has two corners, the low and the high one"
+    )
+    low, high = corners
+    rises = all(a <= b for a, b in zip(low, high, strict=True))
+    demand(rises, "statement: points[0]: the first corner of a box is the low one in every joint")
+    return (Box(low, high),) if grammar == 2 else tuple(_orders(low, high))
+
+
+def _orders(low: Point, high: Point) -> Iterable[Simplex]:
+    """Cut a box of grammar 1: a simplex for each order in which its joints may rise."""
+    wide = [j for j, (a, b) in enumerate(zip(low, high, strict=True)) if a != b]
+    for order in itertools.permutations(wide):
+        corners = [low]
+        for j in order:
+            corners.append((*corners[-1][:j], high[j], *corners[-1][j + 1 :]))
+        yield Simplex(tuple(corners))
+
+
+def _segments(paths: Iterable[Sequence[Point]]) -> tuple[Cell, ...]:
+    return tuple(Simplex(ends) for path in paths for ends in itertools.pairwise(path))
+
+
+def _triangles(loops: Sequence[Sequence[Point]], value: Any) -> tuple[Cell, ...]:
+    """Verify that triangles fill loops: anticlockwise, inner edges in pairs, all others the loops.
+
+    Then the edges of all triangles add up to the loops. So around any place the loops wind as often
+    as triangles hold it, and a place that they wind around lies in a triangle.
+    """
+    demand(min(map(len, loops)) > 2, "statement: points: a loop has three configurations or more")
+    points = [q for loop in loops for q in loop]
+    plane = [j for j, column in enumerate(zip(*points, strict=True)) if len({*column}) > 1]
+    demand(len(plane) == 2, f"statement: points: {len(plane)} joints of a polygon vary, not two")
+    numbers = {q: k for k, q in enumerate(points)}  # equal points have one number
+    cells, inner = list[Cell](), set[tuple[int, int]]()
+    for i, item in enumerate(list_of(value, "statement: triangles", 1, MAX_TRIANGLES)):
+        where = f"statement: triangles[{i}]"
+        corners = [points[index_of(k, where, len(points))] for k in list_of(item, where, 3, 3)]
+        demand(_anticlockwise(corners, plane), f"{where}: not anticlockwise")
+        for edge in _edges([numbers[q] for q in corners]):
+            demand(edge not in inner, f"{where}: another triangle lies on this side of an edge")
+            inner.add(edge)
+        cells.append(Simplex(tuple(corners)))
+    for i, loop in enumerate(loops):
+        for k, (a, b) in enumerate(_edges([numbers[q] for q in loop])):
+            where = f"statement: points[{i}][{k}]: the edge that begins here"
+            demand((a, b) in inner, f"{where} is of no triangle, or occurs twice")
+            demand((b, a) not in inner, f"{where} has a triangle on either side")
+            inner.remove((a, b))
+    for a, b in inner:
+        demand((b, a) in inner, "statement: triangles: an edge of one triangle is in no loop")
+    return tuple(cells)
+
+
+def _edges(loop: Sequence[int]) -> Iterable[tuple[int, int]]:
+    """Return the pairs of neighbours around a loop."""
+    return zip(loop, [*loop[1:], loop[0]], strict=True)
+
+
+def _anticlockwise(corners: Sequence[Point], plane: Sequence[int]) -> bool:
+    a, b, c = corners
+    (x, y), (u, v) = ([q[j] - a[j] for j in plane] for q in (b, c))
+    return x * v - y * u > 0
+
+
+def read_cells(statement: Any, grammar: int = 1) -> list[tuple[Point, ...]]:
+    """Return the corners of the cells of a statement; for those who write certificates."""
+    where = "statement: points"
+    first = list_of(statement["points"], where, 1, MAX_CONFIGURATIONS)[0]
+    joints = len(list_of(list_of(first, where, 2, MAX_CONFIGURATIONS)[0], where, 1, MAX_JOINTS))
+    return [cell.corners for cell in read_statement(statement, grammar, joints).cells]
+
+
+# --- balls ----------------------------------------------------------------------------------------
+
+BITS = 128
+"""A number x is written as the whole number nearest below x times 2^BITS: a count of units."""
+
+PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
+"""Eighty digits: the error is far below a unit, and `real` adds one."""
+
+
+class Ball:
+    """All complex numbers no farther than r from x + iy; x, y and r are whole numbers of units."""
+
+    __slots__ = ("r", "x", "y")
+    work = 0
+    """Multiplications since the check began."""
+
+    def __init__(self, x: int, y: int = 0, r: int = 0) -> None:
+        self.x, self.y, self.r = x, y, r
+
+    def __add__(self, other: Ball) -> Ball:
+        """Add centres and errors."""
+        return Ball(self.x + other.x, self.y + other.y, self.r + other.r)
+
+    def __sub__(self, other: Ball) -> Ball:
+        """Subtract centres; errors add."""
+        return Ball(self.x - other.x, self.y - other.y, self.r + other.r)
+
+    def __mul__(self, other: Ball) -> Ball:
+        """Multiply: for |a' - a| <= r and |b' - b| <= s, |a'b' - ab| <= |a| s + r (|b| + s).
+
+        abs(x) + abs(y) is at least the absolute value of a centre. The product is in units of
+        2^-2 BITS. It is rounded down to units, in x and in y by less than 1: by less than 2.
+        """
+        spend(1)
+        x = self.x * other.x - self.y * other.y
+        y = self.x * other.y + self.y * other.x
+        a, b = abs(self.x) + abs(self.y), abs(other.x) + abs(other.y)
+        error = a * other.r + self.r * (b + other.r)
+        rounding = 2 if (x | y) & UNITS_MASK else 0
+        return Ball(x >> BITS, y >> BITS, -(-error >> BITS) + rounding)
+
+    def over(self, n: int) -> Ball:
+        """Divide by a whole number of 1 or more."""
+        return Ball(self.x // n, self.y // n, self.r // n + 3)
+
+    @property
+    def re(self) -> Ball:
+        """Return the real part."""
+        return Ball(self.x, 0, self.r)
+
+    @property
+    def im(self) -> Ball:
+        """Return the imaginary part."""
+        return Ball(self.y, 0, self.r)
+
+    @property
+    def conjugate(self) -> Ball:
+        """Return the mirror image."""
+        return Ball(self.x, -self.y, self.r)
+
+    @property
+    def size(self) -> Ball:
+        """Return a number that no absolute value in the ball exceeds."""
+        return Ball(math.isqrt(self.x**2 + self.y**2) + 1 + self.r if self else 0)
+
+    def __bool__(self) -> bool:
+        """Tell whether the ball is more than the number 0."""
+        return bool(self.x or self.y or self.r)
+
+
+UNITS_MASK = (1 << BITS) - 1
+ZERO, HALF, ONE, TWO = Ball(0), Ball(1 << (BITS - 1)), Ball(1 << BITS), Ball(2 << BITS)
+IMAGINARY = Ball(0, 1 << BITS)
+
+
+def spend(work: int) -> None:
+    """Count work, and stop where it is too much."""
+    Ball.work += work
+    demand(Ball.work <= MAX_WORK, "the proof asks for too much work")
+
+
+def real(x: Fraction | int) -> Ball:
+    """Enclose an exact number."""
+    whole, rest = divmod(x.numerator << BITS, x.denominator)
+    return Ball(whole, 0, 1 if rest else 0)
+
+
+RADIAN = {"deg": real(PI / 180) + Ball(0, 0, 1), "rad": ONE}
+"""Radians in a unit of angle."""
+
+HALVINGS, TERMS = 6, 30
+
+
+def exp_i(angle: Ball) -> Ball:
+    """Enclose exp(i t) for a real t of at most 32: Taylor's series at t / 2^6, then six squares.
+
+    There t is at most 1/2, and what follows the 30th term is less than
+    2 (1/2)^31 / 31!, which is less than a unit.
+    """
+    demand(abs(angle.x) + angle.r <= 32 << BITS, "an angle of more than five turns")
+    small = IMAGINARY * angle.over(1 << HALVINGS)
+    term = total = ONE
+    for k in range(1, TERMS + 1):
+        term = (term * small).over(k)
+        total = total + term
+    total = total + Ball(0, 0, 1)
+    for _ in range(HALVINGS):
+        total = total * total
+    return total
+
+
+@lru_cache(maxsize=10_000)
+def phase_of(angle: Fraction, unit: str) -> Ball:
+    """Enclose exp(i t) of an angle in its unit."""
+    return exp_i(real(angle) * RADIAN[unit])
+
+
+# --- kinematics -----------------------------------------------------------------------------------
+
+Vector = tuple[Ball, Ball, Ball]
+Matrix = tuple[Vector, Vector, Vector]
+
+
+def vector(values: Point) -> Vector:
+    """Enclose three exact numbers."""
+    x, y, z = map(real, values)
+    return x, y, z
+
+
+def unit_vector(values: Point) -> Vector:
+    """Enclose a vector scaled to length 1: the root of each exact share of the squared length."""
+    square = _dot(values, values)
+    x, y, z = (_signed_root(value, value**2 / square) for value in values)
+    return x, y, z
+
+
+def _signed_root(sign: Fraction, square: Fraction) -> Ball:
+    whole = math.isqrt((square.numerator << 2 * BITS) // square.denominator)
+    return Ball(whole if sign > 0 else -whole, 0, 1 if sign else 0)
+
+
+def dot(u: Vector, v: Vector) -> Ball:
+    """Return the sum of products (of complex numbers, without a conjugate)."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def plus(u: Vector, v: Vector) -> Vector:
+    """Add vectors."""
+    return u[0] + v[0], u[1] + v[1], u[2] + v[2]
+
+
+def scaled(factor: Ball, u: Vector) -> Vector:
+    """Multiply a vector by a number."""
+    return factor * u[0], factor * u[1], factor * u[2]
+
+
+def image(matrix: Matrix, u: Vector) -> Vector:
+    """Multiply a matrix with a vector."""
+    return dot(matrix[0], u), dot(matrix[1], u), dot(matrix[2], u)
+
+
+def product(a: Matrix, b: Matrix) -> Matrix:
+    """Multiply matrices."""
+    x, y, z = (image(a, column) for column in zip(*b, strict=True))
+    rows = tuple(zip(x, y, z, strict=True))
+    return rows[0], rows[1], rows[2]
+
+
+def combined(*parts: tuple[Ball, Matrix]) -> Matrix:
+    """Add multiples of matrices."""
+    rows = [[sum((f * m[i][j] for f, m in parts), ZERO) for j in range(3)] for i in range(3)]
+    x, y, z = ((row[0], row[1], row[2]) for row in rows)
+    return x, y, z
+
+
+IDENTITY: Matrix = (ONE, ZERO, ZERO), (ZERO, ONE, ZERO), (ZERO, ZERO, ONE)
+
+
+def rotation_waves(axis: Vector) -> tuple[Matrix, Matrix, Matrix]:
+    """Return the matrices A, B, C of the turn A + B exp(it) + C exp(-it) by t about a unit axis.
+
+    Rodrigues: the turn is P + cos t (1 - P) + sin t K, where P = axis axis^T keeps the part along
+    the axis and K is the cross product with it; cos and sin are means of exp(it) and exp(-it).
+    """
+    x, y, z = axis
+    along: Matrix = scaled(x, axis), scaled(y, axis), scaled(z, axis)
+    cross: Matrix = (ZERO, ZERO - z, y), (z, ZERO, ZERO - x), (ZERO - y, x, ZERO)
+    across = combined((HALF, IDENTITY), (ZERO - HALF, along))
+    turning = IMAGINARY * HALF
+    forwards = combined((ONE, across), (ZERO - turning, cross))
+    backwards = combined((ONE, across), (turning, cross))
+    return along, forwards, backwards
+
+
+def mount(joint: Joint, angle_unit: str) -> Matrix:
+    """Return Rz(yaw) Ry(pitch) Rx(roll), the fixed rotation that a joint is mounted with."""
+    total = IDENTITY
+    for row, angle in zip(reversed(IDENTITY), reversed(joint.rpy), strict=True):
+        if angle:
+            still, forwards, backwards = rotation_waves(row)
+            phase = phase_of(angle, angle_unit)
+            turn = combined((ONE, still), (phase, forwards), (phase.conjugate, backwards))
+            total = product(total, turn)
+    return total
+
+
+# --- boundary functions as sums of waves ----------------------------------------------------------
+
+Key = tuple[int, ...]
+"""For each joint k of its factor: exp(i k q) if it turns, k = -1, 0, 1; else q^k, k = 0, 1, 2."""
+
+Form = dict[Key, Ball]
+"""A sum of amplitudes, each times the factors of its key."""
+
+VectorForm = dict[Key, Vector]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a joint does to a vector that is fixed beyond it, seen from its parent.
+
+    Mounts and turns keep lengths. So the squared length of the vector changes by sliding and by the
+    origin alone, and it, too, has only one factor for each joint.
+    """
+
+    j: int
+    origin: Vector
+    axis: Vector
+    waves: Sequence[tuple[int, Matrix]]
+    """For each k the matrix of exp(i k q)."""
+    slides: bool
+
+    def carry(self, u: VectorForm, square: Form) -> tuple[VectorForm, Form]:
+        """Return origin + mount (turn of u), or origin + mount (u + q axis), and its square."""
+        square = {**square}
+        still = (0,) * len(next(iter(u)))
+        if self.slides:
+            u, u_before = {**u}, u
+            for key, v in u_before.items():  # (u + q axis)^2 = u^2 + 2 q axis . u + q^2
+                add_to(square, self._with(key, 1), TWO * dot(self.axis, v))
+            add_to(square, self._with(still, 2), ONE)
+            slid = self._with(still, 1)
+            u[slid] = plus(u.get(slid, NOWHERE), self.axis)
+        u = {
+            self._with(key, k) if k else key: image(m, v)
+            for key, v in u.items()
+            for k, m in self.waves
+        }
+        for key, v in u.items():  # (origin + u)^2 = u^2 + 2 origin . u + origin^2
+            add_to(square, key, TWO * dot(self.origin, v))
+        add_to(square, still, dot(self.origin, self.origin))
+        u[still] = plus(u[still], self.origin)
+        return u, square
+
+    def _with(self, key: Key, k: int) -> Key:
+        return (*key[: self.j], k, *key[self.j + 1 :])
+
+
+NOWHERE: Vector = ZERO, ZERO, ZERO
+
+
+def add_to(form: Form, key: Key, value: Ball) -> None:
+    """Add to the amplitude of a key."""
+    form[key] = form.get(key, ZERO) + value
+
+
+def motions(robot: Robot) -> list[Motion]:
+    """Return what each joint does."""
+    found = []
+    for j, joint in enumerate(robot.joints):
+        fixed, axis = mount(joint, robot.angle_unit), unit_vector(joint.axis)
+        waves = [(0, fixed)]
+        if joint.turns:
+            turning = zip((0, 1, -1), rotation_waves(axis), strict=True)
+            waves = [(k, product(fixed, matrix)) for k, matrix in turning]
+        found.append(Motion(j, vector(joint.origin), axis, waves, not joint.turns))
+    return found
+
+
+MAX_KNOWN = 200
+"""Views that are kept: with six joints each has 729 vectors, about half a megabyte."""
+
+
+class Kinematics:
+    """Where the points of a robot are; what two boundaries need is found once."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.moves = motions(robot)
+        self.known: dict[tuple[int, Place], tuple[VectorForm, Form]] = {}
+
+    def seen(self, frame: int, place: Place) -> tuple[VectorForm, Form]:
+        """Return a place as it is seen from a frame before it, and its squared distance."""
+        if (frame, place) not in self.known:
+            if len(self.known) >= MAX_KNOWN:
+                self.known.clear()
+            if frame == place.frame:
+                still, at = (0,) * len(self.moves), vector(place.at)
+                found: tuple[VectorForm, Form] = {still: at}, {still: dot(at, at)}
+            else:
+                found = self.moves[frame].carry(*self.seen(frame + 1, place))
+            self.known[frame, place] = found
+        return self.known[frame, place]
+
+
+def boundary_form(kinematics: Kinematics, boundary: Boundary, gap: Fraction) -> Form:
+    """Return the boundary function: |r|^2 - gap^2 of a pair, normal . r - gap of a half-space."""
+    still = (0,) * len(kinematics.moves)
+    *near, far = sorted(boundary.places, key=lambda place: place.frame)
+    u, square = kinematics.seen(near[0].frame if near else 0, far)
+    if boundary.normal is not None:
+        normal = unit_vector(boundary.normal)
+        form = {key: dot(normal, v) for key, v in u.items()}
+        add_to(form, still, ZERO - real(gap))
+        return form
+    square = {**square}  # (u - base)^2 = u^2 - 2 base . u + base^2
+    base = vector(near[0].at)
+    for key, v in u.items():
+        add_to(square, key, ZERO - TWO * dot(base, v))
+    add_to(square, still, dot(base, base) - real(gap**2))
+    return square
+
+
+@dataclass(frozen=True)
+class Wave:
+    """The real part of amplitude exp(i turns . q), times each q_j to its power."""
+
+    amplitude: Ball
+    turns: Key
+    powers: Key
+
+    @property
+    def bends_upwards(self) -> bool:
+        """Tell whether it is a square with a positive factor and nothing else."""
+        lone = not any(self.turns) and sum(self.powers) == max(self.powers) == 2
+        return lone and self.amplitude.x > self.amplitude.r
+
+
+@dataclass(frozen=True)
+class Function:
+    """A boundary function: its waves, those that slide apart, and the matrix M of the others."""
+
+    robot: Robot
+    waves: tuple[Wave, ...]
+    sliding: tuple[Wave, ...]
+    bend: tuple[tuple[Ball, ...], ...]
+    """The sum of size(A_k) w_k w_k^T."""
+
+    def value_and_slopes(self, q: Point) -> tuple[Ball, list[Ball]]:
+        """Return the value, and the derivative along each joint (by radians and lengths)."""
+        joints = self.robot.joints
+        phases = [
+            phase_of(x, self.robot.angle_unit) if joint.turns else ONE
+            for joint, x in zip(joints, q, strict=True)
+        ]
+        products: dict[Key, Ball] = {(): ONE}
+        value, slopes = ZERO, [ZERO] * len(q)
+        for wave in self.waves:
+            z = wave.amplitude * phase_product(wave.turns, phases, products)
+            value += z.re
+            for j, w in enumerate(wave.turns):
+                if w:
+                    slopes[j] = slopes[j] - z.im if w > 0 else slopes[j] + z.im
+        for wave in self.sliding:
+            z = wave.amplitude * phase_product(wave.turns, phases, products)
+            factor = monomial(wave.powers, q)
+            value += z.re * factor
+            for j, (w, p) in enumerate(zip(wave.turns, wave.powers, strict=True)):
+                if w:
+                    slopes[j] -= z.im * factor * Ball(w << BITS)
+                if p:
+                    lower = (*wave.powers[:j], p - 1, *wave.powers[j + 1 :])
+                    slopes[j] += z.re * monomial(lower, q) * Ball(p << BITS)
+        return value, slopes
+
+    def sliding_bend(self, cell: Cell) -> Ball:
+        """Bound the second derivative of the sliding waves along any step within a cell: C.
+
+        With u = max |w . d|, Q = max |q_j| and D = max |d_j|, size y, slope dy and second
+        derivative ddy of exp(i w . q) are at most 1, u, u^2; each factor q_j changes them by the
+        product rule, (fq)'' = f'' q + 2 f' q'.
+        """
+        total = ZERO
+        for wave in self.sliding:
+            if not wave.bends_upwards:
+                u = real(cell.largest(wave.turns)) * RADIAN[self.robot.angle_unit]
+                y, dy, ddy = ONE, u, u * u
+                for j in factors(wave.powers):
+                    far = real(max(abs(q[j]) for q in cell.corners))
+                    step = real(max(abs(d[j]) for d in cell.steps))
+                    y, dy, ddy = y * far, dy * far + y * step, ddy * far + TWO * dy * step
+                total += wave.amplitude.size * ddy
+        return total
+
+
+def function_of(robot: Robot, form: Form) -> Function:
+    """Sort the terms of a form into waves; of a term and its mirror image one stands for both."""
+    waves = []
+    for key, amplitude in form.items():
+        turns = tuple(k if joint.turns else 0 for k, joint in zip(key, robot.joints, strict=True))
+        powers = tuple(0 if joint.turns else k for k, joint in zip(key, robot.joints, strict=True))
+        if amplitude and turns >= (0,) * len(key):
+            both = TWO * amplitude if any(turns) else amplitude.re
+            waves.append(Wave(both, turns, powers))
+    turning = tuple(wave for wave in waves if not any(wave.powers))
+    sliding = tuple(wave for wave in waves if any(wave.powers))
+    return Function(robot, turning, sliding, bend_matrix(turning, len(robot.joints)))
+
+
+def bend_matrix(waves: Iterable[Wave], joints: int) -> tuple[tuple[Ball, ...], ...]:
+    """Return M, the sum of size(A) w w^T: sizes are above |A|, so that M bends no less."""
+    bend = [[ZERO] * joints for _ in range(joints)]
+    for wave in waves:
+        size, turning = wave.amplitude.size, [j for j, w in enumerate(wave.turns) if w]
+        for i, j in itertools.product(turning, repeat=2):
+            same = wave.turns[i] == wave.turns[j]
+            bend[i][j] = bend[i][j] + size if same else bend[i][j] - size
+    return tuple(map(tuple, bend))
+
+
+def phase_product(turns: Key, phases: Sequence[Ball], products: dict[Key, Ball]) -> Ball:
+    """Return exp(i turns . q) as a product of phases; those of the first joints are kept."""
+    if turns not in products:
+        before = phase_product(turns[:-1], phases, products)
+        phase = phases[len(turns) - 1]
+        k = turns[-1]
+        products[turns] = before * (phase if k > 0 else phase.conjugate) if k else before
+    return products[turns]
+
+
+def factors(powers: Key) -> list[int]:
+    """Return the joints whose values are factors, twice for a square."""
+    return [j for j, power in enumerate(powers) for _ in range(power)]
+
+
+def monomial(powers: Key, q: Point) -> Ball:
+    """Return the product of joint values to their powers."""
+    return real(math.prod((q[j] for j in factors(powers)), start=Fraction(1)))
+
+
+# --- the bound ------------------------------------------------------------------------------------
+
+
+def is_positive(function: Function, cell: Cell) -> bool:
+    """Prove that a boundary function is positive all over a cell; False means: not proved.
+
+    With the centre m, slopes g, and M and C as above, for every step d within the cell
+
+        beta(m + d) >= beta(m) + g . d - 1/2 d^T M d - 1/2 C
+
+    since along d the second derivative of a wave A is at most |A| (w . d)^2. The right side is
+    concave in d (M is a sum of squares with positive factors): it is least at a corner.
+    """
+    robot = function.robot
+    value, slopes = function.value_and_slopes(cell.centre)
+    constant = value + value - function.sliding_bend(cell)
+    units = [RADIAN[robot.angle_unit] if joint.turns else ONE for joint in robot.joints]
+    signs = cell.signs
+    for exact in cell.steps:
+        step = [real(x) * unit for x, unit in zip(exact, units, strict=True)]
+        if least_of_twice(constant, slopes, function.bend, step, signs) <= 0:
+            return False
+    return True
+
+
+def least_of_twice(
+    constant: Ball,
+    slopes: Sequence[Ball],
+    bend: Sequence[Sequence[Ball]],
+    step: Sequence[Ball],
+    signs: Sequence[tuple[int, ...]],
+) -> int:
+    """Bound constant + 2 g . d - d^T M d from below over all d_j = s_j step_j, in units.
+
+    The error of a sum is the sum of the errors, whatever the signs: it is subtracted once.
+    """
+    moving = [j for j, d in enumerate(step) if d]
+    linear = [(j, slopes[j] * step[j]) for j in moving]
+    square = [(j, bend[j][j] * step[j] * step[j]) for j in moving]
+    mixed = [
+        (i, j, bend[i][j] * step[i] * step[j])
+        for i, j in itertools.combinations(moving, 2)
+        if bend[i][j]
+    ]
+    spend(len(signs) * (len(linear) + len(mixed)) // 10)  # sums are that much faster
+    doubled = [term.r for _, term in linear] + [term.r for _, _, term in mixed]
+    fixed = constant.x - sum(term.x for _, term in square)
+    error = constant.r + sum(term.r for _, term in square) + 2 * sum(doubled)
+    slope = [(j, 2 * term.x) for j, term in linear]
+    cross = [(i, j, 2 * term.x) for i, j, term in mixed]
+    least = min(
+        sum(s[j] * x for j, x in slope) - sum(s[i] * s[j] * x for i, j, x in cross) for s in signs
+    )
+    return fixed + least - error
+
+
+def prove(function: Function, cell: Cell, tree: str, where: str) -> None:
+    """Walk a tree: a letter cuts the next cell in two, a dot is a leaf, where all is positive."""
+    todo = [(cell, 0)]
+    for letter in tree:
+        spend(CELL_WORK)
+        demand(todo, f"{where}: the tree goes on after its last leaf")
+        cell, depth = todo.pop()
+        if letter == ".":
+            demand(is_positive(function, cell), f"{where}: the bound is not positive on a leaf")
+        else:
+            demand(depth < MAX_DEPTH, f"{where}: more than {MAX_DEPTH} cuts on top of each other")
+            first, second = cell.halves(letter)
+            todo += [(second, depth + 1), (first, depth + 1)]
+    demand(not todo, f"{where}: the tree ends before its last leaf")
+
+
+# --- proofs and witnesses -------------------------------------------------------------------------
+
+
+def verify_proof(robot: Robot, statement: Statement, value: Any) -> None:
+    """Verify that the whole set keeps all limits and all boundaries in use."""
+    for cell in statement.cells:  # cells are convex: their corners stand for them
+        for q in cell.corners:
+            beyond = robot.beyond(q)
+            demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
+    needed = [b for b in robot.boundaries if b.needs_proof(statement.margin)]
+    proof = table_of(value, "proof", [boundary.name for boundary in needed])
+    count = len(statement.cells)
+    for name, trees in proof.items():
+        for tree in list_of(trees, f"proof: {shown(name)}", count, count):
+            demand(type(tree) is str and tree, f"proof: {shown(name)}: a tree is a text")
+    kinematics = Kinematics(robot)
+    for boundary in needed:
+        form = boundary_form(kinematics, boundary, boundary.gap(statement.margin))
+        function = function_of(robot, form)
+        for i, (cell, tree) in enumerate(zip(statement.cells, proof[boundary.name], strict=True)):
+            prove(function, cell, tree, f"proof: {shown(boundary.name)}[{i}]")
+
+
+def verify_witness(robot: Robot, statement: Statement, name: str, q: Point) -> None:
+    """Verify that a configuration violates a boundary or a limit."""
+    if name in robot.beyond(q):
+        return
+    boundary = next((b for b in robot.boundaries if b.name == name), None)
+    if boundary is None:
+        raise Refused(
+            f"boundary: {shown(name)} is no boundary in use and no limit that is violated"
+        )
+    form = boundary_form(Kinematics(robot), boundary, boundary.gap(statement.margin))
+    value, _ = function_of(robot, form).value_and_slopes(q)
+    demand(value.x + value.r < 0, f"boundary: the witness does not violate {shown(name)}")
+
+
+def read_witness(content: Table, statement: Statement, joints: int) -> Point:
+    """Return the configuration of a witness, which belongs to the set."""
+    if "at" in content:
+        q, [box] = configuration(content["at"], "at", joints), statement.cells
+        low, high = box.corners
+        inside = all(a <= x <= b for a, x, b in zip(low, q, high, strict=True))
+        demand(inside, "at: the witness is not in the box")
+        return q
+    cell = statement.cells[index_of(content["cell"], "cell", len(statement.cells))]
+    count = len(cell.corners)
+    weights = [number(x, "weights") for x in list_of(content["weights"], "weights", count, count)]
+    mean = min(weights) >= 0 and sum(weights) == 1
+    demand(mean, "weights: numbers of 0 or more whose sum is 1 are wanted")
+    return tuple(_dot(weights, column) for column in zip(*cell.corners, strict=True))
+
+
+# --- the answer -----------------------------------------------------------------------------------
+
+
+class Answer(NamedTuple):
+    """What a certificate shows: that its statement is refuted, else that it is proved."""
+
+    refuted: bool
+    said: str
+
+
+def digest(text: str) -> str:
+    """Return the hash of a robot file's text."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def check(text: str | bytes, pin: str | None = None) -> Answer:
+    """Return what a certificate shows, and what is to be said of it.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The certificate.
+    pin : str, optional
+        The SHA-256 of the robot file that it must be about.
+
+    Raises
+    ------
+    Refused
+        If it shows nothing: a `ValueError` that names what is wrong and where.
+    """
+    Ball.work = 0
+    phase_of.cache_clear()  # so that the work does not depend on what was checked before
+    demand(
+        pin is None or re.fullmatch("[0-9a-f]{64}", pin), "the pin is no hash of 64 digits 0-9a-f"
+    )
+    content = read_json(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
+    grammar, refuted = _read_heading(content)
+    robot_text = text_of(content["robot"], "robot", MAX_ROBOT)
+    demand(not re.search("[\ud800-\udfff]", robot_text), "robot: half a character")
+    sha256 = digest(robot_text)
+    demand(content["sha256"] == sha256, f"sha256: the hash of the robot is {sha256}")
+    demand(pin in (None, sha256), f"it is about another robot: its sha256 is {sha256}")
+    robot = read_robot(robot_text)
+    statement = read_statement(content["statement"], grammar, len(robot.joints))
+    _check_angles(robot, statement)
+    if refuted:
+        name = text_of(content["boundary"], "boundary", 300)
+        q = read_witness(content, statement, len(robot.joints))
+        verify_witness(robot, statement, name, q)
+        found = refutation(robot, statement, name, q)
+    else:
+        verify_proof(robot, statement, content["proof"])
+        found = proof_of(robot, statement)
+    lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
+    return Answer(refuted, "\n".join(lines))
+
+
+def _read_heading(content: Any) -> tuple[int, bool]:
+    """Return the number of the grammar, and whether the file refutes; verify its keys."""
+    demand(type(content) is dict, "the file is no JSON object")
+    schemas = ("qbound/certificate/1", "qbound/certificate/2")
+    grammar = 1 + schemas.index(one_of(content.get("schema"), "schema", schemas))
+    refuted = one_of(content.get("verdict"), "verdict", ("proved", "refuted")) == "refuted"
+    statement = content.get("statement")
+    box = type(statement) is dict and statement.get("set") == "box"
+    witness = ("at",) if grammar == 2 and box else ("cell", "weights")
+    evidence = ("boundary", *witness) if refuted else ("proof",)
+    table_of(content, "the file", ("schema", "verdict", "statement", "robot", "sha256", *evidence))
+    return grammar, refuted
+
+
+def _check_angles(robot: Robot, statement: Statement) -> None:
+    largest = LARGEST_ANGLE[robot.angle_unit]
+    turning = [j for j, joint in enumerate(robot.joints) if joint.turns]
+    within = all(abs(q[j]) <= largest for loop in statement.loops for q in loop for j in turning)
+    demand(within, f"statement: an angle of more than {largest} {robot.angle_unit}")
+
+
+def proof_of(robot: Robot, statement: Statement) -> str:
+    """Say what was proved of the set."""
+    names = ", ".join(ascii(boundary.name) for boundary in robot.boundaries) or "no boundary"
+    limited = ", ".join(ascii(joint.name) for joint in robot.joints if joint.limits) or "no joint"
+    margin = f"{written(statement.margin)} {robot.length_unit}"
+    return (
+        f"proved: every configuration of the set keeps {names}, each with a margin of {margin},"
+        f" and the limits of {limited}"
+    )
+
+
+def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
+    """Say where the set was refuted."""
+    margin = f" with a margin of {written(statement.margin)} {robot.length_unit}"
+    asked = "" if name in robot.beyond(q) else margin
+    return f"refuted: {name!a}{asked} is violated at {_values(robot, q)}, which is in the set"
+
+
+MOST_SHOWN = 50
+"""Configurations that are printed; of larger sets their number and ranges are."""
+
+
+def described(robot: Robot, statement: Statement) -> list[str]:
+    """Describe the set by the numbers that were verified."""
+    names = ", ".join(f"{joint.name!a} in {robot.unit(j)}" for j, joint in enumerate(robot.joints))
+    lines = [f"set: {statement.kind} in ({names})"]
+    points = [q for loop in statement.loops for q in loop]
+    if len(points) <= MOST_SHOWN:
+        lines += [" ".join(map(_point, loop)) for loop in statement.loops]
+    else:
+        low, high = (_point(tuple(map(end, zip(*points, strict=True)))) for end in (min, max))
+        lines += [
+            f"{len(points)} corners in {len(statement.loops)} lists, all from {low} to {high}"
+        ]
+    around = [robot.joints[j].name for j in goes_round(robot, statement)]
+    return lines + [f"goes all the way round {name!a}: every angle occurs" for name in around]
+
+
+def _point(q: Point) -> str:
+    return f"({', '.join(map(written, q))})"
+
+
+def _values(robot: Robot, q: Point) -> str:
+    values = enumerate(zip(robot.joints, q, strict=True))
+    return ", ".join(f"{joint.name!a} = {written(x)} {robot.unit(j)}" for j, (joint, x) in values)
+
+
+def goes_round(robot: Robot, statement: Statement) -> list[int]:
+    """Return the joints of which the set takes all values of a turn or more."""
+    turn = Fraction(360) if robot.angle_unit == "deg" else 2 * PI + Fraction(1, 10**70)
+    return [
+        j
+        for j, joint in enumerate(robot.joints)
+        if joint.turns and _longest(statement.cells, j) >= turn
+    ]
+
+
+def _longest(cells: Iterable[Cell], j: int) -> Fraction:
+    """Return the length of the longest range of a joint that the cells take without a gap."""
+    ranges = sorted(
+        (min(q[j] for q in cell.corners), max(q[j] for q in cell.corners)) for cell in cells
+    )
+    (start, end), longest = ranges[0], Fraction(0)
+    for low, high in ranges:
+        start, end = (start, max(end, high)) if low <= end else (low, high)
+        longest = max(longest, end - start)
+    return longest
+
+
+def written(x: Fraction) -> str:
+    """Write a decimal with all its digits."""
+    digits = 0
+    while x.denominator != 1:
+        x, digits = x * 10, digits + 1
+    whole = str(abs(int(x))).rjust(digits + 1, "0")
+    point = len(whole) - digits
+    return "-" * (x < 0) + whole[:point] + ("." + whole[point:] if digits else "")
+
+
+# --- the command ----------------------------------------------------------------------------------
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Check a file, print the answer, and return the exit status."""
+    try:
+        status, said = _answer(arguments)
+        return status if _printed(said) else 2
+    except KeyboardInterrupt:
+        _printed("not proved: interrupted")
+        return 130
+
+
+def _answer(arguments: Sequence[str]) -> tuple[int, str]:
+    """Return the exit status and what is to be printed, whatever a file sets off."""
+    reason = "a fault of the checker itself"
+    try:
+        pin = _pin(arguments)
+        answer = check(_read_file(arguments[0]), pin)
+        return (1 if answer.refuted else 0), answer.said
+    except Refused as error:
+        reason = str(error)
+    except RecursionError:
+        reason = "the file is nested too deeply"
+    except MemoryError:
+        reason = "the file needs more memory than there is"
+    except Exception:  # whatever a hostile file sets off
+        pass
+    return 2, f"not proved: {reason}"
+
+
+USAGE = "usage: python check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]"
+
+
+def _pin(arguments: Sequence[str]) -> str | None:
+    """Return the hash that the robot must have, or None where any robot will do."""
+    demand(arguments and "" not in arguments, f"an empty or missing argument; {USAGE}")
+    if len(arguments) == 1:
+        demand(not arguments[0].startswith("--"), USAGE)
+        return None
+    if arguments[1] == "--sha256":
+        demand(len(arguments) > 2, f"a pin without a value; {USAGE}")
+        demand(len(arguments) == 3, USAGE)
+        return arguments[2]
+    demand(len(arguments) == 2 and not arguments[1].startswith("--"), USAGE)
+    text = _decoded(arguments[1])
+    return digest(text)
+
+
+def _decoded(file: str) -> str:
+    """Return the text of a robot file as qbound reads it: no mark, one sort of line end."""
+    try:
+        text = _read_file(file).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise Refused(f"{shown(file)}: not UTF-8 text") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _read_file(file: str) -> bytes:
+    try:
+        with Path(file).open("rb") as stream:
+            data = stream.read(MAX_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "no such file"
+        raise Refused(f"{shown(file)}: cannot be read: {reason}") from None
+    demand(len(data) <= MAX_FILE, f"{shown(file)}: more than {MAX_FILE} bytes")
+    return data
+
+
+def _printed(said: str) -> bool:
+    """Print a text in ASCII and tell whether it arrived."""
+    safe = "".join(c if c == "\n" or " " <= c <= "~" else ascii(c)[1:-1] for c in said)
+    try:
+        sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
+        sys.stdout.flush()
+    except (OSError, ValueError, AttributeError):
+        _silence()
+        return False
+    return True
+
+
+def _silence() -> None:
+    """Leave nothing for Python to complain about when it closes a broken output."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError, AttributeError):
+        sys.stdout = None
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,14 +1,15 @@
-"""Units of joint values: the library's (rad, length), the robot file's, and what people type."""
+"""Units: the library's (rad, length), the robot file's, and what people type and are shown."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.model.robot import Robot
+from qbound.boundary.evaluator import limit_names
+from qbound.model.robot import Joint, Robot
 
 
 def joint_units(robot: Robot) -> list[str]:
@@ -61,3 +62,44 @@ def joint_text(robot: Robot, q: ArrayLike, joints: Iterable[int] | None = None) 
         f"{robot.joints[j].name} = {math.degrees(x) if units[j] == 'deg' else x:.6g} {units[j]}"
         for j, x in zip(chosen, values, strict=True)
     )
+
+
+def amount(value: float, unit: str, rounding: float = 0.0, digits: int = 6) -> str:
+    """Write a number with its unit; what rounding alone may have left is 0, within that.
+
+    Examples
+    --------
+    >>> amount(11.6870436, "cm"), amount(-3.6e-15, "cm", rounding=1e-13)
+    ('11.687 cm', '0 cm (within 1e-13 cm)')
+    """
+    if 0 < rounding >= abs(value):
+        return f"0 {unit} (within {rounding:.0e} {unit})"
+    return f"{value:.{digits}g} {unit}"
+
+
+def limited_joints(robot: Robot) -> dict[str, Joint]:
+    """Return the joint that each name of a joint limit belongs to."""
+    return {name: joint for joint in robot.joints for name in limit_names(joint.name)}
+
+
+def margin_text(
+    robot: Robot, boundary: str, margin: float, limited: Mapping[str, Joint], rounding: float = 0.0
+) -> str:
+    """Write a margin with its unit: a length, or of a limit that of its joint, degrees if it turns.
+
+    Parameters
+    ----------
+    limited : mapping of str to Joint
+        The joint of each boundary that is a limit.
+    rounding : float
+        A margin no larger is rounding; in the library's unit, as the margin.
+    """
+    if (joint := limited.get(boundary)) is None:
+        return amount(margin, robot.length_unit, rounding)
+    scale = joint.shown_scale
+    return amount(margin * scale, joint.unit(robot.length_unit, "deg"), rounding * scale)
+
+
+def counted(number: int, one: str, many: str | None = None) -> str:
+    """Write a number with what it counts: 1 component, 2 components."""
+    return f"{number} {one if number == 1 else many or one + 's'}"

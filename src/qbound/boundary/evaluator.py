@@ -127,6 +127,11 @@ class Evaluator:
         return q
 
     @cached_property
+    def margin_rounding(self) -> Floats:
+        """The margin that rounding alone may leave of none, shape (columns,)."""
+        return self._lengths(self.rounding.copy())
+
+    @cached_property
     def _lifted(self) -> Floats:
         """The table with the rounding added to each constant: feasible is >= 0."""
         table = self.table.copy()

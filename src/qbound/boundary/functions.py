@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot
+from qbound.printable import printable
 from qbound.tolerances import ZERO_AMPLITUDE
 
 Array = NDArray[Any]
@@ -170,7 +171,7 @@ def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
     form, joints = clearance(robot, pair), moving_joints(robot, pair)
     if len(joints) != 1 or not robot.joints[joints[0]].turns:
         raise ValueError(
-            f"{pair.name}: its distance depends on {len(joints)} joints, not on one turn"
+            f"{printable(pair.name)}: its distance depends on {len(joints)} joints, not on one turn"
         )
     q = np.array(robot.home)
     _, a, b = form.along(joints[0], q)
@@ -199,12 +200,16 @@ def geometric_vector(robot: Robot, boundary: HalfSpace) -> HarmonicForm:
 
 @singledispatch
 def _clearance(boundary: Boundary, robot: Robot) -> HarmonicForm:
-    raise TypeError(f"{boundary.name}: no clearance form for a {type(boundary).__name__}")
+    raise TypeError(
+        f"{printable(boundary.name)}: no clearance form for a {type(boundary).__name__}"
+    )
 
 
 @singledispatch
 def _components(boundary: Boundary, robot: Robot) -> HarmonicForm:
-    raise TypeError(f"{boundary.name}: eq. (29) has no row for a {type(boundary).__name__}")
+    raise TypeError(
+        f"{printable(boundary.name)}: eq. (29) has no row for a {type(boundary).__name__}"
+    )
 
 
 @_clearance.register

@@ -3,17 +3,20 @@
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
   `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
-  type them), `files` (written whole or not at all), `progress` (a line while work is long).
+  type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
+  `progress` (a line while work is long).
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import sys
+import traceback
 from collections.abc import Sequence
 from importlib.metadata import entry_points
+from itertools import pairwise
+from typing import Any, NoReturn
 
 from qbound import __version__
 from qbound.cli import (
@@ -30,7 +33,9 @@ from qbound.cli import (
     traverse,
     workspace,
 )
+from qbound.cli.terminal import complain, finish_output, plain_terminal
 from qbound.extras import explained
+from qbound.printable import printable
 
 COMMANDS = (
     region,
@@ -57,24 +62,39 @@ STOPPED, NO_READER = 130, 141
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0 done or proved, 1 infeasible or refuted, 2 bad input, 3 undecided."""
-    words = sys.argv[1:] if arguments is None else arguments
-    options = command_line().parse_args([_shielded(word) for word in words])
+    with plain_terminal():
+        try:
+            return _run(sys.argv[1:] if arguments is None else arguments)
+        except BrokenPipeError:  # as in `qbound region ... | head`
+            return NO_READER
+        except (ValueError, OSError, ImportError) as error:
+            complain(explained(error))
+        except MemoryError:
+            complain("this asks for more memory than there is")
+        except KeyboardInterrupt:
+            complain("stopped")
+            return STOPPED
+        except Exception:  # a fault of ours must not look like an answer: Python's status is 1
+            for line in traceback.format_exc().splitlines():
+                complain(line)
+        return 2
+
+
+def _run(words: Sequence[str]) -> int:
+    _refuse_empty(words)
     try:
-        status = int(options.run(options))
-        sys.stdout.flush()
-    except BrokenPipeError:  # as in `qbound region ... | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return NO_READER
-    except (ValueError, OSError, ImportError) as error:
-        print(f"qbound: {explained(error)}", file=sys.stderr)
-        return 2
-    except MemoryError:
-        print("qbound: this asks for more memory than there is", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("qbound: stopped", file=sys.stderr)
-        return STOPPED
-    return status
+        options = command_line().parse_args(words)
+        return int(options.run(options))
+    finally:
+        finish_output()
+
+
+def _refuse_empty(words: Sequence[str]) -> None:
+    """Refuse words that hold nothing: ``--json ""`` is no option left out, but a slip."""
+    for before, word in pairwise(["qbound", *words]):
+        if re.fullmatch(r"(-[\w-]+=)?", word):
+            where = word.rstrip("=") or before
+            raise ValueError(f"{where}: an empty value; give one, or leave the option out")
 
 
 def command_line() -> argparse.ArgumentParser:
@@ -88,7 +108,7 @@ def command_parsers() -> dict[str, argparse.ArgumentParser]:
 
 
 def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
-    parser = argparse.ArgumentParser(prog="qbound", description="Feasible workspaces of robots.")
+    parser = _Parser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action="version", version=f"qbound {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     others = [found.load() for found in sorted(entry_points(group=GROUP), key=lambda e: e.name)]
@@ -99,6 +119,14 @@ def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentPars
     return parser, dict(commands.choices)
 
 
-def _shielded(word: str) -> str:
-    """Let ``-45deg`` be a value: argparse knows plain negative numbers only."""
-    return f" {word}" if re.match(r"-\.?\d", word) else word
+class _Parser(argparse.ArgumentParser):
+    """A parser that takes ``-45deg`` for a value, and quotes nothing raw."""
+
+    def __init__(self, *names: Any, **options: Any) -> None:
+        """Set what looks like a negative number; argparse knows plain ones only."""
+        super().__init__(*names, **options)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and the message, and stop with status 2."""
+        super().error(printable(message))

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
-from qbound.check import number
+from qbound import check
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import check_targets, write_text
+from qbound.cli.files import check_targets, write_all
+from qbound.cli.progress import progress, working
+from qbound.cli.terminal import say
 from qbound.cli.values import box, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
-from qbound.proofs.certify import Bracket, bracket_scale, certify
+from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
 from qbound.proofs.points import as_decimal, read_points
-from qbound.proofs.reports import certificate_lines
+from qbound.proofs.reports import certificate_lines, folded
+
+STEPS = 1000
+"""Of the progress that is shown."""
 
 STATUS = {"proved": 0, "refuted": 1, "undecided": 3}
 
@@ -47,59 +57,131 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
+    parser.add_argument(
+        "--with-checker",
+        metavar="DIR",
+        help="put the certificate and check.py, which checks it with Python alone, into a folder",
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
-    check_targets([options.output])
+    check_targets([options.output], sources=[options.robot])
+    if options.with_checker is not None:
+        _check_folder(options.with_checker)
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
     margin = as_decimal("--margin", options.margin)
-    if number(margin) < 0:
+    if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
     if options.largest_scale:
         if options.margin != "0" or options.slice:
             raise ValueError(
                 "--largest-scale: for the robot as it is, without --margin and --slice"
             )
-        return _say_bracket(robot, bracket_scale(text), options.output)
-    answer = certify(text, statement(robot, options))
-    if options.output and answer.text:
-        write_text(options.output, answer.text)
+        with working("proofs and witnesses around the largest scale"):
+            found = bracket_scale(text)
+        return _say_bracket(robot, found, options)
+    with working("what the options ask for"):
+        asked = statement(robot, options, margin)
+    shown = progress("searching for a proof", STEPS)
+    answer = certify(text, asked, tell=lambda part: shown(int(part * STEPS)))
+    shown(STEPS)
+    _write(options, answer)
     if options.output != "-" or not answer.text:
-        print("\n".join([answer.said, *certificate_lines(robot, answer)]))
+        say(
+            *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
+        )
     return STATUS[answer.verdict]
 
 
-def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement:
+def _write(options: argparse.Namespace, answer: Certificate) -> None:
+    """Write the certificate, and the checker beside it: both, or none."""
+    if not answer.text:
+        return
+    files: dict[str, str] = {}
+    if options.output is not None:
+        files[options.output] = answer.text
+    if options.with_checker is None:
+        write_all(list(files.items()))
+        return
+    beside, checker = _beside(options)
+    with _made_folder(options.with_checker):
+        same = [file for file in files if file != "-" and Path(file).resolve() == beside.resolve()]
+        if not same:
+            files[str(beside)] = answer.text
+        write_all([*files.items(), (str(checker), Path(check.__file__).read_bytes())])
+
+
+def _beside(options: argparse.Namespace) -> tuple[Path, Path]:
+    """Return the places of the certificate and of the checker in the folder for both."""
+    folder, output = Path(options.with_checker), options.output
+    name = "certificate.json" if output in (None, "-") else Path(output).name
+    return folder / name, folder / "check.py"
+
+
+def _check_folder(name: str) -> None:
+    """Refuse, before any work, a folder that is none and could not be made."""
+    folder = Path(name)
+    if folder.is_dir():
+        return
+    if folder.exists() or folder.is_symlink():
+        raise ValueError(f"{name}: is no folder")
+    if not folder.resolve().parent.is_dir():
+        raise ValueError(f"{name}: No such file or directory: {folder.resolve().parent}")
+
+
+@contextmanager
+def _made_folder(name: str) -> Iterator[None]:
+    """Make a folder if it is missing, for as long as what is written into it succeeds."""
+    folder = Path(name)
+    new = not folder.is_dir()
+    folder.mkdir(exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        if new:
+            folder.rmdir()
+        raise
+
+
+def _how_to_check(options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
+    """Say how to run the checker that was put beside the certificate."""
+    if options.with_checker is not None and answer.text:
+        certificate, checker = (shlex.quote(str(path)) for path in _beside(options))
+        yield f"to check it with Python alone: python {checker} {certificate}"
+
+
+def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:
     """State what the options ask for."""
     values = held(robot, options.slice)
     if options.inset is not None and not options.region:
         raise ValueError("--inset: only --region is proved but for an inset")
     if options.box:
-        return statements.box(*box(robot, options.box), options.margin)
+        return statements.box(*box(robot, options.box), margin)
     if options.path:
-        return statements.path(read_points(robot, options.path), options.margin)
+        return statements.path(read_points(robot, options.path), margin)
     if options.polygon:
         loop = statements.anticlockwise(read_points(robot, options.polygon))
-        return statements.filled([loop], options.margin)
+        return statements.filled([loop], margin)
     if options.region:
         inset = statements.usual_inset(robot) if options.inset is None else options.inset
-        return statements.inner_polygon(robot, inset, margin=options.margin, held=values)
-    scale = float(number(options.scale or "1"))
-    return statements.home_polygon(robot, scale, options.margin, values)
+        return statements.inner_polygon(robot, inset, margin=margin, held=values)
+    scale = float(as_decimal("--scale", options.scale or "1"))
+    return statements.home_polygon(robot, scale, margin, values)
 
 
-def _say_bracket(robot: Robot, found: Bracket, output: str | None) -> int:
+def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
     unsafe, refutation = found.unsafe
     if proof is not None and proof.verdict == "proved":
-        print("\n".join([f"scale {safe}: proved", *certificate_lines(robot, proof)]))
-        if output:
-            write_text(output, proof.text)
-    if refutation is not None and refutation.verdict == "refuted":
-        print("\n".join([f"scale {unsafe}: refuted", *certificate_lines(robot, refutation)]))
+        _write(options, proof)
+        if options.output != "-":
+            lines = certificate_lines(robot, proof)
+            say(f"scale {safe}: proved", *lines, *_how_to_check(options, proof))
+    if refutation is not None and refutation.verdict == "refuted" and options.output != "-":
+        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

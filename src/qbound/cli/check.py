@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.cli.terminal import say
 from qbound.model.robotfile import robot_text
 from qbound.proofs import check_arb
+from qbound.proofs.reports import folded
 
 
 def add_to(commands: Any) -> None:
@@ -34,8 +38,15 @@ def run(options: argparse.Namespace) -> int:
     pin = [] if options.sha256 is None else ["--sha256", options.sha256]
     if options.robot is not None:
         pin = ["--sha256", check.digest(robot_text(options.robot)[0])]
-    status = check.main([options.certificate, *pin])
-    if options.arb and status < 2:
-        text = Path(options.certificate).read_text(encoding="utf-8")
-        print(f"python-flint: {check_arb.verify(text)}")
+    with redirect_stdout(StringIO()) as said:
+        status = check.main([options.certificate, *pin])
+    say(*folded(said.getvalue()))
+    if not options.arb or status > 1:
+        return status
+    try:
+        answer = check_arb.verify(Path(options.certificate).read_bytes())
+    except ValueError as error:
+        say(f"python-flint: not proved: {error}")
+        return 2
+    say(f"python-flint: {answer}")
     return status

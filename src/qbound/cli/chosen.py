@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from qbound.cli.progress import working
 from qbound.model.robot import Robot
 from qbound.region import Region, Rule, find_region
 
@@ -34,4 +35,6 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
     """Find the region of the joints that `--slice` leaves, by `--rule`."""
     if rule == "paper" and values:
         raise ValueError("--slice: the paper's rule knows two joints only")
-    return find_region(robot, values, rule)
+    count = sum(boundary.used for boundary in robot.boundaries)
+    with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
+        return find_region(robot, values, rule)

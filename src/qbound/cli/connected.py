@@ -7,6 +7,7 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
+from qbound.cli.progress import working
 from qbound.cli.values import configuration
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
@@ -39,7 +40,9 @@ def run(options: argparse.Namespace) -> int:
     if len(options.values) != 2 * n:
         raise ValueError(f"{len(options.values)} values; two poses of {n} joints have {2 * n}")
     one, other = (configuration(robot, options.values[k : k + n]) for k in (0, n))
-    found = connection(exact_problem(exact_robot(options.robot)), one, other)
+    problem = exact_problem(exact_robot(options.robot))
+    with working("looking for a passage"):
+        found = connection(problem, one, other)
     document = (options.json, lambda: json_text(connection_document(robot, [one, other], found)))
     deliver([document], [connection_line(found)])
     return STATUS[found.answer]

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from typing import Any
 
-from qbound.boundary.evaluator import limit_names
+from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import write_text
+from qbound.cli.files import check_targets, deliver
 from qbound.cli.values import configuration
 from qbound.export.document import configuration_document
 from qbound.export.formats import json_text
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
+from qbound.units import amount, joint_units, limited_joints, margin_text
 
 
 def add_to(commands: Any) -> None:
@@ -39,25 +41,32 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
+    check_targets([options.json], sources=[options.robot])
     content = configuration_document(robot, configuration(robot, options.values), options.weights)
-    if options.json:
-        write_text(options.json, json_text(content))
-    if options.json != "-":
-        _say(robot, content)
+    deliver([(options.json, lambda: json_text(content))], _lines(robot, content))
     return 0 if content["feasible"] else 1
 
 
-def _say(robot: Robot, content: dict[str, Any]) -> None:
-    violated = [item for item in content["margins"] if item["margin"] < 0]
-    for item in violated:
-        print(f"violated: {item['boundary']}, margin {_amount(robot, item)}")
+def _lines(robot: Robot, content: dict[str, Any]) -> Iterator[str]:
+    amounts = dict(_margins(robot, content))
+    violated = [item["boundary"] for item in content["margins"] if item["margin"] < 0]
+    for name in violated:
+        yield f"violated: {name}, margin {amounts[name]}"
     if not violated:
-        print("feasible" + _component(content))
-    for item in content["margins"]:
-        if item["margin"] >= 0:
-            print(f"  margin {_amount(robot, item)}: {item['boundary']}")
+        yield "feasible" + _component(content)
+    for name in (name for name in amounts if name not in violated):
+        yield f"  margin {amounts[name]}: {name}"
     if content["nearest"]:
-        print(_nearest_line(robot, content["nearest"]))
+        yield _nearest_line(robot, content["nearest"])
+
+
+def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield every boundary with its margin in words."""
+    compiled, limited = evaluator(robot), limited_joints(robot)
+    rounding = dict(zip(compiled.names, compiled.margin_rounding.tolist(), strict=True))
+    for item in content["margins"]:
+        name, margin = item["boundary"], item["margin"]
+        yield name, margin_text(robot, name, margin, limited, rounding[name])
 
 
 def _component(content: dict[str, Any]) -> str:
@@ -71,25 +80,22 @@ def _component(content: dict[str, Any]) -> str:
     return f", in {numbered}, {home}"
 
 
-def _amount(robot: Robot, item: dict[str, Any]) -> str:
-    """Write a margin with its unit: a length, or that of a joint limit."""
-    for joint in robot.joints:
-        if item["boundary"] in limit_names(joint.name):
-            return _joint_text(robot, joint, item["margin"])
-    return f"{item['margin']:.6g} {robot.length_unit}"
+def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
+    joints = zip(robot.joints, nearest["q"], strict=True)
+    place = ", ".join(f"{joint.name} = {_joint_text(robot, joint, x)}" for joint, x in joints)
+    distance = _distance(robot, nearest)
+    return f"nearest boundary: {nearest['boundary']} at {place}, distance {distance}"
+
+
+def _distance(robot: Robot, nearest: dict[str, Any]) -> str:
+    """Write the distance in the unit of both joints, or say how their units are weighted."""
+    one, other = robot.joints
+    if nearest["weights"] == [1.0, 1.0] and one.kind == other.kind:
+        return _joint_text(robot, one, nearest["distance"])
+    units = zip(nearest["weights"], joint_units(robot), strict=True)
+    weighted = ", ".join(f"{weight:g} a {unit}" for weight, unit in units)
+    return f"{nearest['distance']:.6g} (weights: {weighted})"
 
 
 def _joint_text(robot: Robot, joint: Joint, value: float) -> str:
-    return f"{value * joint.shown_scale:.6g} {joint.unit(robot.length_unit, 'deg')}"
-
-
-def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
-    joints = robot.joints
-    place = ", ".join(
-        f"{joint.name} = {_joint_text(robot, joint, x)}"
-        for joint, x in zip(joints, nearest["q"], strict=True)
-    )
-    distance = f"{nearest['distance']:.6g}"
-    if nearest["weights"] == [1.0, 1.0] and joints[0].kind == joints[1].kind:
-        distance = _joint_text(robot, joints[0], nearest["distance"])
-    return f"nearest boundary: {nearest['boundary']} at {place}, distance {distance}"
+    return amount(value * joint.shown_scale, joint.unit(robot.length_unit, "deg"))

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import check_targets, write_all
+from qbound.cli.terminal import say
 from qbound.cli.values import configuration, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
@@ -44,13 +45,13 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draw the picture and say where it is."""
     robot = load_robot(options.robot)
-    output = options.output or f"{Path(options.robot).stem}.svg"
-    check_targets([output], ("svg", "png"))
+    output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
+    check_targets([output], ("svg", "png"), [options.robot])
     values = held(robot, options.slice)
     q = robot.home if options.q is None else np.array(configuration(robot, options.q))
     q = robot.with_held(q[robot.free(values)], values)
     write_all([(output, _picture(robot, q, values, Path(output).suffix, options))])
-    print(output)
+    say(output)
     return 0
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import check_targets, write_text
+from qbound.cli.terminal import complain
 from qbound.cli.values import held
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot
@@ -34,12 +34,12 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the page; 1 if the home pose is in no component."""
     robot = load_robot(options.robot)
-    check_targets([options.output])
+    check_targets([options.output], sources=[options.robot])
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     region = region_by_rule(robot, options.rule, values)
     write_text(options.output, explorer_page(region))
     if region.home is None:
-        print("qbound: the home pose is in no component", file=sys.stderr)
+        complain("the home pose is in no component")
     return 0 if region.home is not None else 1
 
 

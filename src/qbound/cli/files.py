@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+
+from qbound.cli.terminal import say
+from qbound.files import target, write_together
 
 Content = str | bytes
 Output = tuple[str | None, Callable[[], Content]]
@@ -14,35 +16,18 @@ Output = tuple[str | None, Callable[[], Content]]
 
 def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
     """Make and write what was asked for; print the lines unless standard output is taken by it."""
-    write_all([(file, make()) for file, make in outputs if file])
+    write_all([(file, make()) for file, make in outputs if file is not None])
     if "-" not in (file for file, _ in outputs):
-        print("\n".join(lines))
+        say(*lines)
 
 
 def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
-    """Write several files, every one whole, or none at all; ``-`` is standard output, written last.
-
-    Drafts are made beside the files and renamed when all of them are complete.
-    """
+    """Write several files, every one whole, or none at all; ``-`` is standard output, the last."""
     check_targets([file for file, _ in outputs])
-    targets = [(Path(file).resolve(), _bytes(content)) for file, content in outputs if file != "-"]
-    drafts = [path.with_name(f".{path.name}.{os.getpid()}.part") for path, _ in targets]
-    try:
-        for (path, content), draft in zip(targets, drafts, strict=True):
-            try:
-                draft.write_bytes(content)
-            except OSError as error:
-                raise ValueError(f"{path}: not written: {error.strerror or error}") from None
-        for (path, _), draft in zip(targets, drafts, strict=True):
-            draft.replace(path)
-    finally:
-        for draft in drafts:
-            draft.unlink(missing_ok=True)
-    for printed in (content for file, content in outputs if file == "-"):
-        if isinstance(printed, bytes):
-            sys.stdout.buffer.write(printed)
-        else:
-            print(printed, end="")
+    contents = [(file, _bytes(content)) for file, content in outputs]
+    write_together([(file, content) for file, content in contents if file != "-"])
+    for content in (content for file, content in contents if file == "-"):
+        _put_out(content)
 
 
 def write_text(file: str, text: str) -> None:
@@ -50,36 +35,50 @@ def write_text(file: str, text: str) -> None:
     write_all([(file, text)])
 
 
-def check_targets(files: Sequence[str | None], kinds: Sequence[str] = ()) -> None:
+def check_targets(
+    files: Sequence[str | None], kinds: Sequence[str] = (), sources: Sequence[str | None] = ()
+) -> None:
     """Refuse, before any work, files that could not be written; None is no file.
 
     Parameters
     ----------
     kinds : sequence of str, optional
         Endings that are allowed, such as ``svg``.
+    sources : sequence of (str or None), optional
+        Files that are read, and are not to be written over.
 
     Raises
     ------
     ValueError
-        If two are the same, a folder is missing, a target is no regular file, or an ending unknown.
+        If two are the same, one is a source, a folder is missing, a target is no regular file or
+        may not be written, or an ending is unknown.
     """
+    read = {Path(file).resolve() for file in sources if file is not None and Path(file).is_file()}
     seen = set()
-    for file in filter(None, files):
-        path = Path(file).resolve() if file != "-" else Path("-")
+    for file in (file for file in files if file is not None):
+        path = _open_output() if file == "-" else target(file)
         if path in seen:
             raise ValueError(f"{file}: two outputs go to this one place")
+        if path in read:
+            raise ValueError(f"{file}: is read here, and would be written over")
         seen.add(path)
-        if file != "-":
-            _check_target(file, path, kinds)
+        if kinds and path.suffix.removeprefix(".").lower() not in kinds:
+            wanted = f"wanted: .{', .'.join(kinds)}"
+            raise ValueError(f"{file}: unknown ending {path.suffix!r}; {wanted}")
 
 
-def _check_target(file: str, path: Path, kinds: Sequence[str]) -> None:
-    if not path.parent.is_dir():
-        raise ValueError(f"{file}: No such file or directory: {path.parent}")
-    if path.exists() and not path.is_file():
-        raise ValueError(f"{file}: is no regular file")
-    if kinds and path.suffix.removeprefix(".").lower() not in kinds:
-        raise ValueError(f"{file}: unknown ending {path.suffix!r}; wanted: .{', .'.join(kinds)}")
+def _open_output() -> Path:
+    if sys.stdout is None:
+        raise ValueError("-: standard output is closed")
+    return Path("-")
+
+
+def _put_out(content: bytes) -> None:
+    """Write to standard output as to a file, in UTF-8; a terminal takes texts only."""
+    if b"\0" in content and sys.stdout.isatty():
+        raise ValueError("-: these are no letters for a terminal; name a file")
+    sys.stdout.flush()
+    sys.stdout.buffer.write(content)
 
 
 def _bytes(content: Content) -> bytes:

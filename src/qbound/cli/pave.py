@@ -8,12 +8,16 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot, add_slice
 from qbound.cli.files import deliver
+from qbound.cli.progress import progress
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
 from qbound.proofs.reports import paving_document, paving_lines
+
+STEPS = 1000
+"""Of the progress that is shown."""
 
 
 def add_to(commands: Any) -> None:
@@ -42,7 +46,9 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"--tolerance {options.tolerance}: a positive number is wanted")
     robot = load_robot(options.robot)
     values = held(robot, options.slice)
-    paving = pave(exact_problem(exact_robot(options.robot), values), options.tolerance)
+    problem = exact_problem(exact_robot(options.robot), values)
+    shown = progress("paving", STEPS)
+    paving = pave(problem, options.tolerance, tell=lambda part: shown(int(part * STEPS)))
     document = (options.json, lambda: json_text(paving_document(robot, paving)))
-    deliver([document], paving_lines(paving))
+    deliver([document], paving_lines(robot, paving))
     return 0 if paving.undecided_fraction <= options.tolerance else 3

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from qbound.cli.terminal import BLANK_LINE, is_terminal
+from qbound.printable import printable
 
 EVERY = 0.2  # seconds
 
@@ -16,10 +21,35 @@ def progress(what: str, total: int) -> Callable[[int], None]:
     def tell(done: int) -> None:
         nonlocal last
         now = time.monotonic()
-        if not sys.stderr.isatty() or (now - last < EVERY and done < total) or now - start < EVERY:
+        if not is_terminal() or (now - last < EVERY and done < total) or now - start < EVERY:
             return
         last = now
-        end = "\r\033[K" if done >= total else ""
-        print(f"\r{what}: {100 * done // total} %{end}", end="", file=sys.stderr, flush=True)
+        _show("" if done >= total else f"{what}: {100 * done // total} %")
 
     return tell
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Show how long work has taken that cannot tell how far it is; Ctrl-C ends it as ever."""
+    if not is_terminal():
+        yield
+        return
+    over, start = threading.Event(), time.monotonic()
+
+    def tick() -> None:
+        while not over.wait(5 * EVERY):
+            _show(f"{what}: {time.monotonic() - start:.0f} s")
+
+    ticker = threading.Thread(target=tick, daemon=True)
+    ticker.start()
+    try:
+        yield
+    finally:
+        over.set()
+        ticker.join()
+        _show("")
+
+
+def _show(text: str) -> None:
+    print(f"{BLANK_LINE}{printable(text)}", end="", file=sys.stderr, flush=True)

@@ -13,8 +13,10 @@ from qbound.cli.values import held
 from qbound.export.document import home_content
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
+from qbound.model.robot import Joint
 from qbound.model.robotfile import load_robot
 from qbound.region import Region
+from qbound.units import counted, limited_joints, margin_text
 
 
 def add_to(commands: Any) -> None:
@@ -45,7 +47,8 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Find the region; 1 if the home pose is in none of its components."""
     robot = load_robot(options.robot)
-    check_targets([options.svg, options.csv, options.geojson, options.npz, options.json])
+    files = [options.svg, options.csv, options.geojson, options.npz, options.json]
+    check_targets(files, sources=[options.robot])
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
     return 0 if region.home is not None else 1
@@ -64,19 +67,28 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 
 def _lines(region: Region) -> Iterator[str]:
-    unit = region.area_unit
+    unit, robot, limited = region.area_unit, region.robot, _limited(region)
     home = home_content(region)
     for item in home["violated"]:
-        yield f"home violates {item['boundary']}, margin {item['margin']:.6g}"
+        margin = margin_text(robot, item["boundary"], item["margin"], limited)
+        yield f"home violates {item['boundary']}, margin {margin}"
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
     elif "touches" in home:
         yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
-    yield f"{len(region.components)} components, area {region.area:.9g} {unit} in all"
+    parts = counted(len(region.components), "component")
+    yield f"{parts}, area {region.area:.9g} {unit} in all"
     for component in region.components:
         home_too = ", with the home pose" if component.contains_home else ""
-        vertices = len(component.vertices)
-        yield f"  area {component.area:.9g} {unit}, {vertices} vertices{home_too}"
+        corners = counted(len(component.vertices), "vertex", "vertices")
+        yield f"  area {component.area:.9g} {unit}, {corners}{home_too}"
+
+
+def _limited(region: Region) -> dict[str, Joint]:
+    """Return the joint of each limit; by the paper's rule limits are windows of boundaries."""
+    problem, joints = region.problem, region.robot.joints
+    windows = zip(problem.joints, problem.limits, strict=True)
+    return limited_joints(region.robot) | {name: joints[j] for j, ends in windows for name in ends}
 
 
 def _draw(region: Region) -> bytes:

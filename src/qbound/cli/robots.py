@@ -6,6 +6,7 @@ import argparse
 from importlib import resources
 from typing import Any
 
+from qbound.cli.terminal import say
 from qbound.model.robotfile import packaged_robots
 
 
@@ -22,10 +23,12 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """List the robots, or print the file of one."""
     if options.show is None:
-        print("\n".join(packaged_robots()))
+        say(*packaged_robots())
         return 0
+    if options.name is None:
+        raise ValueError(f"show: name one of {', '.join(packaged_robots())}")
     if options.name not in packaged_robots():
         raise ValueError(f"no robot {options.name!r}; there are {', '.join(packaged_robots())}")
     file = resources.files("qbound") / "robots" / f"{options.name}.toml"
-    print(file.read_text(encoding="utf-8"), end="")
+    say(*file.read_text(encoding="utf-8").splitlines())
     return 0

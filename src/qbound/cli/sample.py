@@ -14,6 +14,9 @@ from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.model.robotfile import load_robot
 from qbound.region import paper_rule
 
+MOST = 20_000_000
+"""Configurations of a sample: two gigabytes, and more while they are written as a table."""
+
 
 def add_to(commands: Any) -> None:
     """Describe the command."""
@@ -39,10 +42,12 @@ def run(options: argparse.Namespace) -> int:
     """Draw and judge; always 0: a sample proves nothing."""
     if options.n < 1:
         raise ValueError(f"-n {options.n}: a sample has one configuration or more")
+    if options.n > MOST:
+        raise ValueError(f"-n {options.n}: at most {MOST} fit into memory; take several seeds")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
     robot, rule, seed = load_robot(options.robot), options.rule, options.seed
-    check_targets([options.csv, options.npz, options.json])
+    check_targets([options.csv, options.npz, options.json], sources=[options.robot])
     judge = sampling.keeps_clear if rule == "clearance" else paper_rule.feasible
     told = progress("sampling", options.n)
     drawn = sampling.sample(robot, options.n, judge, seed=seed, progress=told)

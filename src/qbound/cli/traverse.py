@@ -67,7 +67,8 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    check_targets([options.csv, options.ros, options.svg, options.json])
+    files = [options.csv, options.ros, options.svg, options.json]
+    check_targets(files, sources=[options.robot])
     robot = load_robot(options.robot)
     route = _route(robot, options)
     times = _in_time(route, options)

@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 from qbound.model.robot import Robot
 from qbound.proofs.points import joint_decimal, limits_as_decimals
-from qbound.units import parse_joint_value
+from qbound.units import counted, parse_joint_value
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
     """Read one value for each joint, rad or length."""
     if len(texts) != len(robot.joints):
         names = ", ".join(joint.name for joint in robot.joints)
-        raise ValueError(f"{len(texts)} values for {len(robot.joints)} joints: {names}")
+        values, joints = counted(len(texts), "value"), counted(len(robot.joints), "joint")
+        raise ValueError(f"{values} for {joints}: {names}")
     return [parse_joint_value(robot, j, text) for j, text in enumerate(texts)]
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.terminal import complain
 from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
@@ -40,7 +40,7 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
     robot = load_robot(options.robot)
-    check_targets([options.svg, options.json])
+    check_targets([options.svg, options.json], sources=[options.robot])
     values = held(robot, options.slice)
     places = [place(text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         found = workspace_report(region, places, poses)
     except NoHomeError as reason:
-        print(f"qbound: {reason}", file=sys.stderr)
+        complain(reason)
         return 1
     outputs: list[Output] = [
         (options.svg, lambda: _picture(found)),

@@ -17,6 +17,7 @@ from string import Template
 from typing import Final
 
 from qbound.explorer.data import Data, explorer_data
+from qbound.files import write_whole
 from qbound.region import Region
 
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
@@ -44,8 +45,8 @@ class Explorer:
         return Template(_web("frame.html")).substitute(page=escape(self.html), title=escape(title))
 
     def save(self, path: str | Path) -> None:
-        """Write the page to a file, which any browser opens without a network."""
-        Path(path).write_text(self.html, encoding="utf-8", newline="\n")
+        """Write the page to a file, whole; any browser opens it without a network."""
+        write_whole(path, self.html.encode())
 
 
 def explore(region: Region) -> Explorer:

@@ -12,8 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.model.robot import Robot
+from qbound.printable import printable
 from qbound.units import joint_units
 from qbound.version import __version__
+
+FORMULA = tuple("=+-@＝＋－＠")
+"""What a formula of a spreadsheet begins with; tab and return, others, are escaped as it is."""
 
 
 def heading(schema: str, robot: Robot) -> dict[str, Any]:
@@ -37,12 +41,22 @@ def json_text(content: Mapping[str, object], indent: int | None = 1) -> str:
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return comma-separated values with a header; numbers with all their digits."""
+    """Return comma-separated values with a header; numbers with all their digits.
+
+    Spreadsheets compute a text that begins as a formula does, so an apostrophe goes before it.
+    """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
+    writer.writerow(map(_cell, header))
+    writer.writerows(map(_cell, row) for row in rows)
     return buffer.getvalue()
+
+
+def _cell(value: object) -> object:
+    if not isinstance(value, str):
+        return value
+    text = printable(value)
+    return f"'{text}" if text.lstrip().startswith(FORMULA) else text
 
 
 def pose_columns(robot: Robot) -> list[str]:

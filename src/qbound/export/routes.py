@@ -13,7 +13,8 @@ from qbound.paths.encounters import Crossing, Margin, ParameterPoint
 from qbound.paths.report import PathReport
 from qbound.paths.route import Route
 from qbound.paths.trajectory import Trajectory, row_times
-from qbound.units import joint_text
+from qbound.tolerances import ON_BOUNDARY
+from qbound.units import amount, counted, joint_text
 
 Floats = NDArray[np.float64]
 
@@ -66,8 +67,9 @@ def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[
     route, path = found.route, found.route.path
     robot, unit = route.region.robot, route.region.robot.length_unit
     known = "at most" if path.proved else "measured"
-    yield f"{len(path.legs)} legs: {', '.join(route.legs)}"
-    yield f"{len(path.q)} rows; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
+    legs, rows = counted(len(path.legs), "leg"), counted(len(path.q), "row")
+    yield f"{legs}: {', '.join(route.legs)}"
+    yield f"{rows}; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
     if times is not None:
         yield f"{times.t[-1]:.6g} s"
     yield f"final pose: {joint_text(robot, path.final_pose)}"
@@ -79,7 +81,7 @@ def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[
     for place in found.singular or ():
         yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
     for least in found.margins:
-        margin = f"{least.value:.6g} {least.boundary.unit}"
+        margin = amount(least.value, least.boundary.unit, ON_BOUNDARY * least.boundary.scale)
         yield f"smallest margin of {least.boundary.name}: {margin}, {_where(route, least.place)}"
     for least in found.margins:
         if least.leaves is not None:

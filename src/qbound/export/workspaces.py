@@ -39,14 +39,14 @@ def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
     """Say in sentences how large a workspace is, and what was asked of it."""
     workspace, robot = found.workspace, found.workspace.region.robot
     joints, unit = workspace.region.problem.joints, robot.length_unit
-    twice = f"{workspace.covered_twice:.9g} in both postures"
+    twice = f"{workspace.covered_twice:.9g} {unit}^2 of it in both postures"
     yield f"area {workspace.area:.9g} {unit}^2, {twice}"
     yield f"reached both safely and not: {found.safe_and_unsafe:.9g} {unit}^2"
     for aspect in workspace.aspects:
-        yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g}"
+        yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g} {unit}^2"
     for at in found.places:
         x, z = at.place
-        yield f"at ({x:g}, {z:g}): safe postures {at.safe}"
+        yield f"at ({x:g}, {z:g}) {unit}: safe postures {at.safe}"
         for posture, component in at.postures:
             yield f"  {joint_text(robot, posture.q, joints)}: {_state(component)}"
     if found.passage is not None:

@@ -25,6 +25,7 @@ from qbound.forms.angles import TURN, whole_turns
 from qbound.measures.bodies import outline
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
+from qbound.printable import printable
 from qbound.region import Region
 
 if TYPE_CHECKING:
@@ -336,8 +337,7 @@ def symbol(name: str) -> str:
 
 def as_text(name: str) -> str:
     """Write a name of a robot file so that matplotlib draws its letters and reads no formula."""
-    line = name if name.isprintable() else repr(name)[1:-1]
-    return line.replace("$", r"\$")
+    return printable(name).replace("$", r"\$")
 
 
 def every(span: float) -> Any:

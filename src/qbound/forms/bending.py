@@ -74,7 +74,7 @@ def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool =
             sliding = waves.powers.any(axis=1)
             u = np.where(sliding, u.max(axis=1, keepdims=True), u)
             far = np.broadcast_to(far.max(axis=1, keepdims=True), far.shape)
-        bend = _with_slides(waves, np.abs(cells).max(axis=1), u, far)
+        bend = with_slides(waves, np.abs(cells).max(axis=1), u, far)
         lone = (waves.powers == 2).any(axis=1) & (waves.powers.sum(axis=1) == 2)
         upwards = lone & ~waves.turns.any(axis=1) & (waves.amplitudes.real > 0)
         size = np.where(upwards, 0, size)
@@ -104,7 +104,7 @@ def worst_edges(
     return np.asarray(np.where(flat, np.square(steps).sum(axis=2), bend).argmax(axis=1))
 
 
-def _with_slides(waves: Waves, reach: Floats, u: Floats, far: Floats) -> Floats:
+def with_slides(waves: Waves, reach: Floats, u: Floats, far: Floats) -> Floats:
     """Bound the second derivative of every wave of amplitude 1, shape (N, k, m)."""
     y, dy, ddy = np.ones_like(u), u, np.square(u)
     for j, powers in enumerate(waves.powers.T):

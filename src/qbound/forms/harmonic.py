@@ -121,8 +121,16 @@ class HarmonicForm:
         -------
         ndarray, shape (...) + self.shape
             Dtype object where coefficients or joint values are no floats.
+
+        Raises
+        ------
+        ValueError
+            If there is not one value a joint on the last axis, or one is NaN or infinite.
         """
         columns = self._columns(q)
+        values = np.asarray(q)
+        if values.dtype != object and not np.isfinite(values).all():
+            raise ValueError("a joint value is NaN or infinite")
         factors = [basis(kind, x) for kind, x in zip(self.kinds, columns, strict=True)]
         return self.combined(factors, np.shape(columns[0]) if columns else ())
 

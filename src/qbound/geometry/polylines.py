@@ -17,6 +17,9 @@ Curve = Callable[[Floats], Floats]
 """Parameters in [0, 1], shape (k,), to places, shape (k, d)."""
 
 PART, FINEST = 4, 2.0**-30
+MOST = 2**17
+"""Points of a curve: more than any drawing needs, and what memory has room for many times."""
+
 BETWEEN = np.array([0.25, 0.5, 0.75])
 
 
@@ -41,8 +44,8 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
     Raises
     ------
     ValueError
-        If the tolerance is not above zero, or pieces of a thousand-millionth of the curve do not
-        reach it.
+        If the tolerance is not above zero, takes more than `MOST` points, or is not reached by
+        pieces of a thousand-millionth of the curve.
     """
     if not tolerance > 0:
         raise ValueError(f"a deviation must be above 0, found {tolerance:g}")
@@ -52,9 +55,21 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
         wide = np.nonzero(off > tolerance / 2)[0]
         if not len(wide):
             return s, float(off.max())
+        if len(s) + len(wide) > MOST:
+            cost = np.sqrt(2 * off / tolerance).clip(1).sum()  # a chord is off by its square
+            raise ValueError(too_fine(tolerance, cost, MOST))
         if np.diff(s)[wide].min() < FINEST:
             raise ValueError(f"the curve cannot be followed to {tolerance:g}: it is not smooth")
         s = np.insert(s, wide + 1, (s[wide] + s[wide + 1]) / 2)
+
+
+def too_fine(deviation: float, cost: float, most: int) -> str:
+    """Say what a deviation costs in points, and which one costs no more than `most`."""
+    possible = deviation * (cost / most) ** 2
+    return (
+        f"a deviation of {deviation:g} takes some {cost:.1g} points where {most} are the most; "
+        f"{possible:.1g} or more is possible"
+    )
 
 
 def deviations(curve: Curve, s: Floats) -> Floats:

@@ -19,6 +19,7 @@ from qbound.model.joints import JOINT_TYPES, JointRow
 from qbound.model.rows import LARGEST, Label, Number, Row
 from qbound.model.schema import JsonPath, explained, one_line, place, shown
 from qbound.model.shapes import BodyRow, PointRow
+from qbound.printable import printable
 
 Table = Mapping[str, Any]
 
@@ -43,6 +44,10 @@ class RobotFileError(ValueError):
     ...     print(str(error).partition(";")[0])
     no such file.toml: No such file or directory
     """
+
+    def __init__(self, text: str) -> None:
+        """Keep to what prints: names of files and of keys are the writer's."""
+        super().__init__(printable(text))
 
 
 class RobotFile(Row, kw_only=True):

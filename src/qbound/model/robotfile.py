@@ -15,10 +15,12 @@ import msgspec
 import numpy as np
 
 from qbound.extras import require
+from qbound.files import write_whole
 from qbound.model.robot import Robot
 from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
 from qbound.model.rows import quotient
 from qbound.model.schema import place
+from qbound.printable import printable
 
 __all__ = [
     "RobotFileError",
@@ -104,13 +106,7 @@ def save_robot(robot: Robot, path: str | Path) -> None:
         read_table(table)
     except RobotFileError as error:
         raise RobotFileError(f"{path}: not written: {error}") from None
-    target = Path(path)
-    draft = target.with_name(f"{target.name}.part")
-    try:
-        draft.write_bytes(tomlkit.dumps(table).encode())
-        draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)
+    write_whole(path, tomlkit.dumps(table).encode())
 
 
 def packaged_robots() -> tuple[str, ...]:
@@ -151,7 +147,8 @@ def _robot(table: Table, label: str) -> Robot:
     for i, boundary in enumerate(robot.boundaries):
         if robot.least_distance(boundary) == 0:
             where = place(table, ("boundary", i))
-            text = f"{label}{where}: no radius and no clearance; this pair is never a wall"
+            text = f"{where}: no radius and no clearance; this pair is never a wall"
+            text = printable(label) + text
             warnings.warn(text, stacklevel=3)  # at the caller of load_robot or parse_robot
     return robot
 

@@ -12,6 +12,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from qbound.printable import printable
+
 JsonPath = Sequence[str | int]
 Node = Mapping[str, Any]
 """What a JSON Schema has to say of one place."""
@@ -68,7 +70,7 @@ def shown(value: Any) -> str:
 
 def one_line(text: str) -> str:
     """Keep a text on one line and short."""
-    line = text if text.isprintable() else repr(text)[1:-1]
+    line = printable(text)
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."
 
 

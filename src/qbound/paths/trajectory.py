@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
+from qbound.printable import printable
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +53,7 @@ def joint_speeds(robot: Robot) -> list[float]:
     missing = [joint.name for joint in robot.joints if joint.velocity is None]
     if missing:
         raise ValueError(
-            f"{robot.name} states no `velocity` for {', '.join(missing)}: "
+            f"{printable(robot.name)} states no `velocity` for {printable(', '.join(missing))}: "
             "add it to the robot file, or give the duration"
         )
     return [float(joint.velocity) for joint in robot.joints if joint.velocity is not None]
@@ -114,8 +115,8 @@ def lasting(robot: Robot, path: Traversal, duration: float) -> Trajectory:
     if (used > 1 + 1e-9).any():
         j = int(used.argmax())
         raise ValueError(
-            f"{duration:g} s is too short: {robot.joints[j].name} would need {used[j]:.3g} times "
-            f"its velocity; {duration * used[j]:.6g} s is enough"
+            f"{duration:g} s is too short: {printable(robot.joints[j].name)} would need "
+            f"{used[j]:.3g} times its velocity; {duration * used[j]:.6g} s is enough"
         )
     return result
 

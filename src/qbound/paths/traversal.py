@@ -11,10 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import position
-from qbound.geometry.polylines import Curve, flatten, self_crossings
+from qbound.geometry.polylines import Curve, flatten, self_crossings, too_fine
 from qbound.model.robot import Robot
 
 Floats = NDArray[np.float64]
+
+MOST_ROWS = 2**20
+"""Rows of a path: a gigabyte while they are written."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,23 +151,30 @@ def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
     Raises
     ------
     ValueError
-        If there is no leg or the deviation is not above zero.
+        If there is no leg, or the deviation is not above zero or takes more than `MOST_ROWS` rows.
     """
     if not legs:
         raise ValueError("a path needs a leg")
     if not deviation > 0:
         raise ValueError(f"a deviation must be above 0, found {deviation:g}")
     tool = position(robot, robot.tool)
+    cost = sum(_chords(leg.bend, deviation) for leg in legs if leg.bend is not None)
+    if cost > MOST_ROWS:
+        raise ValueError(too_fine(deviation, cost, MOST_ROWS))
     grids, measured = [], 0.0
     for leg in legs:
         if leg.bend is None:
             grid, off = flatten(_image(tool, leg.at), deviation, leg.parts)
             measured = max(measured, off)
-        else:  # a chord of a curve of length 1 in s, cut in n: bend / (8 n^2) at most
-            n = max(1, math.ceil(math.sqrt(leg.bend / (8 * deviation))))
-            grid = np.linspace(0, 1, n + 1)
+        else:
+            grid = np.linspace(0, 1, _chords(leg.bend, deviation) + 1)
         grids.append(grid)
     return _joined(robot, legs, grids, measured)
+
+
+def _chords(bend: float, deviation: float) -> int:
+    """Return in how many a curve of length 1 in s is cut; a chord is off by bend / (8 n^2)."""
+    return max(1, math.ceil(math.sqrt(bend / (8 * deviation))))
 
 
 def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:

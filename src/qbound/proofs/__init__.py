@@ -8,7 +8,10 @@
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
   `connection` (what is joined, and what is not);
 - certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
-  which polygon), `minorant` (lower bounds), `certify` (the search), `witness` (what refutes),
-  `check_arb` (the second checker, after `qbound.check`);
+  which polygon), `unrolled` (what goes all the way round a joint, cut open), `minorant` (lower
+  bounds), `boxes` (the search over a box) and `forest` (the cuts of a search), `certify` (the
+  search, and the file), `witness` (what refutes);
+- the second checker, after `qbound.check`: `grammar`, `grammar_robot` and `grammar_values` (what a
+  file may say), `cells` (what makes up the set), `interpolation` (boundary functions), `check_arb`;
 - `reports`: what was proved, as JSON and in words.
 """

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,11 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
+from qbound.proofs.boxes import search_box
+from qbound.proofs.cells import Cell, cells_of
+from qbound.proofs.forest import Forest, Search, Tell, silent
+from qbound.proofs.grammar import GRAMMAR, read_statement
+from qbound.proofs.grammar_robot import read_robot
 from qbound.proofs.minorant import Bound
 from qbound.proofs.statements import (
     Statement,
@@ -32,7 +38,7 @@ from qbound.proofs.statements import (
     wider,
 )
 from qbound.proofs.verdict import Verdict
-from qbound.proofs.witness import Witness, beyond_limits, deepest, witness
+from qbound.proofs.witness import Evidence, Witness, beyond_limits, deepest, witness
 from qbound.tolerances import NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -43,33 +49,11 @@ MOST_CELLS = 200_000
 FIRST_LOOK = 1000
 """Cells opened for one boundary at first: enough to see that most sets are not safe."""
 
+SEARCHING = 0.99
+"""Part of the work that is told of as the search; the rest is the check of what it found."""
+
 DEEPEST = 60
 """Cuts on top of each other before a search gives up; the checkers follow 120."""
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """What a search for one boundary found.
-
-    Attributes
-    ----------
-    trees : tuple of str
-        For each cell its cuts in preorder: "." a leaf, a letter the edge that is cut.
-    leaves : int
-        Cells on which the bound is positive.
-    left : int
-        Cells that are undecided.
-    part_left : float
-        Their part of the whole set.
-    violation : (int, ndarray) or None
-        A cell, and a configuration in it where the form is negative; rad or length.
-    """
-
-    trees: tuple[str, ...]
-    leaves: int
-    left: int
-    part_left: float
-    violation: tuple[int, Floats] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +81,17 @@ class Certificate:
 
     @property
     def leaves(self) -> int:
-        """Number of simplices of the proof."""
+        """Number of cells of the proof."""
         return sum(search.leaves for search in self.searches.values())
 
 
 def certify(
-    text: str, statement: Statement, *, most: int = MOST_CELLS, bound: Bound = second_order
+    text: str,
+    statement: Statement,
+    *,
+    most: int = MOST_CELLS,
+    bound: Bound = second_order,
+    tell: Tell = silent,
 ) -> Certificate:
     """Prove or refute that every boundary in use holds all over a set.
 
@@ -115,7 +104,15 @@ def certify(
     most : int
         Cells that are opened for one boundary before the answer is "undecided".
     bound : callable
-        The lower bound on a cell; the checkers only follow `minorant.second_order`.
+        The lower bound on a simplex; the checkers only follow `minorant.second_order`. A box has
+        its own, see `boxes`.
+    tell : callable
+        Told how far it is, from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If robot or statement is none that a certificate can hold, in a sentence that says why.
 
     Examples
     --------
@@ -124,7 +121,7 @@ def certify(
     >>> text, _ = robot_text("minervabot-v2")
     >>> answer = certify(text, box(["-10", "-10"], ["10", "10"]))  # in degrees, as the file
     >>> answer.verdict.value, answer.leaves
-    ('proved', 10)
+    ('proved', 5)
 
     Nobody has to believe it: the checker stands alone, and says whether the statement is refuted.
 
@@ -138,25 +135,39 @@ def certify(
     ('refuted', True)
     """
     robot = parse_robot(tomllib.loads(text))
-    cells = check.read_cells(statement)
-    if check.number(statement["margin"]) < 0:
-        raise ValueError(f"a margin of {statement['margin']}: wanted a length of 0 or more")
-    evidence = beyond_limits(text, cells)
-    verdict, searches = Verdict.REFUTED, dict[str, Search]()
-    if evidence is None:
-        for few in (min(most, FIRST_LOOK), most):
-            searches = search_all(robot, statement, cells, few, bound)
-            verdict = _verdict(searches)
-            if verdict is not Verdict.UNDECIDED:
-                break
-        if verdict is Verdict.UNDECIDED:
-            return Certificate(verdict, "", _left(searches), searches)
-        if verdict is Verdict.PROVED:
-            proof = {name: list(found.trees) for name, found in searches.items()}
-            return _confirmed(text, statement, verdict, searches, proof=proof)
-        violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
-        evidence = deepest(robot, statement, cells, violated)
-    answer = _confirmed(text, statement, verdict, searches, **evidence)
+    exact = read_robot(text)
+    cells = cells_of(read_statement(statement, exact), GRAMMAR)
+    evidence = beyond_limits(exact, statement, cells)
+    if evidence is not None:
+        return _refuted(text, robot, statement, cells, evidence)
+    corners = [cell.corners for cell in cells]
+    for few in (min(most, FIRST_LOOK), most):
+        searches = search_all(
+            robot, statement, corners, few, bound, lambda part: tell(SEARCHING * part)
+        )
+        verdict = _verdict(searches)
+        if verdict is not Verdict.UNDECIDED:
+            break
+    if verdict is Verdict.UNDECIDED:
+        return Certificate(verdict, "", _left(searches), searches)
+    if verdict is Verdict.PROVED:
+        proof = {name: list(found.trees) for name, found in searches.items()}
+        return _confirmed(text, statement, verdict, searches, proof=proof)
+    violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
+    evidence = deepest(robot, statement, cells, violated)
+    return _refuted(text, robot, statement, cells, evidence, searches)
+
+
+def _refuted(
+    text: str,
+    robot: Robot,
+    statement: Statement,
+    cells: Sequence[Cell],
+    evidence: Evidence,
+    searches: dict[str, Search] | None = None,
+) -> Certificate:
+    """Write a refutation, and say how deep its witness lies."""
+    answer = _confirmed(text, statement, Verdict.REFUTED, searches or {}, **evidence)
     return replace(answer, witness=witness(robot, statement, cells, evidence))
 
 
@@ -167,15 +178,43 @@ def _verdict(searches: dict[str, Search]) -> Verdict:
 
 
 def search_all(
-    robot: Robot, statement: Statement, cells: Sequence[Any], most: int, bound: Bound = second_order
+    robot: Robot,
+    statement: Statement,
+    cells: Sequence[Any],
+    most: int,
+    bound: Bound = second_order,
+    tell: Tell = silent,
 ) -> dict[str, Search]:
-    """Search every boundary in use that can be violated at all."""
+    """Search every boundary in use that can be violated at all.
+
+    Parameters
+    ----------
+    cells : sequence of sequence of point
+        Corners of simplices; of a box the low and the high one. In the file's units.
+    """
     corners = np.array(cells, dtype=float) * units(robot)
     forms = _forms(robot, statement)
-    return {name: search(form, corners, most, bound) for name, form in forms.items()}
+    found = {}
+    for k, (name, form) in enumerate(forms.items()):
+        told = partial(_tell_of_all, tell, k, len(forms))
+        if statement["set"] == "box":
+            found[name] = search_box(form, corners[0, 0], corners[0, 1], most, told)
+        else:
+            found[name] = search(form, corners, most, bound, told)
+    return found
 
 
-def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_order) -> Search:
+def _tell_of_all(tell: Tell, k: int, count: int, part: float) -> None:
+    tell((k + part) / count)
+
+
+def search(
+    form: HarmonicForm,
+    cells: Floats,
+    most: int,
+    bound: Bound = second_order,
+    tell: Tell = silent,
+) -> Search:
     """Cut cells across the edge that bends most until the bound is positive on each.
 
     Parameters
@@ -184,7 +223,7 @@ def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_o
         Corners of simplices, rad or length.
     """
     slack = NEGLIGIBLE * np.abs(form.waves.amplitudes).sum()
-    forest = _Forest(len(cells))
+    forest = Forest(len(cells))
     numbers, roots, parts = np.arange(len(cells)), np.arange(len(cells)), np.ones(len(cells))
     leaves, opened = 0, 0
     for _ in range(DEEPEST):
@@ -197,45 +236,13 @@ def search(form: HarmonicForm, cells: Floats, most: int, bound: Bound = second_o
         forest.close(numbers[proved])
         leaves, opened = leaves + int(proved.sum()), opened + len(cells)
         cells, numbers, roots, parts = (x[~proved] for x in (cells, numbers, roots, parts))
+        tell(1 - float(parts.sum()) / forest.size)
         if not len(cells) or opened > most:
             break
         edges = worst_edges(form, cells)
         cells, numbers = halved(cells, edges), forest.cut(numbers, edges)
         roots, parts = np.repeat(roots, 2), np.repeat(parts / 2, 2)
     return Search(forest.trees(), leaves, len(cells), float(parts.sum() / max(forest.size, 1)))
-
-
-class _Forest:
-    """The cuts of all cells, as they are made level by level; written down in preorder."""
-
-    def __init__(self, size: int) -> None:
-        self.size, self.letters = size, ["?"] * size
-        self.children: dict[int, int] = {}
-
-    def close(self, numbers: Sequence[int] | NDArray[Any]) -> None:
-        for number in numbers:
-            self.letters[number] = "."
-
-    def cut(self, numbers: Sequence[int] | NDArray[Any], edges: NDArray[Any]) -> NDArray[Any]:
-        """Note the cuts and return the numbers of the halves."""
-        first = len(self.letters)
-        for k, (number, edge) in enumerate(zip(numbers, edges, strict=True)):
-            self.letters[number] = chr(ord("a") + int(edge))
-            self.children[int(number)] = first + 2 * k
-        self.letters += ["?"] * (2 * len(numbers))
-        return np.arange(first, len(self.letters))
-
-    def trees(self) -> tuple[str, ...]:
-        return tuple(self._tree(root) for root in range(self.size))
-
-    def _tree(self, root: int) -> str:
-        written, todo = [], [root]
-        while todo:
-            number = todo.pop()
-            written.append(self.letters[number])
-            if number in self.children:
-                todo += [self.children[number] + 1, self.children[number]]
-        return "".join(written)
 
 
 def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
@@ -274,7 +281,7 @@ def _confirmed(
 ) -> Certificate:
     """Write the file and hand it to the checker: what that does not confirm is not answered."""
     content = {
-        "schema": "qbound/certificate/1",
+        "schema": f"qbound/certificate/{GRAMMAR}",
         "verdict": verdict,
         "statement": statement,
         "robot": robot,
@@ -283,7 +290,7 @@ def _confirmed(
     }
     text = json_text(content)
     try:
-        _, said = check.check(text)
+        said = check.check(text)[1]
     except ValueError as error:
         said = f"not confirmed in exact arithmetic: {error}"
         return Certificate(Verdict.UNDECIDED, "", said, searches)
@@ -339,7 +346,8 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
 
 
 def _tried(robot: Robot, statement: Statement) -> Verdict:
-    cells = check.read_cells(statement)
+    loop = statement["points"][0]
+    cells = [[loop[k] for k in triangle] for triangle in statement["triangles"]]
     return _verdict(search_all(robot, statement, cells, 20 * FIRST_LOOK))
 
 

@@ -1,50 +1,60 @@
 """Check a certificate of qbound a second time, in ball arithmetic (Arb), on another way.
 
-It shares no line with `check`: kinematics goes through 4 x 4 matrices of balls, a boundary function
-is found from its values at third parts of a turn, and trees are walked with a stack of cells. What
-it proves is the same inequality on each leaf (not in the paper; `minorant` says why it suffices).
+It is written from the book's page "The certificate" and shares no line with `check`: `grammar`
+reads the file into exact rationals; `interpolation` finds a boundary function from its values at
+third parts of a turn; trees are walked with a stack of cells. On each leaf it proves the inequality
+of that page.
 """
 
 from __future__ import annotations
 
-import hashlib
-import itertools
-import json
-import tomllib
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 from qbound.extras import require
+from qbound.proofs.cells import Box, Cell, Simplex, cells_of
+from qbound.proofs.grammar import Content, Witness, read_certificate
+from qbound.proofs.grammar_robot import Boundary, Robot
+from qbound.proofs.grammar_values import refuse, shown
+from qbound.proofs.interpolation import (
+    Waves,
+    boundary_value,
+    exact,
+    joints_of,
+    reach_of,
+    units,
+    waves_of,
+)
 from qbound.proofs.verdict import Verdict
 
 BITS = 160
 """Bits of the balls: a leaf has 1e-13 of its amplitudes to spare, ``2**-43``."""
 
-Table = dict[str, Any]
+WITNESS_BITS = 640
+"""Bits at a witness, which may violate a boundary in the fortieth digit only."""
+
+DEEPEST = 120
+"""Cuts on top of each other."""
+
+MOST_WORK = 15_000_000
+"""Products that a check may take, some 15 seconds; counted before they are made."""
+
+WAVES_WORK, CUT_WORK = 30, 50
+"""Products for each value of a boundary function that is interpolated, and for each letter."""
 
 
-@dataclass(frozen=True, eq=False)
-class Wave:
-    """The real part of `amplitude` times exp(i turns . q), times q_j to the powers."""
-
-    amplitude: Any
-    turns: tuple[int, ...]
-    powers: tuple[int, ...]
-
-
-def verify(text: str) -> Verdict:
+def verify(text: str | bytes) -> Verdict:
     """Return what a certificate proves: that its statement is true, or that it is not.
 
     Parameters
     ----------
-    text : str
-        The certificate.
+    text : str or bytes
+        The certificate, grammar 1 or 2.
 
     Raises
     ------
     ValueError
-        If it does not prove what it says.
+        If it does not follow the grammar, or does not prove what it says.
     ModuleNotFoundError
         Without python-flint (the extra `proofs`).
 
@@ -68,300 +78,169 @@ def verify(text: str) -> Verdict:
     from flint import ctx
 
     with ctx.workprec(BITS):
-        content = json.loads(text)
-        robot = tomllib.loads(content["robot"], parse_float=str)
-        if hashlib.sha256(content["robot"].encode()).hexdigest() != content["sha256"]:
-            raise ValueError("the hash is not of this robot")
-        if content["schema"] != "qbound/certificate/1":
-            raise ValueError(f"{content['schema']}: an unknown schema")
-        if _exact(content["statement"]["margin"]) < 0:
-            raise ValueError("a negative margin")
-        cells = _cells(content["statement"])
-        verdict = Verdict(content["verdict"])
-        if verdict is Verdict.REFUTED:
-            _refute(robot, content, cells)
-        elif verdict is Verdict.PROVED and cells:
-            _prove(robot, content, cells)
-        else:
-            raise ValueError("it says nothing")
-    return verdict
+        try:
+            return _verified(text)
+        except (ValueError, MemoryError):
+            raise
+        except Exception as error:  # a fault of ours is no answer
+            raise ValueError("the check of this file failed") from error
 
 
-def _prove(robot: Table, content: Table, cells: Sequence[Any]) -> None:
-    for corner in itertools.chain.from_iterable(cells):
-        for name, distance in _limits(robot, corner):
-            if distance < 0:
-                raise ValueError(f"{corner} is beyond {name}")
-    for wall in robot.get("boundary", []):
-        if wall.get("used", True) and _gap(robot, wall, content) != (0, True):
-            waves = _waves(robot, wall, content)
-            for cell, tree in zip(cells, content["proof"][wall["name"]], strict=True):
-                if not _covers(robot, waves, cell, tree):
-                    raise ValueError(f"{wall['name']}: not proved")
-
-
-def _refute(robot: Table, content: Table, cells: Sequence[Any]) -> None:
-    weights = [_exact(w) for w in content["weights"]]
-    if min(weights) < 0 or sum(weights) != 1:
-        raise ValueError("no weights")
-    columns = zip(*cells[content["cell"]], strict=True)
-    q = [sum(x * w for x, w in zip(column, weights, strict=True)) for column in columns]
-    walls = {w["name"]: w for w in robot.get("boundary", []) if w.get("used", True)}
-    if content["boundary"] in walls:
-        value = _value(robot, walls[content["boundary"]], content)
-        violated = value([x * u for x, u in zip(q, _units(robot), strict=True)]) < 0
+def _verified(text: str | bytes) -> Verdict:
+    content = read_certificate(text)
+    cells = _exact_cells(content)
+    if content.witness is not None:
+        _check_witness(content, cells, content.witness)
     else:
-        violated = dict(_limits(robot, q))[content["boundary"]] < 0
-    if not violated:
-        raise ValueError("the witness violates nothing")
+        _check_proof(content, cells)
+    return content.verdict
 
 
-# --- numbers, kinematics --------------------------------------------------------------------------
+def _exact_cells(content: Content) -> list[Cell]:
+    """Return the cells of the set with Arb's rationals, which are faster than Python's."""
+    cells = cells_of(content.statement, content.grammar)
+    rows = [[tuple(map(exact, corner)) for corner in cell.corners] for cell in cells]
+    if isinstance(cells[0], Box):
+        return [Box(*rows[0])]
+    return [Simplex(tuple(row)) for row in rows]
 
 
-def _exact(decimal: Any) -> Any:
-    """Read a decimal as a fraction."""
-    from flint import fmpq
-
-    if not isinstance(decimal, str | int) or set(str(decimal)) - set("+-.0123456789_eE"):
-        raise ValueError(f"{decimal}: wanted a decimal as text")
-    digits, _, exponent = str(decimal).lower().replace("_", "").partition("e")
-    whole, _, decimals = digits.partition(".")
-    power = int(exponent or 0) - len(decimals)
-    if abs(power) > 200:
-        raise ValueError(f"{decimal}: too large or too small")
-    return fmpq(int(whole + decimals)) * fmpq(10) ** power
+# --- the proof ------------------------------------------------------------------------------------
 
 
-def _units(robot: Table) -> list[Any]:
-    from flint import arb
+class _Work:
+    """What a check has cost, in products; it stops where the cost is too high."""
 
-    angle = arb.pi() / 180 if robot["angle_unit"] == "deg" else arb(1)
-    return [angle if joint["type"] == "revolute" else arb(1) for joint in robot["joint"]]
+    def __init__(self) -> None:
+        self.done = 0
 
-
-def _limits(robot: Table, q: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-    for joint, x in zip(robot["joint"], q, strict=True):
-        if "limits" in joint:
-            yield f"{joint['name']}.lower", x - _exact(joint["limits"][0])
-            yield f"{joint['name']}.upper", _exact(joint["limits"][1]) - x
+    def add(self, count: int) -> None:
+        self.done += count
+        if self.done > MOST_WORK:
+            refuse("it asks for too much work")
 
 
-def _gap(robot: Table, wall: Table, content: Table) -> tuple[Any, bool]:
-    """Return the distance asked for (of a wall its offset), and whether it is of a pair."""
-    pair = wall["type"] == "pair"
-    names = wall["points"] if pair else [wall["point"]]
-    radii = [_exact(p.get("radius", 0)) for p in robot["point"] if p["name"] in names]
-    own = wall.get("clearance", 0) if pair else wall["offset"]
-    return sum(radii, _exact(own) + _exact(content["statement"]["margin"])), pair
+def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
+    robot, margin, work = content.robot, content.statement.margin, _Work()
+    for point in content.statement.points:
+        beyond = _beyond_limits(robot, [exact(x) for x in point])
+        if beyond:
+            refuse(f"a point of the set is beyond {shown(beyond[0])}")
+    needed = [b for b in robot.boundaries if b.used and _can_be_violated(b, margin)]
+    if {boundary.name for boundary in needed} != set(content.proof):
+        refuse("the boundaries of the proof are not those that need one")
+    reach = reach_of(robot, content.statement.points)
+    work.add(sum(WAVES_WORK * 3 ** len(joints_of(boundary)) for boundary in needed))
+    for boundary in needed:
+        trees = content.proof[boundary.name]
+        if len(trees) != len(cells):
+            refuse(f"{shown(boundary.name)}: {len(trees)} trees for {len(cells)} cells")
+        waves = waves_of(robot, boundary, margin, reach)
+        leaf = _Leaf(robot, waves, work)
+        for cell, tree in zip(cells, trees, strict=True):
+            if not _covers(leaf, cell, tree, work):
+                refuse(f"{shown(boundary.name)}: not proved on every leaf")
 
 
-def _value(robot: Table, wall: Table, content: Table) -> Callable[[Sequence[Any]], Any]:
-    """Return the boundary function of joint values (rad, length) as balls."""
-    points = {p["name"]: p for p in robot["point"]}
-    frames = [robot["joint"][0]["parent"], *(joint["frame"] for joint in robot["joint"])]
-    gap, pair = _gap(robot, wall, content)
-
-    def place(name: str, q: Sequence[Any]) -> Any:
-        depth = frames.index(points[name]["frame"])
-        matrix = _translation([_exact(x) for x in points[name]["at"]])
-        for joint, x in reversed(list(zip(robot["joint"], q, strict=True))[:depth]):
-            matrix = _joint(joint, x, robot["angle_unit"]) * matrix
-        return [matrix[i, 3] for i in range(3)]
-
-    def beta(q: Sequence[Any]) -> Any:
-        if pair:
-            a, b = (place(name, q) for name in wall["points"])
-            return sum((x - y) ** 2 for x, y in zip(a, b, strict=True)) - gap * gap
-        n = _direction(wall["normal"])
-        return sum(x * y for x, y in zip(n, place(wall["point"], q), strict=True)) - gap
-
-    return beta
+def _can_be_violated(boundary: Boundary, margin: Any) -> bool:
+    return boundary.normal is not None or boundary.least + margin != 0
 
 
-def _direction(values: Sequence[Any]) -> list[Any]:
-    from flint import arb
-
-    exact = [_exact(x) for x in values]
-    length = arb(sum(x * x for x in exact)).sqrt()
-    return [x / length for x in exact]
-
-
-def _translation(by: Sequence[Any]) -> Any:
-    from flint import arb_mat
-
-    x, y, z = by
-    return arb_mat([[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]])
-
-
-def _rotation(axis: Sequence[Any], angle: Any) -> Any:
-    """I + sin K + (1 - cos) K^2, with K the matrix of the cross product."""
-    from flint import arb, arb_mat
-
-    x, y, z = axis
-    k = arb_mat([[0, -z, y, 0], [z, 0, -x, 0], [-y, x, 0, 0], [0, 0, 0, 0]])
-    one = arb_mat([[int(i == j) for j in range(4)] for i in range(4)])
-    angle = arb(angle)
-    return one + k * angle.sin() + k * k * (1 - angle.cos())
-
-
-def _joint(joint: Table, q: Any, unit: str) -> Any:
-    from flint import arb
-
-    radian = arb.pi() / 180 if unit == "deg" else arb(1)
-    matrix = _translation([_exact(x) for x in joint["origin"]])
-    for letter, angle in zip("zyx", reversed(joint.get("rpy", [0, 0, 0])), strict=True):
-        fixed = [arb(int(other == letter)) for other in "xyz"]
-        matrix = matrix * _rotation(fixed, _exact(angle) * radian)
-    axis = _direction(joint["axis"])
-    if joint["type"] == "revolute":
-        return matrix * _rotation(axis, q)
-    return matrix * _translation([q * x for x in axis])
-
-
-# --- waves ----------------------------------------------------------------------------------------
-
-
-def _waves(robot: Table, wall: Table, content: Table) -> list[Wave]:
-    """Interpolate: values at 0, 1/3, 2/3 of a turn, or at slides of 0, 1, -1, determine a form."""
-    from flint import acb, arb
-
-    beta, n = _value(robot, wall, content), len(robot["joint"])
-    kinds = [joint["type"] == "revolute" for joint in robot["joint"]]
-    third = 2 * arb.pi() / 3
-    nodes = [[0 * third, third, 2 * third] if r else [arb(0), arb(1), arb(-1)] for r in kinds]
-    grid = itertools.product(range(3), repeat=n)
-    values = {k: acb(beta([nodes[j][k[j]] for j in range(n)])) for k in grid}
-    root = (acb(0, 1) * third).exp()
-    fourier = [[root ** (-w * k) / 3 for k in range(3)] for w in (0, 1, -1)]
-    half = acb(1) / 2
-    powers = [[acb(1), acb(0), acb(0)], [acb(0), half, -half], [acb(-1), half, half]]
-    for j, turning in enumerate(kinds):
-        weights = fourier if turning else powers
-        values = {
-            k: sum((weights[k[j]][i] * values[(*k[:j], i, *k[j + 1 :])] for i in range(3)), acb(0))
-            for k in values
-        }
-    waves = []
-    for k, a in values.items():
-        turns = tuple((0, 1, -1)[x] if turning else 0 for x, turning in zip(k, kinds, strict=True))
-        slides = tuple(0 if turning else x for x, turning in zip(k, kinds, strict=True))
-        if turns >= (0,) * n:  # the other half are mirror images
-            waves.append(Wave(2 * a if any(turns) else a, turns, slides))
-    return waves
-
-
-# --- cells ----------------------------------------------------------------------------------------
-
-
-def _cells(statement: Table) -> list[list[tuple[Any, ...]]]:
-    """Return the simplices of the set."""
-    loops = [[tuple(_exact(x) for x in point) for point in loop] for loop in statement["points"]]
-    if min(map(len, loops)) < 2:
-        raise ValueError("a lone point")
-    if statement["set"] == "path":
-        return [[a, b] for loop in loops for a, b in itertools.pairwise(loop)]
-    if statement["set"] == "box":
-        [[low, high]] = loops
-        return _orders(low, high)
-    if statement["set"] != "polygon":
-        raise ValueError("an unknown set")
-    points = list(itertools.chain.from_iterable(loops))
-    flat = [j for j in range(len(points[0])) if len({p[j] for p in points}) > 1]
-    ring: dict[Any, int] = {}
-    for loop in loops:
-        for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
-            ring[a, b] = ring.get((a, b), 0) + 1
-    if any((b, a) in ring for a, b in ring):
-        raise ValueError("a loop goes back along itself")
-    for triangle in statement["triangles"]:
-        a, b, c = (points[i] for i in triangle)
-        (x, y), (u, v) = ([p[j] - a[j] for j in flat] for p in (b, c))
-        if not x * v - y * u > 0:
-            raise ValueError("a triangle is turned over")
-        for edge in ((b, a), (c, b), (a, c)):
-            ring[edge] = ring.get(edge, 0) + 1
-    if any(ring.get((b, a), 0) != count for (a, b), count in ring.items()):
-        raise ValueError("the triangles do not fill the polygon")
-    return [[points[i] for i in triangle] for triangle in statement["triangles"]]
-
-
-def _orders(low: tuple[Any, ...], high: tuple[Any, ...]) -> list[list[tuple[Any, ...]]]:
-    """Cut a box into the simplices along which its joints rise one after the other."""
-    wide = [j for j, (a, b) in enumerate(zip(low, high, strict=True)) if a != b]
-    cells = []
-    for order in itertools.permutations(wide):
-        corner, cell = list(low), [low]
-        for j in order:
-            corner[j] = high[j]
-            cell.append(tuple(corner))
-        cells.append(cell)
-    return cells
-
-
-def _covers(robot: Table, waves: Sequence[Wave], cell: list[Any], tree: str) -> bool:
-    """Tell whether a tree ends in leaves, all of them positive."""
-    todo, units = [cell], _units(robot)
+def _covers(leaf: _Leaf, cell: Cell, tree: str, work: _Work) -> bool:
+    """Tell whether a tree ends with its last leaf, and the form is positive on every leaf."""
+    todo = [(cell, 0)]
+    work.add(CUT_WORK * len(tree))
     for letter in tree:
         if not todo:
-            return False
-        top = todo.pop()
+            refuse("something follows a tree")
+        top, depth = todo.pop()
         if letter == ".":
-            if not _positive(waves, [[x * u for x, u in zip(p, units, strict=True)] for p in top]):
+            if not leaf.is_positive(top):
                 return False
+        elif depth == DEEPEST:
+            refuse(f"more than {DEEPEST} cuts on top of each other")
         else:
-            pairs = list(itertools.combinations(range(len(top)), 2))
-            i, k = pairs["abcdefghijklmnopqrstuvwxyz".index(letter)]
-            middle = tuple((x + y) / 2 for x, y in zip(top[i], top[k], strict=True))
-            todo.append([*top[:i], middle, *top[i + 1 :]])
-            todo.append([*top[:k], middle, *top[k + 1 :]])
-    return not todo
+            first, second = top.halves(ord(letter) - ord("a"))
+            todo += [(second, depth + 1), (first, depth + 1)]
+    if todo:
+        refuse("a tree ends before its last leaf")
+    return True
 
 
-def _positive(waves: Sequence[Wave], corners: Sequence[Sequence[Any]]) -> bool:
-    """Tell whether the concave bound is positive at every corner."""
-    count = len(corners)
-    centre = [sum(column) / count for column in zip(*corners, strict=True)]
-    steps = [[x - m for x, m in zip(corner, centre, strict=True)] for corner in corners]
-    low = [0] * count
-    for wave in waves:
-        bounds = _wave_bounds(wave, centre, steps, corners)
-        low = [total + bound for total, bound in zip(low, bounds, strict=True)]
-    return all(total > 0 for total in low)
+class _Leaf:
+    """One boundary function, to be bounded from below on leaf after leaf."""
+
+    def __init__(self, robot: Robot, waves: Waves, work: _Work) -> None:
+        self.waves, self.work = waves, work
+        self.units = [units(robot)[j] for j in waves.joints]
+
+    def is_positive(self, cell: Cell) -> bool:
+        """Tell whether the concave bound is positive at every corner."""
+        from flint import arb_mat
+
+        waves, joints = self.waves, self.waves.joints
+        steps = [self._scaled(step) for step in cell.steps(joints)]
+        n = len(joints)
+        self.work.add(len(waves.rows) * (n + 6) + len(steps) * n * (n + 1))
+        middle = cell.centre
+        centre = self._scaled([middle[j] for j in joints])
+        value, slope = waves.expanded(centre)
+        if waves.slides:
+            corners = [self._scaled([corner[j] for j in joints]) for corner in cell.corners]
+            value -= waves.bending(corners, steps) / 2
+        for step in steps:
+            d = arb_mat(n, 1, step)
+            bend = sum((x * y for x, y in zip(step, (waves.matrix * d).entries(), strict=True)), 0)
+            if not value + sum((g * x for g, x in zip(slope, step, strict=True)), 0) - bend / 2 > 0:
+                return False
+        return True
+
+    def _scaled(self, values: Sequence[Any]) -> list[Any]:
+        """Turn the file's units into radians and lengths."""
+        return [unit * x for unit, x in zip(self.units, values, strict=True)]
 
 
-def _wave_bounds(
-    wave: Wave, centre: Sequence[Any], steps: Sequence[Sequence[Any]], corners: Sequence[Any]
-) -> list[Any]:
-    """Value, slope and least second derivative of a wave at each corner."""
-    from flint import acb, arb
-
-    j = next((j for j, power in enumerate(wave.powers) if power), None)
-    angle = sum(w * m for w, m in zip(wave.turns, centre, strict=True))
-    z = wave.amplitude * (acb(0, 1) * angle).exp()
-    size, turned = abs(wave.amplitude), [_dot(wave.turns, step) for step in steps]
-    if j is None:
-        return [z.real - z.imag * u - size * u * u / 2 for u in turned]
-    u = _largest(turned)
-    value, slopes = z.real, [-z.imag * t for t in turned]
-    series = (arb(1), u, u * u)
-    for i, power in enumerate(wave.powers):
-        reach, far = _largest([c[i] for c in corners]), _largest([s[i] for s in steps])
-        for _ in range(power):
-            slopes = [d * centre[i] + value * s[i] for d, s in zip(slopes, steps, strict=True)]
-            value = value * centre[i]
-            a, b, c = series
-            series = (a * reach, b * reach + a * far, c * reach + 2 * b * far)
-    lone = not any(wave.turns) and sum(wave.powers) == max(wave.powers) == 2
-    bend = arb(0) if lone and wave.amplitude.real > 0 else size * series[2] / 2
-    return [value + slope - bend for slope in slopes]
+# --- the witness ----------------------------------------------------------------------------------
 
 
-def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
-    return sum(x * y for x, y in zip(u, v, strict=True))
+def _beyond_limits(robot: Robot, point: Sequence[Any]) -> list[str]:
+    """Return the names of all limits that a configuration is beyond: exact."""
+    found = []
+    for joint, x in zip(robot.joints, point, strict=True):
+        if joint.limits is not None:
+            low, high = map(exact, joint.limits)
+            found += [f"{joint.name}.lower"] * (x < low) + [f"{joint.name}.upper"] * (x > high)
+    return found
 
 
-def _largest(values: Sequence[Any]) -> Any:
-    from flint import arb
+def _check_witness(content: Content, cells: Sequence[Cell], witness: Witness) -> None:
+    from flint import ctx
 
-    return arb(max(abs(arb(x)).upper() for x in values))
+    point, robot = _place(cells, witness), content.robot
+    if witness.boundary in _beyond_limits(robot, point):
+        return
+    for boundary in robot.boundaries:
+        if boundary.name == witness.boundary and boundary.used:
+            with ctx.workprec(WITNESS_BITS):
+                if boundary_value(robot, boundary, content.statement.margin, point) < 0:
+                    return
+    refuse("the witness violates nothing")
+
+
+def _place(cells: Sequence[Cell], witness: Witness) -> tuple[Any, ...]:
+    """Return the configuration that a witness names; it lies in the set."""
+    if witness.at is not None:
+        low, high = cells[0].corners
+        place = tuple(map(exact, witness.at))
+        if any(not a <= x <= b for a, x, b in zip(low, place, high, strict=True)):
+            refuse("the witness is not in the box")
+        return place
+    if witness.cell >= len(cells):
+        refuse(f"there is no cell {witness.cell}")
+    corners, weights = cells[witness.cell].corners, [exact(w) for w in witness.weights]
+    if len(weights) != len(corners) or min(weights) < 0 or sum(weights) != 1:
+        refuse("the weights are not those of a mean of the corners of a cell")
+    return tuple(
+        sum(x * w for x, w in zip(column, weights, strict=True))
+        for column in zip(*corners, strict=True)
+    )

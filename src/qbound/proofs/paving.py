@@ -7,6 +7,8 @@ and undecided cells); the undecided volume is measured. Any number of joints.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -130,7 +132,12 @@ class Paving:
         return int(ends[0]) - 1, int(ends[1])
 
 
-def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Paving:
+def pave(
+    problem: ExactProblem,
+    tolerance: float,
+    most: int = MOST_CELLS,
+    tell: Callable[[float], None] = lambda part: None,
+) -> Paving:
     """Halve undecided cells until they fill no more than a part of the range.
 
     Parameters
@@ -141,6 +148,8 @@ def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Pav
         Largest undecided part of the range.
     most : int
         Undecided cells at which to stop early; `Paving.undecided_fraction` tells.
+    tell : callable
+        Told how far it is, from 0 to 1: by the undecided fraction, which falls as a power.
 
     Raises
     ------
@@ -164,6 +173,9 @@ def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Pav
         if paving.level >= DEEPEST:
             break
         paving = paving.refined()
+        left = math.log(max(tolerance, float(paving.undecided_fraction)))
+        tell(left / math.log(tolerance) if tolerance < 1 else 1.0)
+    tell(1.0)
     return paving
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from qbound.check import number
 from qbound.model.robot import Robot
+from qbound.proofs.grammar import DECIMAL
 from qbound.proofs.statements import Point, decimal, units
 from qbound.units import file_units, parse_joint_value
 
@@ -24,6 +24,8 @@ def read_points(robot: Robot, file: str) -> list[Point]:
             rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
     except UnicodeDecodeError:
         raise ValueError(f"{file}: not UTF-8 text") from None
+    except csv.Error as error:  # a cell of more than 128 kB, say
+        raise ValueError(f"{file}: no table of joint values: {error}") from None
     names = [joint.name for joint in robot.joints]
     if rows and [cell.strip() for cell in rows[0][1]] == names:
         del rows[0]
@@ -35,11 +37,10 @@ def read_points(robot: Robot, file: str) -> list[Point]:
 
 def as_decimal(where: str, text: str) -> str:
     """Return a decimal as it is written; `where` begins the sentence of the error."""
-    try:
-        number(text.strip())
-    except ValueError:
-        raise ValueError(f"{where}: {text!r} is no decimal number") from None
-    return text.strip()
+    plain = text.strip().removeprefix("+")
+    if not DECIMAL.fullmatch(plain):
+        raise ValueError(f"{where}: {text!r} is no decimal number")
+    return plain
 
 
 def joint_decimal(robot: Robot, j: int, text: str) -> str:
@@ -48,9 +49,8 @@ def joint_decimal(robot: Robot, j: int, text: str) -> str:
     As it is written if it is in that unit, else converted and rounded.
     """
     value = parse_joint_value(robot, j, text)
-    plain = text.strip().removesuffix(file_units(robot)[j])
-    converted = plain.endswith(("deg", "rad"))
-    return decimal(value / units(robot)[j]) if converted else plain
+    plain = text.strip().removeprefix("+").removesuffix(file_units(robot)[j])
+    return plain if DECIMAL.fullmatch(plain) else decimal(value / units(robot)[j])
 
 
 def limits_as_decimals(robot: Robot, j: int) -> tuple[str, str] | None:

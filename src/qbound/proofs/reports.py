@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterator
+from textwrap import wrap
 from typing import Any
 
 from qbound.boundary.evaluator import limit_names
@@ -15,6 +18,9 @@ from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
 from qbound.units import file_units
+
+WIDEST = 100
+"""Letters of a line that is read on a terminal."""
 
 
 def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
@@ -36,12 +42,21 @@ def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
     }
 
 
-def paving_lines(paving: Paving) -> Iterator[str]:
+def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
     """Say in sentences what a paving encloses."""
     inner, outer = paving.bracket
-    yield f"volume between {below(inner):.9g} and {above(outer):.9g}"
+    unit = _volume_unit(robot, paving)
+    yield f"volume between {below(inner):.9g} {unit} and {above(outer):.9g} {unit}"
     yield f"{100 * float(paving.undecided_fraction):.3g} % of the range is undecided"
     yield ", ".join(f"{sum(map(len, cells))} cells {w}" for w, cells in _groups(paving).items())
+
+
+def _volume_unit(robot: Robot, paving: Paving) -> str:
+    """Write the product of the joints' units, such as rad^2 cm."""
+    units = Counter(
+        "rad" if kind == "revolute" else robot.length_unit for kind in paving.problem.kinds
+    )
+    return " ".join(unit if n == 1 else f"{unit}^{n}" for unit, n in units.items())
 
 
 def _groups(paving: Paving) -> dict[str, tuple[Any, ...]]:
@@ -90,6 +105,14 @@ def _separating_cells(found: Connection, pose: list[float]) -> list[dict[str, An
         for lows, highs in places
         for low, high in zip(lows, highs, strict=True)
     ]
+
+
+def folded(text: str) -> Iterator[str]:
+    """Break the lines of a checker's answer where they are long, between words or points."""
+    for line in text.splitlines():
+        whole = re.sub(r", (?=[^()]*\))", ",\u00a0", line)  # a point is not broken
+        rows = wrap(whole, WIDEST, subsequent_indent="  ", break_long_words=False)
+        yield from (row.replace("\u00a0", " ") for row in rows)
 
 
 def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:

@@ -1,12 +1,12 @@
 """What a certificate is about: sets of configurations, in the exact decimals that are written out.
 
-A statement is the JSON of `qbound/certificate/1`: lists of points, every joint value a decimal in
+A statement is what a certificate writes of it: lists of points, every joint value a decimal in
 the robot file's own unit of angle or length, the inside of a polygon on the left of its loops.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound import check
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
+from qbound.proofs import grammar, unrolled
+from qbound.proofs.cells import check_polygon
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
 from qbound.region.loops import behind
@@ -92,9 +93,11 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     i, j = free
     places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
-    triangles = [list(triangle) for triangle in triangulate(places)]
+    triangulated = triangulate(places)
+    triangles = [list(triangle) for triangle in triangulated]
     statement = {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
-    check.read_cells(statement)  # exact: the triangles tile the polygon
+    corners = tuple(tuple(tuple(point) for point in loop) for loop in rows)
+    check_polygon(grammar.Statement("polygon", Fraction(0), corners, tuple(triangulated)))
     return statement
 
 
@@ -134,7 +137,13 @@ def home_polygon(
 
 def home_vertices(robot: Robot, held: Mapping[int, float] | None = None) -> Floats:
     """Return the vertices of the home component's outline, shape (m, 2)."""
-    loops = [_corners(loop) for loop in _home(robot, held).loops]
+    component = _home(robot, held)
+    if any(component.wraps):
+        raise ValueError(
+            "the home component goes all the way round a joint: it has no polygon to scale;"
+            " ask for the region but for an inset, or for a box"
+        )
+    loops = [_corners(loop) for loop in component.loops]
     corners = max(loops, key=lambda loop: polygon.area(loop) if len(loop) > 2 else 0)
     if len(corners) < 3:
         raise ValueError(f"the home component has {len(corners)} vertices, which make no polygon")
@@ -177,17 +186,62 @@ def inner_polygon(
     Raises
     ------
     ValueError
-        As `home_polygon`; also if the component goes all the way round a joint.
+        If the home pose is in no component.
+
+    Notes
+    -----
+    A component that goes all the way round a joint is cut open half a turn away from home; its
+    polygon reaches from one side of the cut to the other, a full turn on.
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
     _check_inset(robot, inset, held)
     component = _home(with_extra_clearance(robot, inset), held)
     loops = [_thinned(loop, per_arc) for loop in component.loops]
-    return filled(
-        [_distinct(_within_limits(robot, robot.with_held(loop, held or {}))) for loop in loops],
-        margin,
+    polygons = [loops] if not any(component.wraps) else _cut_open(robot, component, loops, held)
+    return _united(
+        filled([_decimals(robot, loop, held) for loop in polygon], margin) for polygon in polygons
     )
+
+
+def _decimals(robot: Robot, loop: Floats, held: Mapping[int, float] | None) -> list[Point]:
+    """Write the corners of a loop of two joints in decimals, with the joints that are held."""
+    return _distinct(_within_limits(robot, robot.with_held(loop, held or {})))
+
+
+def _cut_open(
+    robot: Robot, component: Component, loops: Sequence[Floats], held: Mapping[int, float] | None
+) -> list[list[Floats]]:
+    """Cut a component that goes round a joint half a turn away from home: polygons, rad."""
+    free = robot.free(held or {})
+    scale, joints = units(robot)[free], [robot.joints[j] for j in free]
+    turn = unrolled.turn_of(robot.angle_unit == "deg")
+    turns = [turn if joint.turns and joint.limits is None else None for joint in joints]
+    rows = [
+        unrolled.Loop(points / scale, _winding(arcs))
+        for points, arcs in zip(loops, component.loops, strict=True)
+    ]
+    cut = np.round(robot.home[free] / scale, 6) - turn / 2
+    area = component.area / float(scale.prod())
+    polygons = unrolled.cut_open(rows, turns, np.round(cut, DIGITS), area)
+    return [[ring * scale for ring in polygon] for polygon in polygons]
+
+
+def _winding(loop: Sequence[Any]) -> NDArray[np.int64]:
+    """Return how often a loop of arcs goes round each joint."""
+    way = loop[-1].points[-1] - loop[0].points[0]
+    return np.asarray(np.round(way / (2 * np.pi)), dtype=np.int64)
+
+
+def _united(parts: Iterable[Statement]) -> Statement:
+    """State several polygons as one: their points one after the other."""
+    first, *others = parts
+    whole = {**first, "points": [*first["points"]], "triangles": [*first["triangles"]]}
+    for other in others:
+        before = sum(map(len, whole["points"]))
+        whole["triangles"] += [[k + before for k in triangle] for triangle in other["triangles"]]
+        whole["points"] += other["points"]
+    return whole
 
 
 def with_extra_clearance(robot: Robot, length: float) -> Robot:
@@ -205,8 +259,6 @@ def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
     component = find_region(robot, held).home
     if component is None:
         raise ValueError("the home pose is in no component: there is no region to certify")
-    if any(component.wraps):
-        raise ValueError("the home component goes all the way round a joint: state a box instead")
     return component
 
 

@@ -13,15 +13,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound import check
 from qbound.boundary.functions import clearance, margin_of
+from qbound.extras import require
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.statements import Statement, units, wider
+from qbound.proofs import grammar_robot as exact
+from qbound.proofs.cells import Box, Cell
+from qbound.proofs.statements import Statement, decimal, units, wider
 
 Floats = NDArray[np.float64]
 Evidence = dict[str, Any]
-"""The boundary, the cell and the weights of its corners, as a certificate writes them."""
+"""The boundary, and the place: as a certificate writes them."""
 
 SIDES = ("lower", "upper")
 
@@ -38,26 +40,30 @@ class Witness:
     depth: float
 
 
-def beyond_limits(text: str, cells: Sequence[Any]) -> Evidence | None:
+def beyond_limits(
+    robot: exact.Robot, statement: Statement, cells: Sequence[Cell]
+) -> Evidence | None:
     """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
     depths = [
-        (sign * (check.number(end) - q[j]), f"{joint['name']}.{side}", i, k)
-        for j, joint in enumerate(check.Robot(text).joints)
-        for side, sign, end in zip(SIDES, (1, -1), joint.get("limits", ()), strict=False)
+        (sign * (end - q[j]), f"{joint.name}.{side}", i, k)
+        for j, joint in enumerate(robot.joints)
+        for side, sign, end in zip(SIDES, (1, -1), joint.limits or (), strict=False)
         for i, cell in enumerate(cells)
-        for k, q in enumerate(cell)
+        for k, q in enumerate(cell.corners)
     ]
     depth, name, i, k = max(depths, key=lambda row: row[0], default=(Fraction(0), "", 0, 0))
     if depth <= 0:
         return None
-    weights = ["1" if c == k else "0" for c in range(len(cells[i]))]
+    if isinstance(cells[i], Box):
+        return {"boundary": name, "at": statement["points"][0][k]}
+    weights = ["1" if c == k else "0" for c in range(len(cells[i].corners))]
     return {"boundary": name, "cell": i, "weights": weights}
 
 
 def deepest(
     robot: Robot,
     statement: Statement,
-    cells: Sequence[Any],
+    cells: Sequence[Cell],
     violated: Mapping[str, tuple[int, Floats]],
 ) -> Evidence:
     """Follow each violated boundary to where it is violated most, and return the deepest.
@@ -67,32 +73,58 @@ def deepest(
     violated : mapping of str to (int, ndarray)
         A cell, and a configuration in it (rad or length) that violates the boundary.
     """
-    corners = np.array(cells, dtype=float) * units(robot)
-    asked, found = wider(robot, statement), []
+    asked, scale = wider(robot, statement), units(robot)
+    corners = np.array([cell.corners for cell in cells], dtype=float) * scale
+    found = []
     for name, (start, q) in violated.items():
         form = clearance(asked, asked.boundary(name))
-        cell, weights = _lowest(form, corners, start, q)
-        value = float(form(weights @ corners[cell]))
-        found.append((_depth(asked, name, value), name, cell, weights))
-    _, name, cell, weights = max(found, key=lambda row: row[0])
-    return {"boundary": name, "cell": cell, "weights": _decimals(weights)}
+        if isinstance(cells[0], Box):
+            lowest = _lowest_in_box(form, corners[0, 0], corners[0, 1], q)
+            place: Evidence = {"at": _within(statement["points"][0], lowest / scale)}
+        else:
+            cell, weights = _lowest(form, corners, start, q)
+            lowest = weights @ corners[cell]
+            place = {"cell": cell, "weights": _decimals(weights)}
+        found.append((_depth(asked, name, float(form(lowest))), {"boundary": name, **place}))
+    return max(found, key=lambda row: row[0])[1]
 
 
 def witness(
-    robot: Robot, statement: Statement, cells: Sequence[Any], evidence: Evidence
+    robot: Robot, statement: Statement, cells: Sequence[Cell], evidence: Evidence
 ) -> Witness:
     """Read the configuration and its depth out of what the file says."""
-    corners = np.array(cells[evidence["cell"]], dtype=float)
-    q = np.array(evidence["weights"], dtype=float) @ corners
+    if "at" in evidence:
+        q = np.array(evidence["at"], dtype=float)
+    else:
+        corners = np.array(cells[evidence["cell"]].corners, dtype=float)
+        q = np.array(evidence["weights"], dtype=float) @ corners
     name, asked = evidence["boundary"], wider(robot, statement)
     if any(boundary.name == name for boundary in asked.boundaries):
         form = clearance(asked, asked.boundary(name))
-        return Witness(name, tuple(q), _depth(asked, name, float(form(q * units(robot)))))
+        return Witness(name, tuple(q.tolist()), _depth(asked, name, float(form(q * units(robot)))))
     joint, _, side = name.rpartition(".")
     j = [other.name for other in robot.joints].index(joint)
     limits = robot.joints[j].limits or (q[j], q[j])
     end = limits[side == "upper"] / units(robot)[j]
-    return Witness(name, tuple(q), abs(float(q[j] - end)))
+    return Witness(name, tuple(q.tolist()), abs(float(q[j] - end)))
+
+
+def _lowest_in_box(form: HarmonicForm, low: Floats, high: Floats, q: Floats) -> Floats:
+    """Return the configuration of a box where a form is lowest, by a descent from two places."""
+    require("scipy")
+    from scipy.optimize import minimize
+
+    bounds, found = list(zip(low, high, strict=True)), [q]
+    for start in (q, (low + high) / 2):
+        end = minimize(form, start, jac=form.gradient, bounds=bounds, method="L-BFGS-B").x
+        found.append(np.clip(end, low, high))
+    return min(found, key=lambda place: float(form(place)))
+
+
+def _within(ends: Sequence[Sequence[str]], q: Floats) -> list[str]:
+    """Write a configuration in decimals that lie within a box, whose ends are decimals."""
+    rows = zip(map(float, q), *ends, strict=True)
+    return [sorted((decimal(x), low, high), key=Fraction)[1] for x, low, high in rows]
 
 
 def _depth(robot: Robot, name: str, value: float) -> float:

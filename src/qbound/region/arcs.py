@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.printable import printable
 from qbound.region.decomposition import Plane, Root
 from qbound.tolerances import QUADRATURE, SAME_POINT
 
@@ -109,7 +110,7 @@ class Arc:
         """Say in a line what it is part of and where it runs."""
         branch = "" if self.branch is None else f" ({self.branch:+d})"
         start, end = (", ".join(f"{x:.6g}" for x in q) for q in (self.start, self.end))
-        return f"<Arc of {self.boundary}{branch} from ({start}) to ({end})>"
+        return printable(f"<Arc of {self.boundary}{branch} from ({start}) to ({end})>")
 
     @property
     def start(self) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, nearest_turn
+from qbound.printable import printable
 from qbound.region.arcs import NODES, Arc, legendre, ordered
 from qbound.region.cells import CellComplex, Placed
 from qbound.region.loops import Windings, behind
@@ -29,7 +30,7 @@ class Vertex:
     def __repr__(self) -> str:
         """Say in a line where it is and what meets there."""
         place = ", ".join(f"{x:.6g}" for x in self.q)
-        return f"<Vertex of {' and '.join(self.boundaries)} at ({place})>"
+        return printable(f"<Vertex of {' and '.join(self.boundaries)} at ({place})>")
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,6 +40,9 @@ Range = tuple[float, float] | None
 
 PROBES = np.array([0.29, 0.5, 0.77])
 
+BLOCK = 2**14
+"""Polynomials that are solved at once: fast enough, small enough for any memory."""
+
 
 class Root(NamedTuple):
     """A root of one form along the lift, as a function of the base within a slab.
@@ -322,8 +325,12 @@ def _times(p: Complexes, q: Complexes) -> Complexes:
 
 
 def _roots_in_range(events: Sequence[Complexes], plane: Plane) -> Floats:
-    """Return the real base values at which any of the polynomials vanishes."""
-    found = [_base_values(stack, plane) for stack in events if len(stack)]
+    """Return the real base values at which any of the polynomials vanishes.
+
+    A block at a time: of thousands of boundaries there are millions of pairs.
+    """
+    blocks = (s[k : k + BLOCK] for s in events for k in range(0, len(s), BLOCK))
+    found = [_base_values(block, plane) for block in blocks]
     return np.concatenate([np.zeros(0), *found])
 
 

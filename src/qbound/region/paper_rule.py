@@ -20,6 +20,7 @@ from qbound.forms.angles import TURN, first_from
 from qbound.forms.circle import circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
+from qbound.printable import printable
 from qbound.region.problem import Problem, state
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -127,7 +128,8 @@ def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
     joints = vector.joints()
     if len(joints) != 1 or robot.kinds[joints[0]] != "revolute":
         raise ValueError(
-            f"{pair.name}: the paper's rule needs one joint between its points, and a revolute one"
+            f"{printable(pair.name)}: the paper's rule needs one joint between its points, "
+            "and a revolute one"
         )
     (joint,) = joints
     rounding = ZERO_AMPLITUDE * np.abs(vector.coefficients).max()
@@ -160,5 +162,7 @@ def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
     for boundary in used:
         if not isinstance(boundary, Pair | HalfSpace):
             found = type(boundary).__name__
-            raise ValueError(f"{boundary.name}: the paper's rule has no bounds for a {found}")
+            raise ValueError(
+                f"{printable(boundary.name)}: the paper's rule has no bounds for a {found}"
+            )
     return [boundary for boundary in used if isinstance(boundary, kind)]

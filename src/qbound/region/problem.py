@@ -23,6 +23,7 @@ from qbound.boundary.evaluator import (
 )
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Held, Robot
+from qbound.printable import printable
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
@@ -66,8 +67,8 @@ class Problem:
 
     def __repr__(self) -> str:
         """Say in a line whose joints these are, and by which rule."""
-        of = "" if self.robot is None else f" of {self.robot.name}"
-        joints, count = ", ".join(self.joint_names), len(self.names)
+        of = "" if self.robot is None else f" of {printable(self.robot.name)}"
+        joints, count = printable(", ".join(self.joint_names)), len(self.names)
         return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
 
     @cached_property
@@ -157,7 +158,8 @@ def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
     if len(free) != 2:
         names = ", ".join(joint.name for joint in robot.joints)
         raise ValueError(
-            f"a region has two joints; {robot.name} has {len(free)} that are not held (of {names}):"
+            f"a region has two joints; {printable(robot.name)} has {len(free)} that are not held"
+            f" (of {printable(names)}):"
             " hold all but two, with held={name: value} or with --slice"
         )
     return free[0], free[1]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Held, Robot
+from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
@@ -72,7 +73,7 @@ class Region:
     def __repr__(self) -> str:
         """Say in a line what was found."""
         robot = self.problem.robot
-        of = f" of {robot.name}" if robot is not None else ""
+        of = f" of {printable(robot.name)}" if robot is not None else ""
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
         home = "with home" if self.home is not None else "home in none"
         return f"<Region{of}: {count}, {home}, area {self.area:.6g} {self.area_unit}>"

@@ -23,6 +23,7 @@ from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import FACTORS, Kind, basis
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
+from qbound.printable import printable
 from qbound.tolerances import NEGLIGIBLE, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
@@ -170,7 +171,7 @@ def planar_arm(robot: Robot, held: Mapping[int, float] | None = None) -> PlanarA
     held = held or {}
     free = len(robot.joints) - len(held)
     if free != 2:
-        raise ValueError(f"{robot.name} has {free} joints that are not held, not two")
+        raise ValueError(f"{printable(robot.name)} has {free} joints that are not held, not two")
     r = position(robot, robot.tool).restrict(held)
     axes = _plane(r)
     tool = r.dot(axes)

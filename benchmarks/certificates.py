@@ -1,0 +1,70 @@
+"""How long a proof takes, and its check: boxes about home of an arm of six joints.
+
+Run with ``python benchmarks/certificates.py``. Wall time of one run each; the arm and its boxes are
+those of the tests.
+"""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+
+from qbound import check
+from qbound.model.robotfile import parse_robot
+from qbound.proofs import boxes, check_arb, statements
+from qbound.proofs.certify import certify
+from support.six_joints import around_home, six_joint_arm
+from test_boxes import least_margins
+
+LEFT = (None, 0.01, 0.001)
+"""Metres that every boundary keeps beyond what the box needs; None: the arm as it is."""
+
+
+def arm(half: int, left: float | None) -> str:
+    """Return the arm, each boundary moved so near that only `left` remains in the box."""
+    if left is None:
+        return six_joint_arm()
+    robot = parse_robot(tomllib.loads(six_joint_arm()))
+    least = least_margins(robot, *around_home(half), seed=half)
+    return six_joint_arm({name: margin - left for name, margin in least.items()})
+
+
+def seconds(task: Callable[[], Any]) -> tuple[float, Any]:
+    start = perf_counter()
+    answer = task()
+    return perf_counter() - start, answer
+
+
+def longest_edges(text: str, statement: dict[str, Any]) -> int:
+    """Return the cells that halving the longest edge takes."""
+    ours = boxes.BoxBound.worst_joints
+    boxes.BoxBound.worst_joints = lambda self, centres, halves: halves.argmax(axis=1)  # type: ignore[method-assign]
+    try:
+        return certify(text, statement, most=100_000).leaves
+    finally:
+        boxes.BoxBound.worst_joints = ours  # type: ignore[method-assign]
+
+
+def main() -> None:
+    columns = "box / deg, left / m, answer, cells, longest edge, proof / s, check.py / s, Arb / s"
+    print("|", columns.replace(",", " |"), "|")
+    print("|" + " --- |" * len(columns.split(",")))
+    for half in (5, 20):
+        for left in LEFT:
+            text, statement = arm(half, left), statements.box(*around_home(half))
+            proving, answer = seconds(lambda: certify(text, statement))  # noqa: B023
+            checking, _ = seconds(lambda: check.check(answer.text))  # noqa: B023
+            balls, _ = seconds(lambda: check_arb.verify(answer.text))  # noqa: B023
+            row = (f"+-{half}", left or "as it is", answer.verdict, answer.leaves)
+            times = (f"{x:.2f}" for x in (proving, checking, balls))
+            print("|", " | ".join(map(str, (*row, longest_edges(text, statement), *times))), "|")
+
+
+if __name__ == "__main__":
+    main()

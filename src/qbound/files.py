@@ -1,0 +1,89 @@
+"""How is a file written? Whole or not at all; several together or none.
+
+Drafts stand beside their files under names that nobody can guess, and are renamed when all of them
+are complete. A file that is replaced keeps its permissions; a link stays a link, and the file that
+it leads to is written.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+
+from qbound.printable import printable
+
+
+def write_whole(path: str | Path, content: bytes) -> None:
+    """Write a file, complete or not at all; raises as `write_together`."""
+    write_together([(path, content)])
+
+
+def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
+    """Write several files, each complete, or none of them.
+
+    Raises
+    ------
+    ValueError
+        If one cannot be written, and why; the files are then as they were.
+    """
+    named = [(str(path), target(path), content) for path, content in contents]
+    drafts: list[tuple[Path, Path]] = []
+    try:
+        for name, path, content in named:
+            try:
+                drafts.append((draft := path.with_name(f".{secrets.token_hex(8)}.part"), path))
+                _fill(draft, content, path)
+            except OSError as error:
+                reason = error.strerror or error
+                raise ValueError(printable(f"{name}: not written: {reason}")) from None
+        for draft, path in drafts:
+            draft.replace(path)
+    finally:
+        for draft, _ in drafts:
+            draft.unlink(missing_ok=True)
+
+
+def target(path: str | Path) -> Path:
+    """Return the place of a file to be written, all links followed.
+
+    Raises
+    ------
+    ValueError
+        If links lead in a circle, the folder is missing, or the file is none that can be replaced.
+    """
+    try:
+        found = Path(path).resolve()
+        reason = _refusal(found)
+    except (OSError, RuntimeError, ValueError) as error:  # Python 3.11 and 3.12 name the circle so
+        reason = getattr(error, "strerror", None) or str(error)
+    if reason:
+        raise ValueError(printable(f"{path}: {reason}"))
+    return found
+
+
+def _refusal(path: Path) -> str | None:
+    """Say why a file could not be written there; None if it could."""
+    if path.is_symlink():
+        return "links lead in a circle"
+    if not path.parent.is_dir():
+        return f"No such file or directory: {path.parent}"
+    if path.exists() and not path.is_file():
+        return "is no regular file"
+    barred = [place for place in (path, path.parent) if place.exists() and not _writable(place)]
+    return f"no permission to write {barred[0]}" if barred else None
+
+
+def _writable(path: Path) -> bool:
+    return os.access(path, os.W_OK)
+
+
+def _fill(draft: Path, content: bytes, path: Path) -> None:
+    """Make the draft, with the permissions of the file that it replaces, if there is one."""
+    kept = stat.S_IMODE(path.stat().st_mode) if path.exists() else None
+    draft.touch(0o666 if kept is None else 0o600, exist_ok=False)
+    draft.write_bytes(content)
+    if kept is not None:
+        draft.chmod(kept)

@@ -1,0 +1,280 @@
+"""What does the text of a certificate say? Read strictly, for the checker in ball arithmetic.
+
+The grammar is the book's page "The certificate", and this is written from that page: it shares no
+line with `check`. Every key is known, every type, count and size is bounded, and all numbers are
+exact rationals. What is returned was read whole; what is not listed there is refused.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NoReturn
+
+from qbound.proofs.grammar_robot import LARGEST_ANGLE, LARGEST_NUMBER, Robot, read_robot
+from qbound.proofs.grammar_values import items, keys, refuse, shown, text_of
+from qbound.proofs.verdict import Verdict
+
+MOST_BYTES = 2_000_000
+MOST_POINTS = 20_000
+MOST_TRIANGLES = 20_000
+GRAMMAR = 2
+"""What the producers write."""
+
+SCHEMAS = {"qbound/certificate/1": 1, "qbound/certificate/2": 2}
+
+DECIMAL = re.compile(r"-?[0-9]{1,40}([.][0-9]{1,40})?([eE][+-]?[0-9]{1,2})?")
+INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
+TREE = re.compile(r"[a-z.]+")
+HASH = re.compile(r"[0-9a-f]{64}")
+
+Point = tuple[Fraction, ...]
+"""One rational a joint, in the units of the robot file."""
+
+
+@dataclass(frozen=True, eq=False)
+class Statement:
+    """A set of joint values, in the units of the robot file, and the margin beside boundaries.
+
+    Attributes
+    ----------
+    kind : str
+        "box", "path" or "polygon".
+    lists : tuple of tuple of Point
+        Two corners of a box, the lists of a path, the loops of a polygon.
+    triangles : tuple of (int, int, int)
+        Of a polygon: indices into all points, list after list.
+    """
+
+    kind: str
+    margin: Fraction
+    lists: tuple[tuple[Point, ...], ...]
+    triangles: tuple[tuple[int, int, int], ...] = ()
+
+    @property
+    def points(self) -> list[Point]:
+        """All points, list after list."""
+        return [point for points in self.lists for point in points]
+
+
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """What is violated, and where: at a point, or at a mean of the corners of a cell."""
+
+    boundary: str
+    at: Point | None = None
+    cell: int = 0
+    weights: tuple[Fraction, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """A certificate that follows the grammar; nothing in it is proved yet.
+
+    Attributes
+    ----------
+    grammar : int
+        1 or 2.
+    proof : dict of str to tuple of str
+        Trees by the name of the boundary; empty where it is refuted.
+    witness : Witness or None
+    """
+
+    grammar: int
+    verdict: Verdict
+    statement: Statement
+    robot: Robot
+    sha256: str
+    proof: dict[str, tuple[str, ...]]
+    witness: Witness | None
+
+
+def read_certificate(text: str | bytes) -> Content:
+    """Read a certificate, and refuse whatever the grammar does not list.
+
+    Raises
+    ------
+    ValueError
+        A sentence that says where the text departs from the grammar.
+    """
+    data = _json(text)
+    verdict = data.get("verdict") if isinstance(data, dict) else None
+    if verdict not in ("proved", "refuted"):
+        refuse(f"the verdict is {shown(verdict)}: wanted proved or refuted")
+    statement = data.get("statement")
+    kind = statement.get("set") if isinstance(statement, dict) else None
+    schema = text_of(data.get("schema"), "schema")
+    if schema not in SCHEMAS:
+        refuse(f"schema: {shown(schema)} is none of {', '.join(SCHEMAS)}")
+    keys(data, "the file", _keys_of(SCHEMAS[schema], verdict, kind))
+    robot = read_robot(text_of(data["robot"], "robot"))
+    return Content(
+        SCHEMAS[schema],
+        Verdict(verdict),
+        read_statement(statement, robot),
+        robot,
+        _sha256(data),
+        _proof(data["proof"]) if verdict == "proved" else {},
+        _witness(data, robot) if verdict == "refuted" else None,
+    )
+
+
+def _keys_of(grammar: int, verdict: str, kind: Any) -> tuple[str, ...]:
+    """Return the keys that the file has, all of them."""
+    common = ("schema", "verdict", "statement", "robot", "sha256")
+    if verdict == "proved":
+        return (*common, "proof")
+    if grammar == 2 and kind == "box":
+        return (*common, "boundary", "at")
+    return (*common, "boundary", "cell", "weights")
+
+
+def _sha256(data: dict[str, Any]) -> str:
+    sha256 = text_of(data["sha256"], "sha256")
+    if not HASH.fullmatch(sha256):
+        refuse(f"sha256: {shown(sha256)} is no hash")
+    try:
+        text = data["robot"].encode()
+    except UnicodeError:
+        refuse("robot: half a character is no text")
+    if hashlib.sha256(text).hexdigest() != sha256:
+        refuse("the hash is not of this robot")
+    return sha256
+
+
+# --- JSON -----------------------------------------------------------------------------------------
+
+
+def _json(text: str | bytes) -> Any:
+    """Read JSON in which every key stands once and every number is an index."""
+    try:
+        whole = text.encode() if isinstance(text, str) else text
+        plain = whole.decode()
+    except UnicodeError:
+        refuse("it is not UTF-8")
+    if len(whole) > MOST_BYTES:
+        refuse(f"it has more than {MOST_BYTES} bytes")
+    try:
+        data = json.loads(
+            plain,
+            object_pairs_hook=_unique,
+            parse_int=_index,
+            parse_float=_no_number,
+            parse_constant=_no_number,
+        )
+    except json.JSONDecodeError as error:
+        refuse(f"it is no JSON: {error}")
+    except RecursionError:
+        refuse("it is nested too deeply")
+    return data
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        refuse("a key stands twice")
+    return found
+
+
+def _index(text: str) -> int:
+    if not INDEX.fullmatch(text):
+        refuse(f"{shown(text)} is no index")
+    return int(text)
+
+
+def _no_number(text: str) -> NoReturn:
+    refuse(f"{shown(text)}: numbers are written as decimals in quotes")
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def decimal(value: Any, where: str) -> Fraction:
+    """Return a decimal, a JSON string, as a rational."""
+    found = DECIMAL.fullmatch(value) if isinstance(value, str) else None
+    if found is None:
+        refuse(f"{where}: {shown(value)} is no decimal")
+    number = Fraction(found.group())
+    if abs(number) > LARGEST_NUMBER:
+        refuse(f"{where}: {shown(value)} is too large")
+    return number
+
+
+def _point(value: Any, robot: Robot, where: str) -> Point:
+    """Return a configuration, its angles no larger than allowed."""
+    texts = items(value, where, len(robot.joints), len(robot.joints))
+    point = tuple(decimal(text, where) for text in texts)
+    for joint, x in zip(robot.joints, point, strict=True):
+        if joint.turns and abs(x) > LARGEST_ANGLE[robot.degrees]:
+            refuse(f"{where}: an angle of {shown(str(x))} is too large")
+    return point
+
+
+def index(value: Any, where: str, size: int) -> int:
+    """Return an index of one of `size` things."""
+    if type(value) is not int or value >= size:
+        refuse(f"{where}: {shown(value)} is no index of one of {size}")
+    return value
+
+
+# --- statement, proof, witness --------------------------------------------------------------------
+
+
+def read_statement(data: Any, robot: Robot) -> Statement:
+    """Read a set of joint values of a robot, and a margin."""
+    kind = data.get("set") if isinstance(data, dict) else None
+    if kind not in ("box", "path", "polygon"):
+        refuse(f"set: {shown(kind)} is no box, path or polygon")
+    triangles = ("triangles",) if kind == "polygon" else ()
+    keys(data, "statement", ("set", "margin", "points", *triangles))
+    margin = decimal(data["margin"], "margin")
+    if margin < 0:
+        refuse("the margin is negative")
+    lists = _lists(data["points"], kind, robot)
+    count = sum(map(len, lists))
+    if kind == "box" and any(low > high for low, high in zip(*lists[0], strict=True)):
+        refuse("points: the low corner of the box is not below the high one")
+    return Statement(kind, margin, lists, _triangles(data, count) if triangles else ())
+
+
+def _lists(data: Any, kind: str, robot: Robot) -> tuple[tuple[Point, ...], ...]:
+    fewest, most = {"box": (2, 2), "path": (2, MOST_POINTS), "polygon": (3, MOST_POINTS)}[kind]
+    rows = items(data, "points", 1, 1 if kind == "box" else MOST_POINTS)
+    rows = [items(row, "points", fewest, most) for row in rows]
+    if sum(map(len, rows)) > MOST_POINTS:
+        refuse(f"points: more than {MOST_POINTS}")
+    return tuple(tuple(_point(point, robot, "points") for point in row) for row in rows)
+
+
+def _triangles(data: dict[str, Any], count: int) -> tuple[tuple[int, int, int], ...]:
+    found = []
+    for row in items(data["triangles"], "triangles", 1, MOST_TRIANGLES):
+        a, b, c = (index(k, "triangles", count) for k in items(row, "triangles", 3, 3))
+        found.append((a, b, c))
+    return tuple(found)
+
+
+def _proof(data: Any) -> dict[str, tuple[str, ...]]:
+    if not isinstance(data, dict):
+        refuse(f"proof: {shown(data)} is no object")
+    return {name: _trees(name, rows) for name, rows in data.items()}
+
+
+def _trees(name: str, rows: Any) -> tuple[str, ...]:
+    where = f"proof of {shown(name)}"
+    trees = items(rows, where, 1, MOST_BYTES)
+    if not all(isinstance(tree, str) and TREE.fullmatch(tree) for tree in trees):
+        refuse(f"{where}: a tree is written with the letters a to z and points")
+    return tuple(trees)
+
+
+def _witness(data: dict[str, Any], robot: Robot) -> Witness:
+    name = text_of(data["boundary"], "boundary")
+    if "at" in data:
+        return Witness(name, _point(data["at"], robot, "at"))
+    cell = index(data["cell"], "cell", 10**9)
+    weights = items(data["weights"], "weights", 1, len(robot.joints) + 1)
+    return Witness(name, None, cell, tuple(decimal(w, "weights") for w in weights))

@@ -1,0 +1,277 @@
+"""A boundary function as a sum of waves, found from its values alone; for `check_arb`.
+
+Along one joint a boundary function is a cos q + b sin q + c, or a q^2 + b q + c: three values
+determine it. So the values at 0, 1/3 and 2/3 of a turn of each joint that turns, and at 0, 1 and -1
+of each that slides, are enough. Numbers are balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+from itertools import product
+from typing import Any
+
+from qbound.proofs.grammar import Point
+from qbound.proofs.grammar_robot import Boundary, Joint, Robot, Vector
+
+SMALL = 100
+"""Waves that are ``2**-SMALL`` of the largest, or less, are put together into one number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wave:
+    """The real part of `amplitude` times exp(i turns . q), times q_j to the powers."""
+
+    amplitude: Any
+    turns: tuple[int, ...]
+    powers: tuple[int, ...]
+
+
+class Waves:
+    """A boundary function in some of the joints, rad or length.
+
+    Parameters
+    ----------
+    joints : range
+        The joints on which it depends.
+    rows : sequence of Wave
+    rest : arb
+        At least the sum of all that was left out, anywhere in the set.
+    """
+
+    def __init__(self, joints: range, rows: Sequence[Wave], rest: Any) -> None:
+        from flint import arb, arb_mat
+
+        self.joints, self.rows, self.rest = joints, rows, rest
+        self.slides = [wave for wave in rows if any(wave.powers)]
+        n = len(joints)
+        entries = [arb(0)] * (n * n)
+        for wave in rows:
+            if not any(wave.powers):
+                size = abs(wave.amplitude)
+                for i, j in product(range(n), repeat=2):
+                    entries[n * i + j] += size * (wave.turns[i] * wave.turns[j])
+        self.matrix = arb_mat(n, n, entries)
+
+    def expanded(self, q: Sequence[Any]) -> tuple[Any, list[Any]]:
+        """Return a number that is at most the value at q by `rest`, and the gradient there."""
+        from flint import acb, arb
+
+        around = [acb(0, x).exp() for x in q]
+        value, slope = -self.rest, [arb(0) for _ in q]
+        for wave in self.rows:
+            z = wave.amplitude
+            for e, k in zip(around, wave.turns, strict=True):
+                if k:
+                    z = z * (e if k > 0 else e.conjugate())
+            lengths = [x**p for x, p in zip(q, wave.powers, strict=True) if p]
+            length = reduce(lambda a, b: a * b, lengths, arb(1))
+            value += z.real * length
+            for j, (k, p) in enumerate(zip(wave.turns, wave.powers, strict=True)):
+                if k:
+                    slope[j] -= k * z.imag * length
+                elif p:
+                    slope[j] += z.real * self._slope_of_powers(wave.powers, q, j)
+        return value, slope
+
+    @staticmethod
+    def _slope_of_powers(powers: Sequence[int], q: Sequence[Any], j: int) -> Any:
+        """Return the derivative by q_j of the product of powers."""
+        others = [x**p for i, (x, p) in enumerate(zip(q, powers, strict=True)) if p and i != j]
+        own = 1 if powers[j] == 1 else 2 * q[j]
+        return reduce(lambda a, b: a * b, others, own)
+
+    def bending(self, corners: Sequence[Any], steps: Sequence[Any]) -> Any:
+        """Bound minus the second derivative of the waves with slides, by the product rule."""
+        largest = [_largest(column) for column in zip(*corners, strict=True)]
+        farthest = [_largest(column) for column in zip(*steps, strict=True)]
+        total = 0
+        for wave in self.slides:
+            lone = sum(wave.powers) == max(wave.powers) == 2 and not any(wave.turns)
+            if lone and wave.amplitude.real > 0:
+                continue  # it bends upwards
+            u = _largest([sum(k * x for k, x in zip(wave.turns, d, strict=True)) for d in steps])
+            y, slope, bend = 1, u, u * u
+            for q, d, power in zip(largest, farthest, wave.powers, strict=True):
+                for _ in range(power):
+                    y, slope, bend = y * q, slope * q + y * d, bend * q + 2 * slope * d
+            total += abs(wave.amplitude) * bend
+        return total
+
+
+def _largest(values: Sequence[Any]) -> Any:
+    """Return the largest absolute value."""
+    from flint import arb
+
+    return reduce(lambda a, b: a.max(b), (abs(arb(value)) for value in values))
+
+
+def exact(value: Fraction) -> Any:
+    """Return a rational as Arb's."""
+    from flint import fmpq
+
+    return fmpq(value.numerator, value.denominator)
+
+
+def units(robot: Robot) -> list[Any]:
+    """Return radians, or lengths, in one unit of the file, for each joint."""
+    from flint import arb
+
+    angle = arb.pi() / 180 if robot.degrees else arb(1)
+    return [angle if joint.turns else arb(1) for joint in robot.joints]
+
+
+def reach_of(robot: Robot, points: Sequence[Point]) -> list[Any]:
+    """Return the largest length of each joint that slides; 1 of one that turns."""
+    from flint import arb
+
+    columns = zip(*points, strict=True)
+    return [
+        arb(1) if joint.turns else arb(exact(max(map(abs, column))))
+        for joint, column in zip(robot.joints, columns, strict=True)
+    ]
+
+
+# --- kinematics -----------------------------------------------------------------------------------
+
+
+def joints_of(boundary: Boundary) -> range:
+    """Return the joints on which a boundary depends: those between its ends, or below its point."""
+    frames = sorted(place.frame for place in boundary.places)
+    return range(frames[0] if boundary.normal is None else 0, frames[-1])
+
+
+def boundary_value(robot: Robot, boundary: Boundary, margin: Fraction, q: Sequence[Any]) -> Any:
+    """Return a boundary function at a configuration, in the file's units."""
+    joints, scales = joints_of(boundary), units(robot)
+    return _values(robot, boundary, margin, [[scales[j] * q[j]] for j in joints])[0]
+
+
+def _values(robot: Robot, boundary: Boundary, margin: Fraction, nodes: Sequence[Any]) -> list[Any]:
+    """Return a boundary function at all combinations of some values of each of its joints.
+
+    The outer point is carried inwards, joint after joint, to the frame of the inner one, or to the
+    base. The value of the last joint varies first.
+    """
+    from flint import arb_mat
+
+    ends = sorted(boundary.places, key=lambda place: place.frame)
+    seen = arb_mat(4, 1, [*map(exact, ends[-1].at), 1])
+    for j, values in reversed(list(zip(joints_of(boundary), nodes, strict=True))):
+        fixed = _mount(robot, robot.joints[j])
+        parts = [(fixed * _moved(robot.joints[j], value) * seen).tolist() for value in values]
+        seen = arb_mat([[x for part in parts for x in part[row]] for row in range(4)])
+    least = exact(boundary.least + margin)
+    if boundary.normal is not None:
+        normal = _unit(boundary.normal)
+        rows = zip(*seen.tolist()[:3], strict=True)
+        return [_dot(normal, place) - least for place in rows]
+    gaps = [
+        [x - y for x in row]
+        for row, y in zip(seen.tolist()[:3], map(exact, ends[0].at), strict=True)
+    ]
+    return [_dot(gap, gap) - least * least for gap in zip(*gaps, strict=True)]
+
+
+def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    return sum((x * y for x, y in zip(u, v, strict=True)), 0)
+
+
+def _unit(vector: Vector) -> list[Any]:
+    """Give a direction the length 1; its numbers may be far from 1."""
+    from flint import arb
+
+    length = arb(exact(_dot(vector, vector))).sqrt()
+    return [exact(x) / length for x in vector]
+
+
+def _mount(robot: Robot, joint: Joint) -> Any:
+    """Return the frame in which a joint moves, seen from its parent: origin, then Rz Ry Rx."""
+    from flint import arb
+
+    matrix = _shift([exact(x) for x in joint.origin])
+    radian = arb.pi() / 180 if robot.degrees else arb(1)
+    for axis in (2, 1, 0):
+        fixed = [arb(int(axis == k)) for k in range(3)]
+        matrix = matrix * _rotation(fixed, exact(joint.rpy[axis]) * radian)
+    return matrix
+
+
+def _moved(joint: Joint, value: Any) -> Any:
+    axis = _unit(joint.axis)
+    return _rotation(axis, value) if joint.turns else _shift([value * x for x in axis])
+
+
+def _shift(by: Sequence[Any]) -> Any:
+    from flint import arb_mat
+
+    x, y, z = by
+    return arb_mat([[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]])
+
+
+def _rotation(axis: Sequence[Any], angle: Any) -> Any:
+    """I + sin K + (1 - cos) K^2, with K the matrix of the cross product."""
+    from flint import arb, arb_mat
+
+    x, y, z = axis
+    k = arb_mat([[0, -z, y, 0], [z, 0, -x, 0], [-y, x, 0, 0], [0, 0, 0, 0]])
+    one = arb_mat([[int(i == j) for j in range(4)] for i in range(4)])
+    angle = arb(angle)
+    return one + k * angle.sin() + k * k * (1 - angle.cos())
+
+
+# --- from values to waves -------------------------------------------------------------------------
+
+
+def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence[Any]) -> Waves:
+    """Return a boundary function as waves: each amplitude is a sum of weighted values."""
+    from flint import acb, acb_mat, arb
+
+    joints = joints_of(boundary)
+    turning = [robot.joints[j].turns for j in joints]
+    third = 2 * arb.pi() / 3
+    nodes = [[0 * third, third, 2 * third] if r else [arb(0), arb(1), arb(-1)] for r in turning]
+    values = [acb(value) for value in _values(robot, boundary, margin, nodes)]
+    for r in turning:  # each joint in turn comes first, and goes to the end
+        along_first = acb_mat(3, len(values) // 3, values)
+        values = (_weights(r) * along_first).transpose().entries()
+    signs = [(0, 1, -1) if r else (0, 0, 0) for r in turning]
+    powers = [(0, 0, 0) if r else (0, 1, 2) for r in turning]
+    rows = []
+    for turns, lengths, amplitude in zip(product(*signs), product(*powers), values, strict=True):
+        first = next((k for k in turns if k), 0)
+        if first >= 0:  # the other half are mirror images
+            rows.append(Wave(amplitude * (2 if first else 1), turns, lengths))
+    return _gathered(joints, rows, [reach[j] for j in joints])
+
+
+def _weights(turns: bool) -> Any:
+    """Return the matrix from three values to three amplitudes, along one joint."""
+    from flint import acb, acb_mat, fmpq
+
+    if not turns:
+        half = fmpq(1, 2)
+        return acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
+    root = acb(fmpq(2, 3)).exp_pi_i()
+    return acb_mat(3, 3, [root ** (-w * k) / 3 for w in (0, 1, -1) for k in range(3)])
+
+
+def _gathered(joints: range, rows: Sequence[Wave], reach: Sequence[Any]) -> Waves:
+    """Put all waves that are nothing but rounding together into one number."""
+    from flint import arb
+
+    sizes = [
+        reduce(
+            lambda a, b: a * b,
+            (x**p for x, p in zip(reach, wave.powers, strict=True) if p),
+            abs(wave.amplitude),
+        ).upper()
+        for wave in rows
+    ]
+    small = max(sizes) * arb(2) ** -SMALL
+    kept = [wave for wave, size in zip(rows, sizes, strict=True) if size > small]
+    rest = sum((size for size in sizes if not size > small), arb(0))
+    return Waves(joints, kept, rest)
