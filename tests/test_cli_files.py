@@ -378,7 +378,7 @@ def test_several_files_appear_together_or_not_at_all(monkeypatch) -> None:
         return written
 
     monkeypatch.setattr(Path, "write_bytes", fails)
-    with pytest.raises(ValueError, match="second: not written: No space left"):
+    with pytest.raises(OSError, match="second: not written: No space left"):
         write_all([("first", "new"), ("second", "newer")])
     assert files() == {"first"}
     assert Path("first").read_text() == "old"

@@ -26,7 +26,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
 
     Raises
     ------
-    ValueError
+    OSError
         If one cannot be written, and why; the files are then as they were.
     """
     named = [(str(path), target(path), content) for path, content in contents]
@@ -38,7 +38,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
                 _fill(draft, content, path)
             except OSError as error:
                 reason = error.strerror or error
-                raise ValueError(printable(f"{name}: not written: {reason}")) from None
+                raise OSError(printable(f"{name}: not written: {reason}")) from None
         for draft, path in drafts:
             draft.replace(path)
     finally:
@@ -51,7 +51,7 @@ def target(path: str | Path) -> Path:
 
     Raises
     ------
-    ValueError
+    OSError
         If links lead in a circle, the folder is missing, or the file is none that can be replaced.
     """
     try:
@@ -60,7 +60,7 @@ def target(path: str | Path) -> Path:
     except (OSError, RuntimeError, ValueError) as error:  # Python 3.11 and 3.12 name the circle so
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
-        raise ValueError(printable(f"{path}: {reason}"))
+        raise OSError(printable(f"{path}: {reason}"))
     return found
 
 
