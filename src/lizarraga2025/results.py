@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from qbound.files import write_whole
+
 DIGITS = 15
 """Digits that are written, as many as a double holds without its last, noisy one."""
 
@@ -70,9 +72,8 @@ def write_json(name: str, content: Any, folder: str | Path | None = None) -> Pat
     """Write ``<name>.json``, complete or not at all, into the folder that `Results.save` names."""
     target = _folder(folder) / f"{name}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
-    draft = target.with_suffix(".json.part")
-    draft.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    draft.replace(target)
+    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+    write_whole(target, text.encode())
     return target
 
 

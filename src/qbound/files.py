@@ -15,6 +15,8 @@ from pathlib import Path
 
 from qbound.printable import printable
 
+CIRCLE = "links lead in a circle"
+
 
 def write_whole(path: str | Path, content: bytes) -> None:
     """Write a file, complete or not at all; raises as `write_together`."""
@@ -57,7 +59,9 @@ def target(path: str | Path) -> Path:
     try:
         found = Path(path).resolve()
         reason = _refusal(found)
-    except (OSError, RuntimeError, ValueError) as error:  # Python 3.11 and 3.12 name the circle so
+    except RuntimeError:  # of Python 3.11 and 3.12; later ones leave the link as it is
+        reason = CIRCLE
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
         raise OSError(printable(f"{path}: {reason}"))
@@ -67,7 +71,7 @@ def target(path: str | Path) -> Path:
 def _refusal(path: Path) -> str | None:
     """Say why a file could not be written there; None if it could."""
     if path.is_symlink():
-        return "links lead in a circle"
+        return CIRCLE
     if not path.parent.is_dir():
         return f"No such file or directory: {path.parent}"
     if path.exists() and not path.is_file():

@@ -88,7 +88,7 @@ def statement(robot: Robot, options: argparse.Namespace) -> statements.Statement
     if options.region:
         inset = statements.usual_inset(robot) if options.inset is None else options.inset
         return statements.inner_polygon(robot, inset, margin=options.margin, held=values)
-    scale = float(number(options.scale or "1"))
+    scale = float(number(as_decimal("--scale", options.scale or "1")))
     return statements.home_polygon(robot, scale, options.margin, values)
 
 

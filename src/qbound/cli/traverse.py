@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.files import Output, deliver
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.export.routes import route_csv, route_document, route_lines
@@ -67,8 +67,6 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    files = [options.csv, options.ros, options.svg, options.json]
-    check_targets(files, sources=[options.robot])
     robot = load_robot(options.robot)
     route = _route(robot, options)
     times = _in_time(route, options)
