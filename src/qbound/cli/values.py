@@ -27,6 +27,8 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
         if j in found:
             raise ValueError(f"--slice {text}: {robot.joints[j].name!r} is held twice")
         found[j] = parse_joint_value(robot, j, number)
+    if len(found) == len(robot.joints):
+        raise ValueError("--slice: every joint is held; one or more must move")
     return found
 
 
