@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 
-from lizarraga2025 import closed_form
+from lizarraga2025 import closed_form, recorded
 from qbound import load_robot, packaged_robots
 from qbound.cli import main
 
@@ -195,3 +195,17 @@ def test_a_bad_place_or_pose_is_one_sentence_and_status_2(capsys, arguments, wor
 def test_a_value_that_is_none_is_answered_with_one_of_its_joint(capsys, robot, values, wanted):
     assert main(["contains", robot, *values]) == 2
     assert wanted in capsys.readouterr().err
+
+
+def test_recompute_says_that_it_computed_and_what_differs(capsys, monkeypatch):
+    status, out, _ = run(capsys, "claims", "E-9", "--recompute")
+    assert (status, out.splitlines()[-1]) == (0, "computed again: 1, as recorded: 1")
+    (entry,) = [content for content in recorded.claims() if content["id"] == "E-9"]
+    monkeypatch.setattr(recorded, "claims", lambda: [entry | {"found": "Something else."}])
+    status, out, _ = run(capsys, "claims", "E-9", "--recompute")
+    *_, first, second, third, fourth = out.splitlines()
+    assert (status, first) == (1, "computed again: 1, as recorded: 0")
+    assert second == "E-9 differs from what is recorded:"
+    assert third == "  found     recorded 'Something else.'"
+    assert fourth == f"            now      {entry['found']!r}"
+    assert "computed again" not in run(capsys, "claims", "E-9")[1]

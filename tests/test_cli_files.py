@@ -6,10 +6,13 @@ import csv
 import io
 import json
 import os
+import re
 import shlex
 import struct
 import subprocess
 import sys
+import threading
+import warnings
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
@@ -21,9 +24,11 @@ from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 from shapely.geometry import Polygon, shape
 
+import qbound
 from qbound import find_region, load_robot
-from qbound.cli import command_parsers, main
+from qbound.cli import command_parsers, main, progress
 from qbound.cli.files import write_all
+from qbound.files import write_whole
 from support.oracles import packaged_table, point_seen_from
 
 MINERVA = load_robot("minervabot-v2")
@@ -379,7 +384,7 @@ def test_several_files_appear_together_or_not_at_all(monkeypatch) -> None:
         return written
 
     monkeypatch.setattr(Path, "write_bytes", fails)
-    with pytest.raises(ValueError, match="second: not written: No space left"):
+    with pytest.raises(OSError, match="second: not written: No space left"):
         write_all([("first", "new"), ("second", "newer")])
     assert files() == {"first"}
     assert Path("first").read_text() == "old"
@@ -429,6 +434,12 @@ def test_a_link_stays_a_link_and_its_target_is_written() -> None:
         ("sample minervabot-v2 -n 5 --seed -1", "0 or above"),
         ("sample minervabot-v2 -n 5", "--seed"),
         ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
+        ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
+        ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
+        ("traverse minervabot-v2 1 2 --duration 1e-300 --csv a", "a nanosecond or more"),
+        ("traverse minervabot-v2 1 2 --duration 1e300 --ros a", "below 2.14748e+09 s"),
+        ("contains minervabot-v2 0 0 --weights 1e300 1", "1e+100 at most"),
+        ("certify minervabot-v2 --scale 1/2", "--scale: '1/2' is no decimal number"),
     ],
 )
 def test_bad_input_is_one_sentence_status_2_and_no_file(capsys, line, words) -> None:
@@ -470,3 +481,320 @@ def test_what_does_not_fit_into_memory_is_one_sentence(words, capsys):
     command, *options = words
     assert main([command, "minervabot-v2", *options]) == 2
     assert capsys.readouterr().err.startswith("qbound: ")
+
+
+# --- how files are written -----------------------------------------------------------------------
+
+
+def test_a_file_that_is_replaced_keeps_its_permissions_and_a_new_one_has_the_usual() -> None:
+    for mode in (0o600, 0o640, 0o755):
+        Path("old").write_text("old")
+        Path("old").chmod(mode)
+        write_whole("old", b"new")
+        assert Path("old").read_bytes() == b"new"
+        assert Path("old").stat().st_mode & 0o777 == mode
+    write_whole("new", b"")
+    Path("usual").touch()
+    assert Path("new").stat().st_mode == Path("usual").stat().st_mode
+
+
+def test_no_draft_has_a_name_that_can_be_guessed(monkeypatch) -> None:
+    """Not from the file's name nor from the process; each is made anew, never opened."""
+    drafts = []
+    touch = Path.touch
+
+    def seen(path: Path, mode: int = 0o666, exist_ok: bool = True) -> None:
+        drafts.append((path.name, exist_ok))
+        touch(path, mode, exist_ok)
+
+    monkeypatch.setattr(Path, "touch", seen)
+    for _ in range(2):
+        write_all([("a.json", "x"), ("b.json", "y")])
+    names = {name for name, _ in drafts}
+    assert len(names) == len(drafts) == 4
+    assert not [name for name in names if str(os.getpid()) in name or "json" in name]
+    assert not any(exist_ok for _, exist_ok in drafts)
+
+
+def test_files_are_written_in_one_place_only() -> None:
+    """Whatever writes goes through `qbound.files`: no other module renames or opens to write."""
+    writes = r"\.write_(text|bytes)\(|\.rename\(|os\.replace|\.replace\((path|target)\b|\.part\""
+    package = Path(qbound.__file__).parents[1]
+    found = {
+        str(path.relative_to(package))
+        for folder in ("qbound", "lizarraga2025")
+        for path in (package / folder).rglob("*.py")
+        if re.search(writes, path.read_text("utf-8"))
+    }
+    assert found == {"qbound/files.py"}
+
+
+@pytest.mark.parametrize("file", ["loop", "one"])
+def test_links_in_a_circle_are_refused_as_robots_and_as_outputs(capsys, file) -> None:
+    Path("loop").symlink_to("loop")
+    Path("one").symlink_to("two")
+    Path("two").symlink_to("one")
+    before = files()
+    for line in (f"region {file}", f"region minervabot-v2 --json {file}", f"check {file}"):
+        status, out, err = run(capsys, line)
+        assert status == 2
+        assert "Traceback" not in out + err
+    assert files() == before
+    assert Path(file).is_symlink()
+
+
+def test_a_link_to_nothing_is_followed() -> None:
+    Path("link").symlink_to("target")
+    write_all([("link", "new")])
+    assert Path("link").is_symlink()
+    assert Path("target").read_text() == "new"
+
+
+def test_a_file_is_not_written_over_what_it_is_made_from(capsys, arm) -> None:
+    Path("link.toml").symlink_to(arm)
+    lines = (
+        f"region {arm} --json {arm}",
+        f"region {arm} --json link.toml",
+        f"sample {arm} -n 5 --seed 1 --csv ./{arm}",
+        f"explore {arm} -o {arm}",
+        f"traverse {arm} 1 2 --svg {arm}",
+        f"contains {arm} 0 20 --json {arm}",
+        f"workspace {arm} --json {arm}",
+        f"certify {arm} -o {arm}",
+        f"certify {arm} --path {arm} -o ./{arm}",
+        f"connected {arm} 0 20 1 21 --json {arm}",
+        f"pave {arm} --json {arm}",
+    )
+    for line in lines:
+        status, out, err = run(capsys, line)
+        assert (status, out) == (2, "")
+        assert "would be written over" in err
+    assert Path(arm).read_text() == ARM
+
+
+def test_a_long_name_is_written_as_it_is() -> None:
+    name = "x" * 255  # the longest that file systems know
+    write_whole(name, b"new")
+    assert files() == {name}
+
+
+def test_a_file_named_like_a_number_has_just_that_name(capsys) -> None:
+    assert run(capsys, "region minervabot-v2 --json -5.json")[0] == 0
+    assert files() == {"-5.json"}
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everything")
+def test_what_may_not_be_written_is_refused_before_any_work(capsys) -> None:
+    Path("kept").write_text("old")
+    Path("kept").chmod(0o444)
+    status, _, err = run(capsys, "region minervabot-v2 --json kept")
+    assert (status, "no permission" in err) == (2, True)
+    assert Path("kept").read_text() == "old"
+
+
+# --- words that hold nothing ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["region", "minervabot-v2", "--json", ""],
+        ["region", "minervabot-v2", "--json="],
+        ["region", "minervabot-v2", "--svg", ""],
+        ["region", "minervabot-v2", "--slice", ""],
+        ["region", ""],
+        ["traverse", "minervabot-v2", "1", "2", "--ros="],
+        ["contains", "minervabot-v2", "0", "0", "--json", ""],
+        ["certify", "minervabot-v2", "--scale", ""],
+        ["certify", "minervabot-v2", "-o", ""],
+        ["pave", "minervabot-v2", "--json", ""],
+        ["draw", "minervabot-v2", "-o", ""],
+        ["claims", ""],
+        [""],
+    ],
+)
+def test_an_empty_word_is_an_error_not_an_option_left_out(capsys, words) -> None:
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "an empty value" in err
+    assert files() == set()
+
+
+# --- the ends of a command -----------------------------------------------------------------------
+
+
+def shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a line of the shell with `qbound` in it."""
+    setting = {**os.environ, **environment}
+    program = f"{shlex.quote(sys.executable)} -m qbound"
+    script = line.replace("qbound", program)
+    return subprocess.run(
+        ["sh", "-c", script], capture_output=True, text=True, env=setting, check=False
+    )
+
+
+@pytest.mark.parametrize("command", ["region minervabot-v2", "--help", "robots show minervabot-v2"])
+def test_a_closed_or_full_output_leaves_no_traceback(command) -> None:
+    assert shell(f"qbound {command} | :").stderr == ""
+    assert shell(f"qbound {command} 2>&-").returncode == 0
+    closed = shell(f"qbound {command} >&-")
+    assert closed.returncode == 0
+    assert "Traceback" not in closed.stderr
+    full = shell(f"qbound {command} > /dev/full")
+    assert "Traceback" not in full.stderr
+    assert "Exception" not in full.stderr
+
+
+def test_content_for_a_closed_output_is_refused() -> None:
+    done = shell("qbound region minervabot-v2 --json - >&-")
+    assert (done.returncode, done.stderr) == (2, "qbound: -: standard output is closed\n")
+
+
+def test_a_terminal_that_knows_ascii_only_shows_escapes(tmp_path) -> None:
+    text = ARM.replace('name = "arm"', 'name = "Größe"').replace('"P"', '"Säule"')
+    Path("arm.toml").write_text(text, encoding="utf-8")
+    narrow = {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0", "LC_ALL": "C"}
+    done = shell("qbound contains arm.toml 0 20", **narrow)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert r"S\xe4ule" in done.stdout
+
+
+def test_a_fault_of_the_program_is_no_answer(capsys, monkeypatch) -> None:
+    """Python's own status after a traceback, 1, would say infeasible."""
+
+    def fails(*_, **__):
+        raise RuntimeError("\x1b[31mnever")
+
+    monkeypatch.setattr("qbound.sampling.sample", fails)
+    status, out, err = run(capsys, "sample minervabot-v2 -n 5 --seed 1")
+    assert (status, out) == (2, "")
+    assert r"RuntimeError: \x1b[31mnever" in err
+
+
+def test_a_warning_is_one_line(capsys, monkeypatch) -> None:
+    def warns(*_, **__):
+        warnings.warn("two\nlines", stacklevel=2)
+        raise ValueError("and an error")
+
+    monkeypatch.setattr("qbound.sampling.sample", warns)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        _, _, err = run(capsys, "sample minervabot-v2 -n 5 --seed 1")
+    assert err == "qbound: warning: two\\nlines\nqbound: and an error\n"
+
+
+def test_ctrl_c_in_a_process_is_one_line_and_status_130() -> None:
+    """Once it works, which the file that it writes first would not tell: it says so itself."""
+    script = (
+        "import os, signal, sys; from qbound import sampling; from qbound.cli import main;"
+        "sampling.sample = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT) or input();"
+        "sys.exit(main(['sample', 'minervabot-v2', '-n', '5', '--seed', '1', '--csv', 'a']))"
+    )
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(
+        command, capture_output=True, text=True, stdin=subprocess.PIPE, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "qbound: stopped\n")
+    assert files() == set()
+
+
+# --- work without bound --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("region minervabot-v2 --csv a --deviation 1e-13", "points where 131072 are the most"),
+        ("traverse minervabot-v2 1 2 --deviation 1e-12 --csv a", "points where 1048576 are"),
+        ("traverse minervabot-v2 --arcs 1 --deviation 1e-13 --csv a", "points where 131072 are"),
+        ("sample minervabot-v2 -n 1000000000 --seed 1 --csv a", "at most 20000000 fit into memory"),
+    ],
+)
+def test_what_would_take_all_memory_says_what_it_costs(capsys, line, words) -> None:
+    status, out, err = run(capsys, line)
+    assert (status, out) == (2, "")
+    assert words in err
+    assert files() == set()
+
+
+def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypatch) -> None:
+    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.001)
+    ticked = threading.Event()
+    show = progress._show
+
+    def shown(text: str) -> None:
+        show(text)
+        if text:
+            ticked.set()
+
+    monkeypatch.setattr(progress, "_show", shown)
+    with progress.working("a search"):
+        pass
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with progress.working("a search"):
+        assert ticked.wait(60)
+    err = capsys.readouterr().err
+    assert "a search: " in err
+    assert err.endswith("\r\033[K")
+
+
+# --- sentences -----------------------------------------------------------------------------------
+
+
+def test_one_is_counted_as_one(capsys) -> None:
+    assert "1 component, area" in run(capsys, "region rp-telescopic-boom")[1]
+    assert run(capsys, "traverse minervabot-v2 1 2 --scale 0.5")[1].startswith("1 leg: ")
+    assert "1 value for 2 joints" in run(capsys, "contains minervabot-v2 0")[2]
+
+
+def test_a_unit_stands_beside_every_number(capsys, arm) -> None:
+    unsafe = ARM.replace("a = 0, b = 20", "a = 150, b = 45")
+    Path("unsafe.toml").write_text(unsafe)
+    lines = run(capsys, "region unsafe.toml")[1].splitlines()
+    assert {line for line in lines if "home" in line} == {
+        "home violates a.upper, margin -30 deg",
+        "home violates b.upper, margin -5 cm",
+    }
+    told = run(capsys, f"contains {arm} 0 20")[1]
+    assert re.search(
+        r"distance \S+ (deg|cm)$|distance \S+ \(weights: 1 a rad, 1 a cm\)$", told.strip()
+    )
+    workspace = run(capsys, "workspace minervabot-v2 --at=-45,20")[1]
+    assert re.search(r"^area \S+ cm\^2, \S+ cm\^2 of it", workspace)
+    assert len(re.findall(r"image \S+ cm\^2$", workspace, re.MULTILINE)) == 2
+    assert "at (-45, 20) cm: " in workspace
+
+
+def test_rounding_is_no_margin(capsys) -> None:
+    """Along arcs the arm touches: what is left of 0 is said to be 0, within the tolerance."""
+    out = run(capsys, "traverse minervabot-v2 --arcs 1 2 3 4 5 6")[1]
+    margins = re.findall(r"smallest margin of \w+: (\S+) cm( \(within \S+ cm\))?", out)
+    assert len(margins) == 5
+    assert all(value == "0" and within for value, within in margins if abs(float(value)) < 1e-9)
+    assert [within for _, within in margins if within]
+    out = run(capsys, "contains rp-telescopic-boom -35 1e-17")[1]
+    assert "margin 0 m (within " in out
+    assert "e-17" not in out
+
+
+def test_a_table_with_a_huge_cell_is_refused_in_one_short_line(capsys) -> None:
+    for cell in ("1" * 300_000, "9" * 100_000):
+        Path("p.csv").write_text(f"0,0\n{cell},1\n")
+        for option in ("--path", "--polygon"):
+            status, out, err = run(capsys, f"certify minervabot-v2 {option} p.csv")
+            assert (status, out) == (2, "")
+            assert err.startswith("qbound: p.csv")
+            assert err.count("\n") == 1
+            assert len(err) < 3000
+
+
+def test_slices_add_up_however_they_are_given(capsys) -> None:
+    line = "region minervabot-v2 --slice q1=1 --slice q2=1"
+    assert "every joint is held" in run(capsys, line)[2]
+
+
+def test_robots_show_asks_for_a_name(capsys) -> None:
+    status, _, err = run(capsys, "robots show")
+    assert (status, "show: name one of" in err) == (2, True)

@@ -16,7 +16,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from qbound import extras
+from qbound import extras, find_region, load_robot
+from qbound.extras import explained
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -238,3 +239,13 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
     assert optional == extras.EXTRAS.keys()
     for module, extra in extras.EXTRAS.items():
         assert homes[module] & closure(required([extra.name]))
+
+
+def test_the_sentence_names_what_was_asked_for(monkeypatch) -> None:
+    monkeypatch.delitem(sys.modules, "shapely", raising=False)
+    monkeypatch.setattr("qbound.extras.find_spec", lambda _: None)
+    region = find_region(load_robot("minervabot-v2"))
+    with pytest.raises(ModuleNotFoundError) as missing:
+        region.to_shapely()
+    wanted = "a region as a shapely geometry takes shapely: pip install 'qbound[proofs]'"
+    assert str(missing.value) == explained(missing.value) == wanted

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from io import BytesIO
 from xml.etree import ElementTree
 
@@ -20,7 +21,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025.closed_form import vertices
 from qbound import figures, find_region, load_robot
-from qbound.figures.pictures import pose_picture, traversal_picture, workspace_picture
+from qbound.figures.pictures import _pose_panel, pose_picture, traversal_picture, workspace_picture
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
 from qbound.workspace.areas import find_workspace
@@ -304,3 +305,32 @@ def test_spheres_are_drawn_where_forward_kinematics_puts_them(ax) -> None:
         x, _, z = frames.position("base", point.name, "base")
         assert_allclose([*disc.center, disc.radius], [x, z, point.radius])
         assert disc.get_fill() == (point.frame == "base") or disc.get_facecolor()[3] == 0
+
+
+def test_a_second_plot_has_a_figure_of_its_own() -> None:
+    from matplotlib import pyplot
+
+    region = find_region(load_robot("pp-portal"))
+    one, two = region.plot(), region.plot()
+    assert one.figure is not two.figure
+    assert len(one.lines) == len(two.lines)
+    pyplot.close("all")
+
+
+def test_the_plot_of_an_empty_region_says_so(ax) -> None:
+    floor = replace(MINERVA.boundary("B7"), name="the_$floor", offset=100.0)
+    region = find_region(replace(MINERVA, boundaries=(floor,)))
+    region.plot(ax)
+    (text,) = (text.get_text() for text in ax.texts)
+    assert text == "No configuration is feasible:\nno room is left by the_\\$floor"
+    svg = pose_picture(MINERVA, MINERVA.home, region)
+    assert "No configuration is feasible" in " ".join(texts_in(svg))
+    told = find_region(MINERVA).plot(Figure().subplots()).texts
+    assert not [text for text in told if "No configuration" in text.get_text()]
+
+
+@pytest.mark.parametrize("far", [1e4, 1e15, 1e100])
+def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
+    axes = Figure().subplots()
+    _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
+    assert len(axes.get_xticks()) < 50

@@ -6,6 +6,7 @@ By hand, for many more robots than the suite takes: `python tests/test_region.py
 import sys
 import warnings
 from math import atan2, pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,10 +15,10 @@ from scipy.ndimage import label
 
 from lizarraga2025 import closed_form
 from qbound import load_robot
-from qbound.boundary.functions import clearance
+from qbound.boundary.functions import clearance, components
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
-from qbound.region import Problem, Region, find_region, paper_rule, solve, violated
+from qbound.region import Problem, Region, find_region, margins, paper_rule, solve, violated
 from support.forms import LIMITS, PP, PR, RR, TURN, forms
 from support.oracles import circle_zeros, equation_29
 from support.regions import (
@@ -368,3 +369,24 @@ def test_what_a_region_is_made_of_prints_on_one_line(name):
         assert "\n" not in repr(thing)
         assert len(repr(thing)) <= 120
     assert arc.boundary in repr(arc)
+
+
+@pytest.mark.parametrize("wrong", ["minervabot-v2", None, Path("arm.toml")])
+def test_what_is_no_robot_is_refused_plainly(wrong) -> None:
+    calls = {
+        "find_region": lambda: find_region(wrong),
+        "margins": lambda: margins(wrong, [0, 0]),
+        "clearance": lambda: clearance(wrong, MINERVA.boundary("B1")),
+        "components": lambda: components(wrong, MINERVA.boundary("B1")),
+    }
+    for taker, call in calls.items():
+        with pytest.raises(TypeError, match=rf"^{taker} takes a Robot, found .*load_robot"):
+            call()
+
+
+@pytest.mark.parametrize("q", [[float("nan"), 0.0], [0.0, float("inf")], [[0, 0], [0, np.nan]]])
+def test_a_boundary_function_of_no_number_is_refused(q) -> None:
+    form = clearance(MINERVA, MINERVA.boundary("B1"))
+    for function in (form, form.gradient, components(MINERVA, MINERVA.boundary("B1"))):
+        with pytest.raises(ValueError, match="NaN or infinite"):
+            function(q)

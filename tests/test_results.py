@@ -193,15 +193,15 @@ def test_a_write_that_fails_leaves_the_old_file(
     path = example().save(tmp_path)
     before = path.read_bytes()
 
-    def half(self: Path, text: str, **how: str) -> int:
-        with self.open("w", encoding=how.get("encoding")) as file:
-            file.write(text[: len(text) // 2])
+    def half(self: Path, content: bytes) -> int:
+        with self.open("wb") as file:
+            file.write(content[: len(content) // 2])
         raise OSError("disk full")
 
     changed = example()
     changed.add("more", 1.0, "1", error=EXACT)
     with monkeypatch.context() as patched:
-        patched.setattr(Path, "write_text", half)
+        patched.setattr(Path, "write_bytes", half)
         with pytest.raises(OSError, match="disk full"):
             changed.save(tmp_path)
     assert path.read_bytes() == before

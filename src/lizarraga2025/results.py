@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from qbound import __version__
+from qbound.files import write_whole
 from qbound.model.robotfile import robot_text
 
 SCHEMA: Final = "qbound/results/2"
@@ -137,9 +138,8 @@ def write_json(name: str, content: Any, folder: str | Path | None = None) -> Pat
     """Write ``<name>.json``, complete or not at all, into the folder that `Results.save` names."""
     target = _folder(folder) / f"{name}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
-    draft = target.with_suffix(".json.part")
-    draft.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    draft.replace(target)
+    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+    write_whole(target, text.encode())
     return target
 
 

@@ -6,7 +6,7 @@ J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
 The mathematics: `geometry`, `forms`, `model`, `boundary`, `region`, and `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `paths`, `export`, `proofs`, `figures`,
-`explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `extras`,
+`explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`, `printable`, `extras`,
 `version`.
 """
 

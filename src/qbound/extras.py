@@ -29,8 +29,13 @@ EXTRAS: Final = {
 """By the name that is imported."""
 
 
-def require(module: str) -> None:
+def require(module: str, taker: str | None = None) -> None:
     """Raise an error that says how to install a module of `EXTRAS`, if it is missing.
+
+    Parameters
+    ----------
+    taker : str, optional
+        What was asked for; default: what usually takes the module.
 
     Raises
     ------
@@ -38,17 +43,21 @@ def require(module: str) -> None:
         Such as "drawing takes matplotlib: pip install 'qbound[figures]'".
     """
     if module not in sys.modules and find_spec(module) is None:
-        raise ModuleNotFoundError(how_to_install(module), name=module)
+        raise ModuleNotFoundError(how_to_install(module, taker), name=module)
 
 
-def how_to_install(module: str) -> str:
-    """Return the sentence for a module of `EXTRAS`."""
+def how_to_install(module: str, taker: str | None = None) -> str:
+    """Return the sentence for a module of `EXTRAS`, and for what was asked for."""
     extra = EXTRAS[module]
-    return f"{extra.taker} takes {extra.library}: pip install 'qbound[{extra.name}]'"
+    return f"{taker or extra.taker} takes {extra.library}: pip install 'qbound[{extra.name}]'"
 
 
 def explained(error: Exception) -> str:
     """Return what an error says; for a missing module of `EXTRAS`, how to install it."""
+    if isinstance(error, OSError) and error.strerror:  # Python's own has numbers and quotes
+        where = "" if error.filename is None else f"{error.filename}: "
+        return f"{where}{error.strerror}"
     module = (getattr(error, "name", None) or "").partition(".")[0]
     missing = isinstance(error, ModuleNotFoundError) and module in EXTRAS
-    return how_to_install(module) if missing else str(error)
+    ours = missing and "pip install" in str(error)  # `require` named what was asked for
+    return how_to_install(module) if missing and not ours else str(error)

@@ -15,6 +15,8 @@ from pathlib import Path
 
 from qbound.printable import printable
 
+CIRCLE = "links lead in a circle"
+
 
 def write_whole(path: str | Path, content: bytes) -> None:
     """Write a file, complete or not at all; raises as `write_together`."""
@@ -26,7 +28,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
 
     Raises
     ------
-    ValueError
+    OSError
         If one cannot be written, and why; the files are then as they were.
     """
     named = [(str(path), target(path), content) for path, content in contents]
@@ -38,7 +40,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
                 _fill(draft, content, path)
             except OSError as error:
                 reason = error.strerror or error
-                raise ValueError(printable(f"{name}: not written: {reason}")) from None
+                raise OSError(printable(f"{name}: not written: {reason}")) from None
         for draft, path in drafts:
             draft.replace(path)
     finally:
@@ -51,23 +53,25 @@ def target(path: str | Path) -> Path:
 
     Raises
     ------
-    ValueError
+    OSError
         If links lead in a circle, the folder is missing, or the file is none that can be replaced.
     """
     try:
         found = Path(path).resolve()
         reason = _refusal(found)
-    except (OSError, RuntimeError, ValueError) as error:  # Python 3.11 and 3.12 name the circle so
+    except RuntimeError:  # of Python 3.11 and 3.12; later ones leave the link as it is
+        reason = CIRCLE
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
-        raise ValueError(printable(f"{path}: {reason}"))
+        raise OSError(printable(f"{path}: {reason}"))
     return found
 
 
 def _refusal(path: Path) -> str | None:
     """Say why a file could not be written there; None if it could."""
     if path.is_symlink():
-        return "links lead in a circle"
+        return CIRCLE
     if not path.parent.is_dir():
         return f"No such file or directory: {path.parent}"
     if path.exists() and not path.is_file():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterator
 from typing import Any
 
 from lizarraga2025 import recorded
@@ -51,8 +52,10 @@ def run(options: argparse.Namespace) -> int:
     else:
         _say(chosen, whole=bool(options.ids))
     changed = [one.id for one in chosen if one != ledger[one.id]]
-    if changed and not options.json and not options.bibtex:
-        print(f"differs from what is recorded: {', '.join(changed)}")
+    if options.recompute and not options.json and not options.bibtex:
+        print(f"computed again: {len(chosen)}, as recorded: {len(chosen) - len(changed)}")
+        for one in (one for one in chosen if one.id in changed):
+            print("\n".join(_differences(one, ledger[one.id])))
     return 1 if changed else 0
 
 
@@ -63,6 +66,14 @@ def _again(name: str) -> Claim:
         raise ImportError(
             f"to compute {name} again takes {error.name}: pip install 'qbound[notebooks]'"
         ) from error
+
+
+def _differences(now: Claim, recorded: Claim) -> Iterator[str]:
+    """Say in which keys an entry differs from what is recorded, and how."""
+    yield f"{now.id} differs from what is recorded:"
+    before, after = recorded.content(), now.content()
+    for key in (key for key in after if after[key] != before.get(key)):
+        yield f"  {key:<10}recorded {before.get(key)!r}\n  {'':<10}now      {after[key]!r}"
 
 
 def _is_chosen(one: Claim, options: argparse.Namespace) -> bool:

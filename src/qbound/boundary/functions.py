@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
-from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -113,6 +113,7 @@ def clearance(robot: Robot, boundary: Boundary) -> HarmonicForm:
     >>> round(float(pair([0.2, -0.5])), 3)
     179.453
     """
+    refuse_no_robot("clearance", robot)
     return _clearance(boundary, robot)
 
 
@@ -126,6 +127,7 @@ def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
     >>> components(robot, robot.boundary("B7"))([0.0, 0.0]).round(3).tolist()
     [0.0, 0.0, 37.16]
     """
+    refuse_no_robot("components", robot)
     return _components(boundary, robot)
 
 

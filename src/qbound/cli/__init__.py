@@ -13,7 +13,7 @@ import argparse
 import re
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import entry_points
 from itertools import pairwise
 from typing import Any, NoReturn
@@ -33,6 +33,7 @@ from qbound.cli import (
     traverse,
     workspace,
 )
+from qbound.cli.files import check_targets
 from qbound.cli.terminal import complain, finish_output, plain_terminal
 from qbound.extras import explained
 from qbound.printable import printable
@@ -55,6 +56,10 @@ COMMANDS = (
 
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
+
+WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
+READ = ("robot", "certificate", "path", "polygon")
+"""Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141
 """Exit status after Ctrl-C, and where nobody reads the output any more, as shells have it."""
@@ -84,6 +89,7 @@ def _run(words: Sequence[str]) -> int:
     _refuse_empty(words)
     try:
         options = command_line().parse_args(words)
+        _check_files(vars(options))
         return int(options.run(options))
     finally:
         finish_output()
@@ -95,6 +101,15 @@ def _refuse_empty(words: Sequence[str]) -> None:
         if re.fullmatch(r"(-[\w-]+=)?", word):
             where = word.rstrip("=") or before
             raise ValueError(f"{where}: an empty value; give one, or leave the option out")
+
+
+def _check_files(options: Mapping[str, Any]) -> None:
+    """Refuse, before any work, files that could not be written, or are read by the same command."""
+    written, read = ([options.get(name) for name in names] for names in (WRITTEN, READ))
+    check_targets(
+        [file for file in written if isinstance(file, str)],
+        sources=[file for file in read if isinstance(file, str)],
+    )
 
 
 def command_line() -> argparse.ArgumentParser:

@@ -27,7 +27,12 @@ def add_rule(parser: argparse.ArgumentParser) -> None:
 def add_slice(parser: argparse.ArgumentParser) -> None:
     """Add the slice."""
     parser.add_argument(
-        "--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints at values"
+        "--slice",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="q3=20deg",
+        help="hold joints at values",
     )
 
 

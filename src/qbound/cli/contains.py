@@ -8,12 +8,13 @@ from typing import Any
 
 from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import check_targets, deliver
+from qbound.cli.files import deliver
 from qbound.cli.values import configuration
 from qbound.export.document import configuration_document
 from qbound.export.formats import json_text
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
+from qbound.tolerances import SAME_POINT
 from qbound.units import amount, joint_units, limited_joints, margin_text
 
 
@@ -41,7 +42,6 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
-    check_targets([options.json], sources=[options.robot])
     content = configuration_document(robot, configuration(robot, options.values), options.weights)
     deliver([(options.json, lambda: json_text(content))], _lines(robot, content))
     return 0 if content["feasible"] else 1
@@ -90,11 +90,12 @@ def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
 def _distance(robot: Robot, nearest: dict[str, Any]) -> str:
     """Write the distance in the unit of both joints, or say how their units are weighted."""
     one, other = robot.joints
+    distance = nearest["distance"] if nearest["distance"] > SAME_POINT else 0.0
     if nearest["weights"] == [1.0, 1.0] and one.kind == other.kind:
-        return _joint_text(robot, one, nearest["distance"])
+        return _joint_text(robot, one, distance)
     units = zip(nearest["weights"], joint_units(robot), strict=True)
     weighted = ", ".join(f"{weight:g} a {unit}" for weight, unit in units)
-    return f"{nearest['distance']:.6g} (weights: {weighted})"
+    return f"{distance:.6g} (weights: {weighted})"
 
 
 def _joint_text(robot: Robot, joint: Joint, value: float) -> str:

@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     """Draw the picture and say where it is."""
     robot = load_robot(options.robot)
     output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
-    check_targets([output], ("svg", "png"), [options.robot])
+    check_targets([output], ("svg", "png"))
     values = held(robot, options.slice)
     q = robot.home if options.q is None else np.array(configuration(robot, options.q))
     q = robot.with_held(q[robot.free(values)], values)

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import check_targets, write_text
+from qbound.cli.files import write_text
 from qbound.cli.terminal import complain
 from qbound.cli.values import held
 from qbound.explorer.page import explorer_page
@@ -34,7 +34,6 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the page; 1 if the home pose is in no component."""
     robot = load_robot(options.robot)
-    check_targets([options.output], sources=[options.robot])
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     region = region_by_rule(robot, options.rule, values)
     write_text(options.output, explorer_page(region))

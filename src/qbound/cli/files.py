@@ -50,8 +50,9 @@ def check_targets(
     Raises
     ------
     ValueError
-        If two are the same, one is a source, a folder is missing, a target is no regular file or
-        may not be written, or an ending is unknown.
+        If two are the same, one is a source, or an ending is unknown.
+    OSError
+        If a folder is missing, or a target is no regular file or may not be written.
     """
     read = {Path(file).resolve() for file in sources if file is not None and Path(file).is_file()}
     seen = set()

@@ -8,7 +8,7 @@ from functools import cache, partial
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.files import Output, deliver
 from qbound.cli.values import held
 from qbound.export.document import home_content
 from qbound.export.formats import json_text
@@ -47,8 +47,6 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Find the region; 1 if the home pose is in none of its components."""
     robot = load_robot(options.robot)
-    files = [options.svg, options.csv, options.geojson, options.npz, options.json]
-    check_targets(files, sources=[options.robot])
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
     return 0 if region.home is not None else 1

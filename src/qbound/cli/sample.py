@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound import sampling
 from qbound.cli.chosen import add_robot, add_rule
-from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
 from qbound.export.formats import json_text
 from qbound.export.samples import sample_csv, sample_document, sample_npz
@@ -47,7 +47,6 @@ def run(options: argparse.Namespace) -> int:
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
     robot, rule, seed = load_robot(options.robot), options.rule, options.seed
-    check_targets([options.csv, options.npz, options.json], sources=[options.robot])
     judge = sampling.keeps_clear if rule == "clearance" else paper_rule.feasible
     told = progress("sampling", options.n)
     drawn = sampling.sample(robot, options.n, judge, seed=seed, progress=told)

@@ -16,6 +16,9 @@ from typing import Any
 
 from qbound.printable import printable
 
+HALF = 1000
+"""Letters that a long complaint keeps of either end."""
+
 BLANK_LINE = "\r\033[K"
 """Takes away what stands on the line, such as progress."""
 
@@ -31,7 +34,12 @@ def complain(text: object) -> None:
     if sys.stderr is not None:
         blank = BLANK_LINE if is_terminal() else ""
         with suppress(OSError):
-            print(f"{blank}qbound: {printable(text)}", file=sys.stderr)
+            print(f"{blank}qbound: {_shortened(printable(text))}", file=sys.stderr)
+
+
+def _shortened(line: str) -> str:
+    """Leave out the middle of what quotes a value without end."""
+    return line if len(line) <= 2 * HALF else f"{line[:HALF]} ... {line[-HALF:]}"
 
 
 @contextmanager

@@ -6,12 +6,13 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.files import Output, deliver
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
+from qbound.model.rows import LARGEST
 from qbound.paths.report import PathReport, report
 from qbound.paths.route import Route, plan_route
 from qbound.paths.trajectory import (
@@ -67,8 +68,6 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    files = [options.csv, options.ros, options.svg, options.json]
-    check_targets(files, sources=[options.robot])
     robot = load_robot(options.robot)
     route = _route(robot, options)
     times = _in_time(route, options)
@@ -88,8 +87,8 @@ def _route(robot: Robot, options: argparse.Namespace) -> Route:
     """Find the region and go along what the numbers are of."""
     if options.arcs and options.scale != 1:
         raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
-    if not options.scale > 0:
-        raise ValueError(f"--scale {options.scale:g}: a scale is above 0")
+    if not 0 < options.scale <= LARGEST:
+        raise ValueError(f"--scale {options.scale:g}: a scale is above 0, {LARGEST:g} at most")
     return plan_route(
         region_by_rule(robot, options.rule, held(robot, options.slice)),
         options.order,

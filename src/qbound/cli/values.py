@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from qbound.model.robot import Robot
+from qbound.model.rows import LARGEST
 from qbound.proofs.points import joint_decimal, limits_as_decimals
 from qbound.units import counted, parse_joint_value
 
@@ -26,6 +27,8 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
         if j in found:
             raise ValueError(f"--slice {text}: {robot.joints[j].name!r} is held twice")
         found[j] = parse_joint_value(robot, j, number)
+    if len(found) == len(robot.joints):
+        raise ValueError("--slice: every joint is held; one or more must move")
     return found
 
 
@@ -53,6 +56,8 @@ def place(text: str) -> tuple[float, float]:
         x, z = (float(number) for number in text.split(","))
     except ValueError:
         raise ValueError(f"--at {text}: a place is two lengths, such as --at=-20,40") from None
+    if not (abs(x) <= LARGEST and abs(z) <= LARGEST):
+        raise ValueError(f"--at {text}: two finite lengths are wanted, {LARGEST:g} at most")
     return x, z
 
 

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.files import Output, deliver
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
@@ -40,7 +40,6 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
     robot = load_robot(options.robot)
-    check_targets([options.svg, options.json], sources=[options.robot])
     values = held(robot, options.slice)
     places = [place(text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]

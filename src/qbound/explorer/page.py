@@ -14,10 +14,11 @@ from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Final
+from typing import Any, Final
 
 from qbound.explorer.data import Data, explorer_data
 from qbound.files import write_whole
+from qbound.printable import printable
 from qbound.region import Region
 
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
@@ -41,7 +42,7 @@ class Explorer:
 
     def _repr_html_(self) -> str:
         """Show the page in a frame that shares nothing with the notebook around it."""
-        title = f"Explorer of {self.name}: its joint space beside the arm"
+        title = f"Explorer of {printable(self.name)}: its joint space beside the arm"
         return Template(_web("frame.html")).substitute(page=escape(self.html), title=escape(title))
 
     def save(self, path: str | Path) -> None:
@@ -96,11 +97,12 @@ def explorer_page(region: Region) -> str:
     ValueError
         If the region is of forms, not of a robot.
     """
-    data = explorer_data(region)
+    data = _shown(explorer_data(region))
+    name = escape(printable(region.robot.name))
     style, script = _web("explorer.css"), "".join(map(_web, SCRIPTS))
     return Template(_web("explorer.html")).substitute(
-        title=escape(f"{region.robot.name}: safe poses"),
-        name=escape(region.robot.name),
+        title=f"{name}: safe poses",
+        name=name,
         policy=f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}"
         "; img-src data:",
         style=style,
@@ -112,6 +114,15 @@ def explorer_page(region: Region) -> str:
 
 def _web(name: str) -> str:
     return (resources.files("qbound") / "explorer" / "web" / name).read_text(encoding="utf-8")
+
+
+def _shown(data: Any) -> Any:
+    """Make every text of the data printable: a bidirectional mark would turn the page's words."""
+    if isinstance(data, dict):
+        return {key: _shown(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_shown(value) for value in data]
+    return printable(data) if isinstance(data, str) else data
 
 
 def _embedded(data: Data) -> str:

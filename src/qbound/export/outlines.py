@@ -113,7 +113,7 @@ def outlines_npz(drawn: Outlines) -> bytes:
 
 def outlines_shapely(drawn: Outlines) -> MultiPolygon:
     """Return the polygons of all components as one shapely geometry."""
-    require("shapely")
+    require("shapely", "a region as a shapely geometry")
     from shapely import MultiPolygon, Polygon
 
     pieces = (piece for pieces in drawn.pieces for piece in pieces)

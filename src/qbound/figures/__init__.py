@@ -341,10 +341,10 @@ def as_text(name: str) -> str:
 
 
 def every(span: float) -> Any:
-    """Return ticks at 30 or 60 degrees, whichever suits the span."""
+    """Return ticks at 30 or 60 degrees, whichever suits the span; farther apart over many turns."""
     from matplotlib.ticker import MultipleLocator
 
-    return MultipleLocator(60 if span > 180 else 30)
+    return MultipleLocator(60 * np.ceil(span / 1200) if span > 180 else 30)
 
 
 def _halo(text: Any) -> Any:

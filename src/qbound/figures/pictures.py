@@ -107,12 +107,12 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
-    """Draw a robot's region with home marked, on axes of one's own or those of the moment."""
+    """Draw a robot's region with home marked, on axes of one's own or in a figure of its own."""
     require("matplotlib")
     if ax is None:
         from matplotlib import pyplot
 
-        ax = pyplot.gca()
+        ax = pyplot.subplots()[1]
     robot, problem = region.robot, region.problem
     home = robot.with_held(robot.home[list(problem.joints)], problem.held)
     _pose_panel(ax, region, next(iter(region.components), None), home)
@@ -156,6 +156,10 @@ def _joint_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats
     robot, chosen = region.robot, region.problem.joints
     scales, ranges = figures.joint_scales(region), region.problem.ranges
     figures.draw_components(ax, region)
+    if not region.components:
+        reason = figures.as_text(", ".join(region.empty_because))
+        text = f"No configuration is feasible:\nno room is left by {reason}"
+        ax.text(0.5, 0.5, text, transform=ax.transAxes, ha="center", va="center", wrap=True)
     shown = [np.array(ends or (-np.pi, np.pi)) for ends in ranges]
     for axis, j, ends, scale in zip(("x", "y"), chosen, shown, scales, strict=True):
         joint = robot.joints[j]

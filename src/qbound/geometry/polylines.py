@@ -64,12 +64,8 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
 
 
 def too_fine(deviation: float, cost: float, most: int) -> str:
-    """Say what a deviation costs in points, and which one costs no more than `most`."""
-    possible = deviation * (cost / most) ** 2
-    return (
-        f"a deviation of {deviation:g} takes some {cost:.1g} points where {most} are the most; "
-        f"{possible:.1g} or more is possible"
-    )
+    """Say what a deviation costs in points."""
+    return f"a deviation of {deviation:g} takes some {cost:.1g} points where {most} are the most"
 
 
 def deviations(curve: Curve, s: Floats) -> Floats:

@@ -20,6 +20,9 @@ from qbound.region.arcs import Arc, integrate
 
 Floats = NDArray[np.float64]
 
+HEAVIEST = 1e100
+"""Largest weight of a joint, and one over the smallest: their squares stay within floats."""
+
 
 @dataclass(frozen=True, eq=False)
 class Moments:
@@ -206,8 +209,8 @@ def nearest_boundary(
     q, w = np.asarray(q, dtype=float), np.asarray(weights, dtype=float)
     if q.shape != (2,) or not np.isfinite(q).all():
         raise ValueError("a configuration is two finite joint values")
-    if w.shape != (2,) or not (np.isfinite(w).all() and (w > 0).all()):
-        raise ValueError("weights are two finite numbers above zero")
+    if w.shape != (2,) or not ((w > 0) & (w >= 1 / HEAVIEST) & (w <= HEAVIEST)).all():
+        raise ValueError(f"weights are two finite numbers above zero, {HEAVIEST:g} at most")
     chosen = range(len(region.components)) if component is None else [component]
     best: BoundaryPoint | None = None
     arcs = [(i, arc) for i in chosen for loop in region.components[i].loops for arc in loop]

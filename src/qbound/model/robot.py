@@ -218,3 +218,10 @@ def _named(what: str, items: Mapping[str, Item], name: str) -> Item:
     if name not in items:
         raise ValueError(f"no {what} {name!r}; there are {', '.join(items)}")
     return items[name]
+
+
+def refuse_no_robot(taker: str, robot: object) -> None:
+    """Raise a TypeError where a robot is none, such as the name of one: only commands load it."""
+    if not isinstance(robot, Robot):
+        text = f"{taker} takes a Robot, found {one_line(repr(robot))}; load_robot(...) makes one"
+        raise TypeError(text)

@@ -21,6 +21,9 @@ Floats = NDArray[np.float64]
 METRES: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 """Metres in a robot file's length unit."""
 
+NANOSECOND, LONGEST = 1e-9, 2.0**31
+"""Of times, in seconds, what ROS can say: 32 bits of seconds, and nanoseconds."""
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
@@ -102,10 +105,14 @@ def lasting(robot: Robot, path: Traversal, duration: float) -> Trajectory:
     Raises
     ------
     ValueError
-        If the duration is not above zero, or too short for a speed that the robot states.
+        If the duration is not between `NANOSECOND` and `LONGEST`, or too short for a speed that
+        the robot states.
     """
-    if not (duration > 0 and math.isfinite(duration)):
-        raise ValueError(f"a duration must be above 0 s, found {duration:g}")
+    if not NANOSECOND <= duration < LONGEST:
+        raise ValueError(
+            f"a duration must be above 0 s, a nanosecond or more, and below {LONGEST:g} s, "
+            f"found {duration:g}"
+        )
     speeds = [joint.velocity or math.inf for joint in robot.joints]
     fastest = timed(path, [speed if math.isfinite(speed) else 1.0 for speed in speeds])
     if len(fastest.t) < 2:
@@ -131,7 +138,14 @@ def ros_trajectory(robot: Robot, trajectory: Trajectory) -> dict[str, Any]:
     """Return `joint_names` and `points` of a ROS JointTrajectory: radians, metres, seconds.
 
     Times are rounded up to nanoseconds and rise strictly.
+
+    Raises
+    ------
+    ValueError
+        If it lasts longer than ROS can say.
     """
+    if not trajectory.t[-1] < LONGEST:
+        raise ValueError(f"{trajectory.t[-1]:g} s are more than ROS can say: {LONGEST:g} s")
     unit = [1.0 if joint.turns else METRES[robot.length_unit] for joint in robot.joints]
     steps = np.ceil(np.diff(trajectory.t) * 1e9).astype(np.int64)
     times = [0, *np.cumsum(np.maximum(steps, 1)).tolist()]

@@ -167,14 +167,14 @@ def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
             grid, off = flatten(_image(tool, leg.at), deviation, leg.parts)
             measured = max(measured, off)
         else:
-            grid = np.linspace(0, 1, _chords(leg.bend, deviation) + 1)
+            grid = np.linspace(0, 1, int(_chords(leg.bend, deviation)) + 1)
         grids.append(grid)
     return _joined(robot, legs, grids, measured)
 
 
-def _chords(bend: float, deviation: float) -> int:
+def _chords(bend: float, deviation: float) -> float:
     """Return in how many a curve of length 1 in s is cut; a chord is off by bend / (8 n^2)."""
-    return max(1, math.ceil(math.sqrt(bend / (8 * deviation))))
+    return max(1.0, float(np.ceil(math.sqrt(bend / (8 * deviation)))))
 
 
 def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:

@@ -35,7 +35,7 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
     Decimals times a power of ten are whole numbers, which doubles hold exactly up to ``2**53``,
     more than `statements.DIGITS` need. What longer decimals may spoil the checkers refuse.
     """
-    require("shapely")
+    require("shapely", "the proof of a polygon (its triangles)")
     import shapely
 
     if min(map(len, loops)) < 3:

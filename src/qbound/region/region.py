@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
-from qbound.model.robot import Held, Robot
+from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
@@ -198,7 +198,7 @@ class Region:
         >>> axes.get_xlabel()
         'beam / mm'
 
-        Without axes of your own it draws on those of `matplotlib.pyplot`.
+        Without axes of your own it opens a figure with `matplotlib.pyplot`, a new one each time.
         """
         from qbound.figures.pictures import plot_region
 
@@ -290,6 +290,8 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     ------
     ValueError
         If not exactly two joints are left free, or `held` names no joint or no finite number.
+    TypeError
+        If the robot is none, such as the name of one.
 
     Examples
     --------
@@ -316,6 +318,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     Traceback (most recent call last):
     ValueError: a region has two joints; MinervaBotV2 has 1 that are not held ...
     """
+    refuse_no_robot("find_region", robot)
     if rule == "clearance":
         return solve(clearance_problem(robot, held))
     if rule != "paper":
@@ -403,6 +406,7 @@ def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
     >>> dict(margins(load_robot("pp-portal"), [0.0, 100.0]))["beam.lower"]
     0.0
     """
+    refuse_no_robot("margins", robot)
     compiled = evaluator(robot)
     if np.ndim(q) != 1:
         raise ValueError("one configuration is wanted; for many there is Region.margins")
