@@ -7,6 +7,9 @@
     python3 run.py pdf      print the book to one PDF (needs Chromium)
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
+    python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
+    python3 run.py licences list the licence of everything that is installed in .venv
+    python3 run.py pack     make the files of a release in dist/, with their checksums
     python3 run.py clean    remove what the other commands made
 
 It needs Python alone. The tools are installed once, in .venv, as requirements.lock pins them.
@@ -28,9 +31,13 @@ from pathlib import Path
 if sys.version_info < (3, 11):  # noqa: UP036
     sys.exit("qbound needs Python 3.11 or newer; this is Python " + sys.version.split()[0] + ".")
 
+import tomllib  # which an older Python does not have
+
 ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 LOCK = ROOT / "requirements.lock"
+LOWEST = ROOT / "requirements-lowest.lock"  # the oldest versions that pyproject.toml allows
+TOOLS = ROOT / "tools"
 CHAPTERS = ROOT / "book" / "chapters"
 BUILD = ROOT / "book" / "_build"
 GENERATED = ROOT / "book" / "generated"
@@ -43,7 +50,9 @@ NODE_MODULES = VENV / "javascript" / "node_modules"
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
-BUILT = ["build", "dist", "src/qbound.egg-info"]
+DIST = ROOT / "dist"
+CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
+BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
 SCRIPTS = ["src/qbound/explorer/web", "book/_static", "tests/test_book_browser.js"]
 PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
@@ -51,6 +60,11 @@ PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS ha
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 
 PORT = 8000  # of the author's local page
+
+# The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
+OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
+# The extras of the library; the others are tools, of which the newest will do.
+LIBRARY = ["symbolic", "figures", "proofs", "files"]
 
 Command = list[str | Path]
 
@@ -128,8 +142,7 @@ def prepare() -> None:
         install_lock()
         stamp("lock").write_text(wanted("lock"))
     if not is_stamped("package"):
-        options = ["--no-deps", "--no-build-isolation", "--editable", "."]
-        must("Installing qbound itself", [*pip(VENV), *options], quiet=True)
+        must("Installing qbound itself", [*pip(VENV), *OFFLINE, "--editable", "."], quiet=True)
         stamp("package").write_text(wanted("package"))
 
 
@@ -197,9 +210,9 @@ def install_checkers(npm: str | Path) -> None:
     stamp("javascript").write_text(wanted("javascript"))
 
 
-def pip(venv: Path) -> Command:
+def pip(venv: Path, command: str = "install") -> Command:
     quietly = ["--quiet", "--disable-pip-version-check"]
-    return [in_venv("python", venv), "-m", "pip", "install", *quietly]
+    return [in_venv("python", venv), "-m", "pip", command, *quietly]
 
 
 # --- the book -------------------------------------------------------------------------------------
@@ -387,6 +400,7 @@ def lint() -> int:
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
+        "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
     failed = [title for title, command in checks.items() if call(title, command) != 0]
@@ -416,15 +430,17 @@ def javascript_checks() -> dict[str, Command]:
 
 
 def lock() -> int:
-    """Pin every dependency again, by hash, into requirements.lock."""
-    options = ["--all-extras", "--universal", "--python-version", "3.11", "--upgrade", "--quiet"]
+    """Pin every dependency again, by hash: the newest, and the oldest that is allowed."""
+    options = ["--universal", "--python-version", "3.11", "--upgrade", "--quiet"]
     options += ["--fork-strategy", "fewest", "--generate-hashes"]
     options += ["--no-emit-index-url", "--no-emit-find-links", "--no-header", "--no-annotate"]
+    lowest = ["--resolution", "lowest-direct", *(f"--extra={extra}" for extra in LIBRARY)]
     with tempfile.TemporaryDirectory() as scratch:
         uv = find_uv(Path(scratch, "uv"))
-        command = [uv, "pip", "compile", "pyproject.toml", *options, "--output-file", LOCK.name]
-        must("Pinning the dependencies", command, quiet=True)
-    say("requirements.lock is written. Run book and test before you commit it.")
+        command = [uv, "pip", "compile", "pyproject.toml", *options, "--output-file"]
+        must("Pinning the dependencies", [*command, LOCK.name, "--all-extras"], quiet=True)
+        must("Pinning the oldest", [*command, LOWEST.name, *lowest], quiet=True)
+    say(f"{LOCK.name} and {LOWEST.name} are written. Run book and test before you commit them.")
     return 0
 
 
@@ -435,6 +451,52 @@ def find_uv(scratch: Path) -> str | Path:
         make_venv(scratch)
         must("Installing uv for the moment", [*pip(scratch), "uv"], quiet=True)
     return found or in_venv("uv", scratch)
+
+
+def metadata() -> int:
+    """Write CITATION.cff, .zenodo.json, codemeta.json, ... from pyproject.toml."""
+    return subprocess.call([sys.executable, TOOLS / "metadata.py"], cwd=ROOT)
+
+
+def licences() -> int:
+    """List the licence of everything that is installed in .venv; an unknown one is a failure."""
+    prepare()
+    return subprocess.call([in_venv("python"), TOOLS / "licences.py"], env=environment())
+
+
+def pack() -> int:
+    """Make the files of a release in dist/, and their checksums. No index is asked."""
+    prepare()
+    if not book_is_fresh():
+        make_book()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    name = f"qbound-{{}}-{project['version']}"
+    remove(DIST)
+    wheel = [*pip(VENV, "wheel"), *OFFLINE, "--wheel-dir", DIST, ROOT]
+    must("Building the wheel", wheel, quiet=True)
+    pack_folder(name.format("book"), [BUILD / "html"])
+    pack_folder(name.format("results"), [ROOT / "results", *map(ROOT.joinpath, CITED)])
+    write_checksums()
+    say(f"The files of the release: {DIST}")
+    return 0
+
+
+def pack_folder(name: str, sources: list[Path]) -> None:
+    """Zip files and folders below one folder of that name."""
+    with tempfile.TemporaryDirectory() as scratch:
+        target = Path(scratch, name)
+        target.mkdir()
+        for source in sources:
+            copy = shutil.copytree if source.is_dir() else shutil.copy
+            copy(source, target / source.name)
+        shutil.make_archive(str(DIST / name), "zip", scratch, name)
+
+
+def write_checksums() -> None:
+    """Write SHA256SUMS in the form that `sha256sum --check` reads."""
+    sums = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in DIST.iterdir()}
+    lines = [f"{total}  {name}\n" for name, total in sorted(sums.items())]
+    (DIST / "SHA256SUMS").write_text("".join(lines), encoding="utf-8", newline="\n")
 
 
 def clean() -> int:
@@ -448,7 +510,7 @@ def clean() -> int:
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser = argparse.ArgumentParser(prog="run.py", description=(__doc__ or "").split("\n")[0])
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for function in [book, test, serve, pdf, lint, lock, clean]:
+    for function in [book, test, serve, pdf, lint, lock, metadata, licences, pack, clean]:
         text = function.__doc__
         commands.add_parser(
             function.__name__, help=text, description=text, allow_abbrev=False

@@ -1,10 +1,13 @@
-"""The one step of the build that pyproject.toml cannot say: results/ goes into the wheel."""
+"""What pyproject.toml cannot say of the wheel: it holds results/ and names our addresses."""
 
 import shutil
+import tomllib
 from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_py import build_py
+
+HERE = Path(__file__).resolve().parent
 
 
 class WithResults(build_py):
@@ -17,8 +20,19 @@ class WithResults(build_py):
             target = Path(self.build_lib, "lizarraga2025", "recorded_results")
             shutil.rmtree(target, ignore_errors=True)
             target.mkdir(parents=True)
-            for file in sorted(Path(__file__).resolve().parent.glob("results/*.json")):
+            for file in sorted(HERE.glob("results/*.json")):
                 shutil.copy(file, target)
 
 
-setup(cmdclass={"build_py": WithResults})
+def urls() -> dict[str, str]:
+    """Return the addresses that are known; `importlib.metadata` finds them where qbound runs."""
+    ours = tomllib.loads((HERE / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["qbound"]
+    found = {"Paper": f"https://doi.org/{ours['paper']['doi']}"}
+    if ours["doi"]:
+        found["DOI"] = f"https://doi.org/{ours['doi']}"
+    if ours["repository"]:
+        found |= {"Repository": ours["repository"], "Issues": f"{ours['repository']}/issues"}
+    return found
+
+
+setup(cmdclass={"build_py": WithResults}, project_urls=urls())

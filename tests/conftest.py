@@ -3,7 +3,7 @@ and one browser for all tests that look at pages.
 """
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 pytest.register_assert_rewrite("support")  # before its first import: its assertions show values
 
@@ -11,6 +11,8 @@ from support.browser import browser  # noqa: E402
 
 __all__ = ["browser"]
 
-settings.register_profile("steady", deadline=None, max_examples=40, derandomize=True)
-settings.register_profile("explore", deadline=None, max_examples=1000)
+# On a busy machine nothing is too slow.
+PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+settings.register_profile("steady", **PATIENT, max_examples=40, derandomize=True)
+settings.register_profile("explore", **PATIENT, max_examples=1000)
 settings.load_profile("steady")

@@ -8,7 +8,15 @@ from typing import Any
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from support.browser import FAMILIES, HTML, in_every_family, open_page, refuse_remote, settle
+from support.browser import (
+    FAMILIES,
+    HTML,
+    eventually,
+    in_every_family,
+    open_page,
+    refuse_remote,
+    settle,
+)
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
@@ -181,33 +189,32 @@ def test_a_search_from_any_page_finds_the_word(page):
 def test_a_chapter_downloads_its_notebook(page):
     chapter = sorted(HTML.glob("chapters/*.html"))[0]
     open_page(page, f"chapters/{chapter.name}")
-    with page.expect_download(timeout=5000) as download:
+    with page.expect_download() as download:
         page.click(".notebook-line a[download]")
     assert download.value.suggested_filename == f"{chapter.stem}.ipynb"
     assert '"cells"' in download.value.path().read_text(encoding="utf-8")
+
+
+def bottom(part: Any) -> float:
+    box = part.bounding_box()
+    return box["y"] + box["height"]
 
 
 def test_the_explorer_fits_its_frame_and_follows_the_theme(page):
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda m: m.type == "error" and complaints.append(m.text))
+    frame, inside = page.locator("iframe.explorer"), page.frame_locator("iframe.explorer")
+    last = inside.locator("#full-page")
     for width in WIDTHS.values():
         page.set_viewport_size({"width": width, "height": 900})
         open_page(page, "explore.html")
-        frame = page.locator("iframe.explorer")
-        inside = page.frame_locator("iframe.explorer")
         inside.locator("#status").wait_for()
-        page.wait_for_function(
-            "() => Math.abs(document.querySelector('iframe.explorer').height - 760) > 0"
-        )
-        last = inside.locator("#full-page").bounding_box()
-        whole = frame.bounding_box()
-        assert 0 <= whole["y"] + whole["height"] - (last["y"] + last["height"]) < 40
+        eventually(page, lambda: 0 <= bottom(frame) - bottom(last) < 40)
     ground = "() => getComputedStyle(document.documentElement).backgroundColor"
     dark = inside.locator("#status").evaluate(ground)
     page.evaluate("() => { document.documentElement.dataset.theme = 'light'; }")
-    page.wait_for_timeout(200)
-    assert inside.locator("#status").evaluate(ground) != dark
+    eventually(page, lambda: inside.locator("#status").evaluate(ground) != dark)
     assert complaints == []
 
 
@@ -222,7 +229,7 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     after = inside.locator("#plane .handle-group").get_attribute("transform")
     assert after != before
     inside.locator("#task-go").click()
-    inside.get_by_text("There. On the way you crossed").wait_for(timeout=20_000)
+    inside.get_by_text("There. On the way you crossed").wait_for()
 
 
 # axe takes a table's head for empty when its words are a formula: it does not read MathML.
@@ -282,4 +289,4 @@ def test_a_solution_is_folded_until_a_reader_asks(page):
     words = solution.locator("p:not(.admonition-title)").first
     assert not words.is_visible()
     solution.locator(".admonition-title").click()
-    words.wait_for(state="visible", timeout=2000)
+    words.wait_for(state="visible")

@@ -456,10 +456,11 @@ def test_bad_input_is_one_sentence_status_2_and_no_file(capsys, line, words) -> 
 def test_a_reader_that_leaves_is_no_error() -> None:
     """As in ``qbound region ... --json - | head``, which is gone when the output comes."""
     command = [sys.executable, "-m", "qbound", "region", "minervabot-v2", "--json", "-"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        process.stdout.close()
-        assert process.stderr.read() == b""
-    assert process.returncode == 141
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
 
 
 def test_ctrl_c_ends_without_a_traceback_and_without_a_file(capsys, monkeypatch) -> None:

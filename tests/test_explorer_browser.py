@@ -14,7 +14,7 @@ from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
-from support.browser import in_every_family, refuse_remote, settle
+from support.browser import in_every_family, refuse_remote, settle, wait_until
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}
@@ -93,15 +93,6 @@ def drag(page, start, end, steps=12):
     page.mouse.move(*end, steps=steps)
     page.mouse.up()
     settle(page)
-
-
-def wait_until(page, expression, patience=300):
-    """Ask again and again: the page's policy forbids Playwright's own way of waiting."""
-    for _ in range(patience):
-        if page.evaluate(expression):
-            return
-        page.wait_for_timeout(50)
-    pytest.fail(f"never came true: {expression}")
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -241,6 +232,8 @@ def test_the_mirrored_pose_is_across_the_singular_curve_and_the_page_says_why(op
     page = open_explorer()
     assert "mirror image" in page.inner_text("#task-text")
     page.evaluate(LISTEN)
+    # A frame moves the arm 100 ms on at most; at half speed that is less than the line is thick.
+    page.select_option("#speed", "0.5")
     page.click("#task-go")
     wait_until(page, "byId('task-text').textContent.startsWith('There.')")
     wait_until(page, "!isPlaying()")
@@ -267,8 +260,7 @@ def test_a_traversal_plays_pauses_and_goes_on(open_explorer):
     page.select_option("#speed", "2")
     start = pose(page)
     page.click("#play")
-    wait_until(page, "state.progress > 0.05")
-    page.click("#play")
+    wait_until(page, "state.progress > 0.05", then="byId('play').click()")
     here = pose(page)
     settle(page)
     assert pose(page) == here != start

@@ -1,7 +1,6 @@
 """The ground: run.py, the lock, the metadata, the import contract, what the repository may hold."""
 
 import ast
-import importlib.util
 import json
 import os
 import re
@@ -21,6 +20,8 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 
+from support.scripts import load_script
+
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
@@ -28,19 +29,9 @@ LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 PINS = [f"tests/javascript/{name}" for name in ("package.json", "package-lock.json")]
 
 
-def load_run() -> ModuleType:
-    """A fresh run.py, so that a test may move its paths."""
-    spec = importlib.util.spec_from_file_location("run", ROOT / "run.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture
 def run() -> ModuleType:
-    return load_run()
+    return load_script("run.py")
 
 
 @pytest.fixture
@@ -605,30 +596,13 @@ def test_environment_yml_uses_the_lock() -> None:
     assert all(name.split("=")[0] in ("python", "pip") for name in plain)
 
 
-def test_the_version_is_the_same_everywhere() -> None:
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    zenodo = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+def test_the_change_log_begins_with_the_version_and_its_day() -> None:
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[(\S+)\] - (\S+)$", changes, re.MULTILINE)
     assert newest is not None
-    versions = {PROJECT["version"], citation["version"], zenodo["version"], newest[1]}
-    assert versions == {version("qbound")}
-    dates = {str(citation["date-released"]), zenodo["publication_date"], newest[2]}
-    assert len(dates) == 1
+    assert newest[1] == PROJECT["version"] == version("qbound")
+    assert newest[2] == str(PYPROJECT["tool"]["qbound"]["released"])
     assert str(Version(PROJECT["version"])) == PROJECT["version"]
-
-
-def test_the_citation_is_of_this_package_and_refers_to_the_paper() -> None:
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    assert {"cff-version", "message", "title", "authors"} <= set(citation)
-    assert "preferred-citation" not in citation
-    assert citation["title"].startswith("qbound")
-    (paper,) = citation["references"]
-    assert paper["doi"] == "10.3390/app15105383"
-    assert len(paper["authors"]) == 9
-    zenodo = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
-    assert [link["identifier"] for link in zenodo["related_identifiers"]] == [paper["doi"]]
-    assert zenodo["license"] == citation["license"] == PROJECT["license"]
 
 
 # --- the package ----------------------------------------------------------------------------------
@@ -868,34 +842,6 @@ def test_no_test_file_imports_another() -> None:
 def test_the_products_are_not_committed(run: ModuleType) -> None:
     products = [run.VENV, run.CHAPTERS, run.BUILD, run.GENERATED]
     assert not [p for p in tracked() if any(place in p.parents for place in products)]
-
-
-def workflows() -> dict[str, dict[object, object]]:
-    folder = ROOT / ".github/workflows"
-    return {p.stem: yaml.safe_load(p.read_text(encoding="utf-8")) for p in folder.glob("*.yml")}
-
-
-def steps(workflow: dict[object, object]) -> list[dict[str, str]]:
-    return [step for job in workflow["jobs"].values() for step in job["steps"]]
-
-
-def test_the_workflows_run_the_commands_of_run_py() -> None:
-    found = {name: [s["run"] for s in steps(w) if "run" in s] for name, w in workflows().items()}
-    check = [f"python3 run.py {command}" for command in ("lint", "book", "test")]
-    assert found["ci"] == check
-    assert found["book"] == check[1:2]
-    assert [line for line in found["release"] if line in check] == check
-    matrix = workflows()["ci"]["jobs"]["check"]["strategy"]["matrix"]
-    assert matrix["python"] == ["3.11", "3.13"]
-
-
-def test_the_workflows_ask_for_little_and_name_the_versions_of_what_they_use() -> None:
-    for name, workflow in workflows().items():
-        assert workflow["permissions"] == {"contents": "read"}, name
-        assert "concurrency" in workflow, name
-        uses = [step["uses"] for step in steps(workflow) if "uses" in step]
-        assert uses, name
-        assert all(re.fullmatch(r"actions/[\w-]+@v\d+", use) for use in uses), uses
 
 
 def test_the_hooks_download_nothing() -> None:

@@ -12,6 +12,9 @@ from hypothesis import strategies as st
 
 from qbound.cli import main
 
+# The folder and the captured output serve all examples; on a busy machine nothing is too slow.
+UNCHECKED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+
 PACKAGED = Path(__file__).parents[1] / "src/qbound/robots"
 FILES = [file.read_text("utf-8") for file in sorted(PACKAGED.glob("*.toml"))]
 LINES = [line for text in FILES for line in text.splitlines()]
@@ -47,9 +50,7 @@ def mutated(draw) -> str:
 
 
 @pytest.mark.parametrize("command", ["contains {} 0 0", "region {}"])
-@settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=60, deadline=None, suppress_health_check=UNCHECKED)
 @given(text=mutated())
 def test_a_mutated_file_is_an_answer_or_one_sentence(command, text, tmp_path, capsys) -> None:
     file = tmp_path / "robot.toml"
@@ -64,9 +65,7 @@ def test_a_mutated_file_is_an_answer_or_one_sentence(command, text, tmp_path, ca
     assert err == "" or err.startswith("qbound: ")
 
 
-@settings(
-    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=100, deadline=None, suppress_health_check=UNCHECKED)
 @given(content=st.binary(max_size=300))
 def test_any_bytes_are_refused_in_one_sentence(content, tmp_path, capsys) -> None:
     file = tmp_path / "robot.toml"

@@ -6,7 +6,8 @@ import base64
 import os
 import re
 import shutil
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -31,6 +32,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+PATIENCE = 180_000  # ms: a ceiling for a page that hangs, far above what a busy machine needs
 REMOTE = re.compile(r"^(?!(file|data|blob):)")
 
 FAMILIES = {
@@ -74,7 +76,8 @@ def browser() -> Iterator[Any]:
 
     path = chromium()
     with playwright.sync_playwright() as run:
-        browser = run.chromium.launch(executable_path=path, args=FLAGS)
+        browser = run.chromium.launch(executable_path=path, args=FLAGS, timeout=PATIENCE)
+        browser.on("context", lambda context: context.set_default_timeout(PATIENCE))
         yield browser
         browser.close()
 
@@ -119,6 +122,31 @@ def refuse_remote(page: Any, requests: list[str]) -> None:
 def settle(page: Any) -> None:
     """Wait for two frames: by then a new width is laid out."""
     page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
+
+
+def wait_until(page: Any, expression: str, then: str = "") -> None:
+    """Wait for a frame in which the page says so, and do something in that frame.
+
+    Playwright's own way needs an `eval` in the page, which the explorer's policy forbids.
+    """
+    came = page.evaluate(f"""() => new Promise((end) => {{
+      const begun = performance.now();
+      const look = () => {{
+        if ({expression}) {{ {then}; end(true); }}
+        else if (performance.now() - begun > {PATIENCE}) end(false);
+        else requestAnimationFrame(look);
+      }};
+      look();
+    }})""")
+    assert came, f"never came true: {expression}"
+
+
+def eventually(page: Any, question: Callable[[], bool]) -> None:
+    """Ask again, two frames later each time, until the answer is yes."""
+    end = time.monotonic() + PATIENCE / 1000
+    while not question():
+        assert time.monotonic() < end, "the answer stays no"
+        settle(page)
 
 
 def open_page(page: Any, name: str) -> None:
