@@ -702,7 +702,7 @@ def read_cells(statement: Any, grammar: int = 1) -> list[tuple[Point, ...]]:
 
 # --- balls ----------------------------------------------------------------------------------------
 
-BITS = 128
+BITS = 192
 """A number x is written as the whole number nearest below x times 2^BITS: a count of units."""
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
@@ -790,14 +790,14 @@ def real(x: Fraction | int) -> Ball:
 RADIAN = {"deg": real(PI / 180) + Ball(0, 0, 1), "rad": ONE}
 """Radians in a unit of angle."""
 
-HALVINGS, TERMS = 6, 30
+HALVINGS, TERMS = 6, 40
 
 
 def exp_i(angle: Ball) -> Ball:
     """Enclose exp(i t) for a real t of at most 32: Taylor's series at t / 2^6, then six squares.
 
-    There t is at most 1/2, and what follows the 30th term is less than
-    2 (1/2)^31 / 31!, which is less than a unit.
+    There t is at most 1/2, and what follows the 40th term is less than
+    2 (1/2)^41 / 41!, which is less than a unit.
     """
     demand(abs(angle.x) + angle.r <= 32 << BITS, "an angle of more than five turns")
     small = IMAGINARY * angle.over(1 << HALVINGS)
