@@ -536,8 +536,8 @@ def test_a_violation_in_the_fortieth_digit_is_a_violation():
     post = '[[point]]\nname = "p{}"\nframe = "0"\nat = [{}, {}, 0]\n'
     wall = '[[boundary]]\nname = "wall"\ntype = "pair"\npoints = ["p0", "p1"]\nclearance = {}\n'
     statement = {"set": "box", "margin": "0", "points": [[["0"], ["1"]]]}
-    for clearance, verdict in (("5." + "0" * 39 + "1", "refuted"), ("5", "")):
-        robot = text + post.format(0, 0, 0) + post.format(1, 3, 4) + wall.format(clearance)
+    for distance, verdict in (("5." + "0" * 39 + "1", "refuted"), ("5", "")):
+        robot = text + post.format(0, 0, 0) + post.format(1, 3, 4) + wall.format(distance)
         evidence = {"verdict": "refuted", "boundary": "wall", "at": ["0"]}
         file = certificates.text(robot, statement, 2, **evidence)
         assert verdict_of(ours, file) == verdict_of(check_arb.verify, file) == verdict
