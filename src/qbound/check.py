@@ -92,6 +92,8 @@ def read_json(data: bytes) -> Any:
         )
     except UnicodeDecodeError:
         raise Refused("the file is not UTF-8 text") from None
+    except RecursionError:
+        raise Refused("the file is nested too deeply") from None
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         raise Refused(f"the file is not JSON: {where}: {error.msg}") from None
@@ -1443,8 +1445,6 @@ def _answer(arguments: Sequence[str]) -> tuple[int, str]:
         return (1 if answer.refuted else 0), answer.said
     except Refused as error:
         reason = str(error)
-    except RecursionError:
-        reason = "the file is nested too deeply"
     except MemoryError:
         reason = "the file needs more memory than there is"
     except Exception:  # whatever a hostile file sets off
