@@ -530,6 +530,19 @@ def test_the_answer_is_written_from_what_was_verified():
     )
 
 
+def test_a_violation_in_the_fortieth_digit_is_a_violation():
+    """Two points of the base are 5 apart."""
+    text = robot_file(1, 1, "revolute")
+    post = '[[point]]\nname = "p{}"\nframe = "0"\nat = [{}, {}, 0]\n'
+    wall = '[[boundary]]\nname = "wall"\ntype = "pair"\npoints = ["p0", "p1"]\nclearance = {}\n'
+    statement = {"set": "box", "margin": "0", "points": [[["0"], ["1"]]]}
+    for distance, verdict in (("5." + "0" * 39 + "1", "refuted"), ("5", "")):
+        robot = text + post.format(0, 0, 0) + post.format(1, 3, 4) + wall.format(distance)
+        evidence = {"verdict": "refuted", "boundary": "wall", "at": ["0"]}
+        file = certificates.text(robot, statement, 2, **evidence)
+        assert verdict_of(ours, file) == verdict_of(check_arb.verify, file) == verdict
+
+
 @pytest.mark.parametrize("high", ["180", "179.999"])
 def test_what_goes_all_the_way_round_is_said(high):
     low = [["-180", "0"], [high, "0"], [high, "8"], ["-180", "8"]]

@@ -92,6 +92,8 @@ def read_json(data: bytes) -> Any:
         )
     except UnicodeDecodeError:
         raise Refused("the file is not UTF-8 text") from None
+    except RecursionError:
+        raise Refused("the file is nested too deeply") from None
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         raise Refused(f"the file is not JSON: {where}: {error.msg}") from None
@@ -702,7 +704,7 @@ def read_cells(statement: Any, grammar: int = 1) -> list[tuple[Point, ...]]:
 
 # --- balls ----------------------------------------------------------------------------------------
 
-BITS = 128
+BITS = 192
 """A number x is written as the whole number nearest below x times 2^BITS: a count of units."""
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
@@ -790,14 +792,14 @@ def real(x: Fraction | int) -> Ball:
 RADIAN = {"deg": real(PI / 180) + Ball(0, 0, 1), "rad": ONE}
 """Radians in a unit of angle."""
 
-HALVINGS, TERMS = 6, 30
+HALVINGS, TERMS = 6, 40
 
 
 def exp_i(angle: Ball) -> Ball:
     """Enclose exp(i t) for a real t of at most 32: Taylor's series at t / 2^6, then six squares.
 
-    There t is at most 1/2, and what follows the 30th term is less than
-    2 (1/2)^31 / 31!, which is less than a unit.
+    There t is at most 1/2, and what follows the 40th term is less than
+    2 (1/2)^41 / 41!, which is less than a unit.
     """
     demand(abs(angle.x) + angle.r <= 32 << BITS, "an angle of more than five turns")
     small = IMAGINARY * angle.over(1 << HALVINGS)
@@ -1443,8 +1445,6 @@ def _answer(arguments: Sequence[str]) -> tuple[int, str]:
         return (1 if answer.refuted else 0), answer.said
     except Refused as error:
         reason = str(error)
-    except RecursionError:
-        reason = "the file is nested too deeply"
     except MemoryError:
         reason = "the file needs more memory than there is"
     except Exception:  # whatever a hostile file sets off
