@@ -389,7 +389,7 @@ def test_claims_computes_an_entry_again_and_says_where_it_differs(capsys, monkey
     monkeypatch.setattr(recorded, "claims", lambda: other)
     status, text = said(capsys, "claims", "E-34", "--recompute")
     assert status == 1
-    assert "differs from what is recorded: E-34" in text
+    assert "E-34 differs from what is recorded" in text
     assert VERDICT["E-34"] in text
 
 

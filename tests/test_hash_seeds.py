@@ -35,7 +35,7 @@ def executed(chapter: Path, results: Path) -> Any:
     """Run a chapter in a kernel of another seed; its results go elsewhere."""
     notebook = nbformat.read(chapter, as_version=4)
     place = {"metadata": {"path": str(chapter.parent)}}
-    client = NotebookClient(notebook, timeout=900, resources=place)
+    client = NotebookClient(notebook, timeout=None, resources=place)
     own = {"PYTHONHASHSEED": SEED, "QBOUND_RESULTS": str(results)}
     return client.execute(env={**os.environ, **own})
 

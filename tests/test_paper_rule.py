@@ -215,8 +215,10 @@ def test_region_holds_home_and_is_the_one_computed_by_hand() -> None:
     assert feasible(MINERVA, q[:6].reshape(3, 2, 2)).shape == (3, 2)
 
 
-def test_nan_is_not_feasible() -> None:
-    assert_array_equal(feasible(MINERVA, [[np.nan, 0], [0, np.nan], [0, 0]]), [False, False, True])
+@pytest.mark.parametrize("q", [[np.nan, 0.0], [0.0, np.nan], [np.inf, 0.0]])
+def test_what_is_no_number_is_refused(q) -> None:
+    with pytest.raises(ValueError, match="NaN or infinite"):
+        feasible(MINERVA, [q, [0.0, 0.0]])
 
 
 def test_vertices_go_round_the_region() -> None:

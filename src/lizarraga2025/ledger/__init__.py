@@ -1,6 +1,6 @@
 """What holds of the paper? Every statement that can be tested, and the verdict on it.
 
 `entries` reads what each says (the files in ``statements``), `claims` joins this with what its
-function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `cite` tells
-how to cite it.
+function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `errata` what
+an erratum would say; `cite` tells how to cite it, in the signs of `latex`.
 """

@@ -1,8 +1,8 @@
 """A boundary function as a sum of waves, found from its values alone; for `check_arb`.
 
-Along one joint a boundary function is a cos q + b sin q + c, or a q^2 + b q + c: three values
-determine it. So the values at 0, 1/3 and 2/3 of a turn of each joint that turns, and at 0, 1 and -1
-of each that slides, are enough. Numbers are balls.
+Along one joint a boundary function is ``a cos q + b sin q + c``, or ``a q^2 + b q + c``: three
+values determine it. So the values at 0, 1/3 and 2/3 of a turn of each joint that turns, and at 0, 1
+and -1 of each that slides, are enough. Numbers are balls.
 """
 
 from __future__ import annotations
@@ -213,7 +213,7 @@ def _shift(by: Sequence[Any]) -> Any:
 
 
 def _rotation(axis: Sequence[Any], angle: Any) -> Any:
-    """I + sin K + (1 - cos) K^2, with K the matrix of the cross product."""
+    """``I + sin K + (1 - cos) K^2``, with ``K`` the matrix of the cross product."""
     from flint import arb, arb_mat
 
     x, y, z = axis
