@@ -82,7 +82,7 @@ SELECTION: Final = {
 """The matrices of Table 5."""
 
 TABLE_5: Final = {5: ("S_x", "x_{min,1}"), 6: ("S_x", "x_{min,2}"), 7: ("S_z", "z_{min,1}")}
-"""``B_i = S r_{0,3}`` less a vector with one limit, in the place that S selects: S and limit by i."""
+"""``B_i = S r_{0,3}`` less a vector with one limit, where S selects: S and limit, by i."""
 
 THEOREM_1: Final = {
     14: "x**2 + y**2 + z**2",
