@@ -19,7 +19,9 @@ from support.scripts import load_script
 ROOT = Path(__file__).resolve().parents[1]
 PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 PAPER = tomllib.loads(PYPROJECT)["tool"]["qbound"]["paper"]
-NAMES = ["CITATION.cff", ".zenodo.json", "codemeta.json", "ro-crate-metadata.json", "SECURITY.md"]
+DATA = ["CITATION.cff", ".zenodo.json", "codemeta.json", "ro-crate-metadata.json"]
+TEXTS = ["SECURITY.md", "book/cite.md"]
+NAMES = [*DATA, *TEXTS]
 HOME, OWN_DOI = "https://code.invented.net/someone/qbound", "10.9999/invented.1"
 
 metadata = load_script("tools/metadata.py")
@@ -34,11 +36,17 @@ def pyproject(repository: str, doi: str) -> str:
     return text
 
 
+def copy_texts(folder: Path) -> None:
+    for name in TEXTS:
+        (folder / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
+
+
 def written(folder: Path, repository: str, doi: str) -> dict[str, str]:
     """What `run.py metadata` writes in a copy."""
     folder.mkdir(exist_ok=True)
     (folder / "pyproject.toml").write_text(pyproject(repository, doi), encoding="utf-8")
-    shutil.copy(ROOT / "SECURITY.md", folder)
+    copy_texts(folder)
     assert metadata.main([], folder) == 0
     return {name: (folder / name).read_text(encoding="utf-8") for name in NAMES}
 
@@ -73,7 +81,7 @@ def values(tree: Any) -> Iterator[Any]:
 
 def test_the_committed_files_are_what_pyproject_says() -> None:
     assert metadata.main(["--check"]) == 0
-    assert {file.name for file in metadata.files(ROOT)} == set(NAMES)
+    assert {str(file.relative_to(ROOT)) for file in metadata.files(ROOT)} == set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -82,7 +90,7 @@ def test_a_file_that_was_edited_or_lost_is_named(name: str, tmp_path: Path, caps
     text = (tmp_path / name).read_text(encoding="utf-8")
     (tmp_path / name).write_text(text.replace(HOME, "https://else.where.net/x"), encoding="utf-8")
     assert metadata.main(["--check"], tmp_path) == 1
-    assert f"Out of date: {name}." in capsys.readouterr().err
+    assert f"Out of date: {Path(name).name}." in capsys.readouterr().err
     assert "else.where" in (tmp_path / name).read_text(encoding="utf-8")  # a check writes nothing
     assert metadata.main([], tmp_path) == 0
     assert (tmp_path / name).read_text(encoding="utf-8") == text
@@ -102,7 +110,7 @@ def test_what_is_no_address_and_no_doi_is_refused(
     repository: str, doi: str, named: str, tmp_path: Path, capsys
 ) -> None:
     (tmp_path / "pyproject.toml").write_text(pyproject(repository, doi), encoding="utf-8")
-    shutil.copy(ROOT / "SECURITY.md", tmp_path)
+    copy_texts(tmp_path)
     assert metadata.main([], tmp_path) == 2
     assert f"[tool.qbound] {named} is no {named}" in capsys.readouterr().err
     assert not (tmp_path / "CITATION.cff").exists()
@@ -137,6 +145,7 @@ def test_an_invented_address_and_doi_are_everywhere(public: dict[str, str]) -> N
     root = entities(public["ro-crate-metadata.json"])["./"]
     assert (root["url"], root["identifier"]) == (HOME, f"https://doi.org/{OWN_DOI}")
     assert f"{HOME}/security/advisories/new" in public["SECURITY.md"]
+    assert f"doi     = {{{OWN_DOI}}},\n  url     = {{{HOME}}}\n}}" in public["book/cite.md"]
     # Zenodo gives its record a DOI itself; a foreign one there would stop it.
     related = json.loads(public[".zenodo.json"])["related_identifiers"]
     home = {"identifier": HOME, "scheme": "url", "resource_type": "software"}
@@ -152,7 +161,7 @@ def test_without_them_nothing_stands_in_their_place(name: str, bare: dict[str, s
     if name == "SECURITY.md":
         assert "no public address yet" in text
         assert "://" not in text
-    else:
+    if name in DATA:
         tree = yaml.safe_load(text)  # which reads JSON too
         assert not [value for value in values(tree) if value in ("", None, [], {})]
         assert not {"doi", "repository-code", "codeRepository", "issueTracker"} & set(tree)

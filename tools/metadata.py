@@ -1,9 +1,9 @@
 """Write the files by which archives and reference managers know this repository.
 
-CITATION.cff, .zenodo.json, codemeta.json, ro-crate-metadata.json and the paragraph of SECURITY.md
-that says where to report come from `[project]` and `[tool.qbound]` of pyproject.toml alone.
-`python3 run.py metadata` writes them; with `--check` the files that are out of date are named
-instead. docs/decisions/0428-metadata-from-one-place.md says why.
+CITATION.cff, .zenodo.json, codemeta.json, ro-crate-metadata.json, the paragraph of SECURITY.md that
+says where to report and the BibTeX entry of book/cite.md come from `[project]` and `[tool.qbound]`
+of pyproject.toml alone. `python3 run.py metadata` writes them; with `--check` the files that are
+out of date are named instead. docs/decisions/0428-metadata-from-one-place.md says why.
 """
 
 import json
@@ -285,23 +285,36 @@ def part(path: str, says: str) -> Table:
     return found | ({"@type": "File", "encodingFormat": MEDIA[suffix]} if suffix else {})
 
 
-# --- SECURITY.md ----------------------------------------------------------------------------------
+# --- parts of texts: SECURITY.md, book/cite.md ---------------------------------------------------
 
-REPORTING = re.compile(r"(?s)(?<=<!-- where to report: run.py metadata -->\n).*?(?=<!-- end -->)")
+MARKED = re.compile(r"(?s)(?<=<!-- written by run.py metadata -->\n).*?(?=<!-- end -->)")
 
 
-def security(text: str, repository: str) -> str:
-    """Return SECURITY.md with the paragraph that says where to report."""
+def with_part(file: Path, part: str) -> str:
+    """Return a file's text with a new part between the marks."""
+    text = file.read_text(encoding="utf-8")
+    if not MARKED.search(text):
+        raise Wrong(f"{file.name}: the marks around the part that is written are missing.")
+    return MARKED.sub(lambda _: part, text)
+
+
+def where_to_report(repository: str) -> str:
     if repository:
-        where = f"Report it in private: {below(repository, 'security/advisories/new')}\n"
-    else:
-        where = (
-            "This copy has no public address yet. Report it in private to the person you have\n"
-            "the copy from, and not in a public place.\n"
-        )
-    if not REPORTING.search(text):
-        raise Wrong("SECURITY.md: the marks around the paragraph on reporting are missing.")
-    return REPORTING.sub(lambda _: where, text)
+        return f"Report it in private: {below(repository, 'security/advisories/new')}\n"
+    return (
+        "This copy has no public address yet. Report it in private to the person you have\n"
+        "the copy from, and not in a public place.\n"
+    )
+
+
+def bibtex(about: Table) -> str:
+    """Return the BibTeX entry of this version, as a block of code."""
+    people = " and ".join(f"{{{author['name']}}}" for author in about["authors"])
+    year = str(about["released"])[:4]
+    fields = {"author": people, "title": about["full_title"], "version": about["version"]}
+    fields |= {"year": year, "doi": about["doi"], "url": about["repository"]}
+    lines = ",\n".join(f"  {key:<7} = {{{value}}}" for key, value in known(fields).items())
+    return f"```bibtex\n@software{{qbound,\n{lines}\n}}\n```\n"
 
 
 # --- writing and checking -------------------------------------------------------------------------
@@ -310,12 +323,13 @@ def security(text: str, repository: str) -> str:
 def files(root: Path) -> dict[Path, str]:
     """Return what each file should hold."""
     about = read((root / "pyproject.toml").read_text(encoding="utf-8"))
-    advice = root / "SECURITY.md"
+    advice, cite = root / "SECURITY.md", root / "book" / "cite.md"
     tables = {".zenodo.json": zenodo, "codemeta.json": codemeta, "ro-crate-metadata.json": crate}
     note = "# Written by `python3 run.py metadata` from pyproject.toml.\n"
     return {
         root / "CITATION.cff": note + "\n".join(yaml(citation(about))) + "\n",
-        advice: security(advice.read_text(encoding="utf-8"), about["repository"]),
+        advice: with_part(advice, where_to_report(about["repository"])),
+        cite: with_part(cite, bibtex(about)),
         **{
             root / name: json.dumps(make(about), indent=2, ensure_ascii=False) + "\n"
             for name, make in tables.items()
