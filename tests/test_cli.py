@@ -75,7 +75,8 @@ def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
     margins = [float(line.split()[1]) for line in lines if line.startswith("  margin")]
     assert len(margins) == 5
     assert margins == sorted(margins)
-    assert lines[1].endswith("cm: B3")
+    assert lines[1] == "  at q1 = 0 deg, q2 = 0 deg"
+    assert lines[2].endswith("cm: B3")
     assert lines[-1].startswith("nearest boundary: B3 at q1 = ")
     assert lines[-1].endswith("q2 = 43.8598 deg, distance 43.8598 deg")
 

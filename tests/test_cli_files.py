@@ -343,6 +343,10 @@ at = [5, 0, 0]
     assert status == 2
     assert "3 that are not held" in err
     assert run(capsys, "draw three.toml --slice c=30deg")[0] == 0
+    assert "with the home pose" in run(capsys, "region three.toml --slice c=0")[1]
+    away = run(capsys, "region three.toml --slice c=30deg")[1]
+    assert "with home's values of these joints" in away
+    assert "with the home pose" not in away
     status, out, _ = run(capsys, "traverse three.toml 1 2 --slice c=30deg --json -")
     content = json.loads(out)
     follows_schema(content, "traverse")

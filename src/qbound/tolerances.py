@@ -54,6 +54,9 @@ TRANSVERSAL: Final = 1e-6
 SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line, or of a cell that ends there."""
 
+ROUNDED_AREA: Final = 1e-12
+"""Part of a workspace's area below which the overlap of two of its pieces is rounding."""
+
 UNCHANGED: Final = 1e-3
 """Part of its height by which a cell that goes on may change beside a critical line.
 

@@ -22,7 +22,7 @@ def add_to(commands: Any) -> None:
         description="Print the ledger's entries: all, some by id, or those of a verdict or a kind.",
         epilog="example: qbound claims E-34 --recompute",
     )
-    parser.add_argument("ids", nargs="*", metavar="ID", help="such as E-34, B-2.1.2, T-4, F-4, S-3")
+    parser.add_argument("ids", nargs="*", metavar="ID", help="E-34, B-2.1.2, T-4, F-4.1, S-3, ...")
     parser.add_argument("--verdict", choices=VERDICTS, metavar="VERDICT", help="; ".join(VERDICTS))
     parser.add_argument("--kind", choices=KINDS)
     parser.add_argument("--json", action="store_true", help="as in results/claims.json")
@@ -104,7 +104,7 @@ def _count(chosen: list[Claim]) -> None:
     for verdict, count in counts(chosen).items():
         if count.entries:
             print(f"{verdict}: {_numbers(count.entries, count.findings)}")
-    print(f"all: {_numbers(len(chosen), len({one.finding for one in chosen}))}")
+    print(f"together: {_numbers(len(chosen), len({one.finding for one in chosen}))}")
 
 
 def _numbers(entries: int, findings: int) -> str:

@@ -15,7 +15,7 @@ from qbound.export.formats import json_text
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
 from qbound.tolerances import SAME_POINT
-from qbound.units import amount, joint_units, limited_joints, margin_text
+from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
 
 def add_to(commands: Any) -> None:
@@ -26,7 +26,12 @@ def add_to(commands: Any) -> None:
         epilog="example: qbound contains minervabot-v2 20deg -45deg",
     )
     add_robot(parser)
-    parser.add_argument("values", nargs="+", metavar="VALUE", help="20deg, 0.35rad, or a length")
+    parser.add_argument(
+        "values",
+        nargs="+",
+        metavar="VALUE",
+        help="20deg, 0.35rad, a length; a plain number is in the unit of the robot file",
+    )
     parser.add_argument(
         "--weights",
         nargs=2,
@@ -54,6 +59,7 @@ def _lines(robot: Robot, content: dict[str, Any]) -> Iterator[str]:
         yield f"violated: {name}, margin {amounts[name]}"
     if not violated:
         yield "feasible" + _component(content)
+    yield f"  at {joint_text(robot, content['q'])}"
     for name in (name for name in amounts if name not in violated):
         yield f"  margin {amounts[name]}: {name}"
     if content["nearest"]:

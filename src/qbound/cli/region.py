@@ -77,9 +77,16 @@ def _lines(region: Region) -> Iterator[str]:
     parts = counted(len(region.components), "component")
     yield f"{parts}, area {region.area:.9g} {unit} in all"
     for component in region.components:
-        home_too = ", with the home pose" if component.contains_home else ""
+        home_too = f", with {_home(region)}" if component.contains_home else ""
         corners = counted(len(component.vertices), "vertex", "vertices")
         yield f"  area {component.area:.9g} {unit}, {corners}{home_too}"
+
+
+def _home(region: Region) -> str:
+    """Name what of the home pose a slice holds: all of it if its other joints are at home."""
+    problem, home = region.problem, region.robot.home
+    elsewhere = any(value != home[j] for j, value in problem.held.items())
+    return "home's values of these joints" if elsewhere else "the home pose"
 
 
 def _limited(region: Region) -> dict[str, Joint]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -81,12 +82,20 @@ def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[
     for place in found.singular or ():
         yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
     for least in found.margins:
-        margin = amount(least.value, least.boundary.unit, ON_BOUNDARY * least.boundary.scale)
-        yield f"smallest margin of {least.boundary.name}: {margin}, {_where(route, least.place)}"
+        where = _where(route, least.place)
+        yield f"smallest margin of {least.boundary.name}: {_margin_text(least)}, {where}"
     for least in found.margins:
         if least.leaves is not None:
             pose, where = joint_text(robot, least.leaves.q), _where(route, least.leaves)
             yield f"outside: {least.boundary.name} from {pose}, {where}"
+
+
+def _margin_text(least: Margin) -> str:
+    """Write a margin with its unit, angles in degrees."""
+    unit, rounding = least.boundary.unit, ON_BOUNDARY * least.boundary.scale
+    if unit == "rad":
+        return amount(math.degrees(least.value), "deg", math.degrees(rounding))
+    return amount(least.value, unit, rounding)
 
 
 def _crossing(route: Route, crossing: Crossing) -> dict[str, Any]:

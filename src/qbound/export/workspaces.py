@@ -8,7 +8,8 @@ from typing import Any
 from qbound.export.document import loop_content
 from qbound.export.formats import heading
 from qbound.model.robot import Robot
-from qbound.units import joint_text
+from qbound.tolerances import ROUNDED_AREA
+from qbound.units import amount, joint_text
 from qbound.workspace.areas import Aspect
 from qbound.workspace.passage import Passage
 from qbound.workspace.report import PlaceReport, WorkspaceReport
@@ -41,7 +42,8 @@ def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
     joints, unit = workspace.region.problem.joints, robot.length_unit
     twice = f"{workspace.covered_twice:.9g} {unit}^2 of it in both postures"
     yield f"area {workspace.area:.9g} {unit}^2, {twice}"
-    yield f"reached both safely and not: {found.safe_and_unsafe:.9g} {unit}^2"
+    both = amount(found.safe_and_unsafe, f"{unit}^2", ROUNDED_AREA * workspace.area, digits=9)
+    yield f"reached safely in one posture and unsafely in another: {both}"
     for aspect in workspace.aspects:
         yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g} {unit}^2"
     for at in found.places:
