@@ -17,7 +17,7 @@ import pytest
 
 from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import check_arb
+from qbound.proofs import check_arb, grammar_robot
 from support.robot_files import box_of, robot_file
 
 flint = pytest.importorskip("flint")
@@ -368,6 +368,32 @@ def test_what_would_cost_much_is_refused(name, monkeypatch):
     with pytest.raises(ValueError, match=r"."):
         verdict(COSTLY[name]())
     assert sum(done[:-1]) <= check_arb.MOST_WORK
+
+
+def hundred_turns(places):
+    """Limits of an arm in radians: 200 pi apart, cut off below and above after some places."""
+    with flint.ctx.workprec(1000):
+        low = int((200 * flint.arb.pi() * flint.arb(10) ** places).floor().unique_fmpz())
+    return [f"{str(k)[:3]}.{str(k)[3:]}" for k in (low, low + 1)]
+
+
+@pytest.mark.parametrize("places", [30, 36, 38, 40, 60, 90])
+def test_limits_are_at_most_a_hundred_turns_apart_to_the_last_place(places):
+    below, above = hundred_turns(places)
+    robot = ROBOT.replace('"deg"', '"rad"').replace("limits = [-170, 170]", "limits = [0, {}]")
+    statement = {"set": "path", "points": [[["0", "0"], ["0", "0.1"]]]}
+    assert verdict(proof_of(statement, 1, 2, robot.replace("{}", below))) == "proved"
+    with pytest.raises(ValueError, match="turns apart"):
+        verdict(proof_of(statement, 1, 2, robot.replace("{}", above)))
+
+
+def test_limits_of_two_long_words_are_told_apart_too():
+    below, _ = hundred_turns(185)
+    high, low = below[:99], int(below[99:])
+    robot = ROBOT.replace('"deg"', '"rad"')
+    grammar_robot.read_robot(robot.replace("[-170, 170]", f"[-{low}e-185, {high}]"))
+    with pytest.raises(ValueError, match="turns apart"):
+        grammar_robot.read_robot(robot.replace("[-170, 170]", f"[-{low + 1}e-185, {high}]"))
 
 
 # --- witnesses ------------------------------------------------------------------------------------
