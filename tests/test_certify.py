@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import threading
 import tomllib
 from fractions import Fraction
 from functools import cache
@@ -32,6 +33,7 @@ from qbound.proofs.cells import cells_of
 from qbound.proofs.certify import bracket_scale, certify, certify_region
 from qbound.proofs.forest import silent
 from qbound.proofs.triangulation import triangulate
+from qbound.proofs.verdict import Verdict
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
 from support.robots import drawn_robot, random_robot
@@ -609,6 +611,38 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert "line 3" in capsys.readouterr().err
     path.write_text("0,0\n-20,-45\n20,-45\n")
     assert cli.main(["certify", "minervabot-v2", "--polygon", str(path)]) == 0
+
+
+def piped(text):
+    """Return a file that can be read once."""
+    read, write = os.pipe()
+    threading.Thread(target=lambda: os.fdopen(write, "w").write(text), daemon=True).start()
+    return f"/dev/fd/{read}"
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="no files of open descriptors")
+def test_both_checkers_judge_the_text_of_one_reading(capsys):
+    text, robot = paper_robot()
+    proof = certify(text, statements.home_polygon(robot, 0.9)).text
+    assert cli.main(["check", piped(proof), "--arb"]) == 0
+    assert "python-flint: proved" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("second", ["refuted", "refused"])
+def test_checkers_that_differ_prove_nothing(second, tmp_path, capsys, monkeypatch):
+    text, robot = paper_robot()
+    file = tmp_path / "proof.json"
+    file.write_text(certify(text, statements.home_polygon(robot, 0.9)).text)
+
+    def verify(_):
+        if second == "refused":
+            raise ValueError("it asks for too much work")
+        return Verdict.REFUTED
+
+    monkeypatch.setattr(check_arb, "verify", verify)
+    assert cli.main(["check", str(file), "--arb"]) == 2
+    said = capsys.readouterr().out
+    assert said.startswith("not proved: the two checkers differ; check.py: proved; python-flint:")
 
 
 @pytest.mark.parametrize(
