@@ -15,9 +15,10 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 
+from qbound import check
 from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import check_arb
+from qbound.proofs import cells, check_arb, grammar_robot, interpolation
 from support.robot_files import box_of, robot_file
 
 flint = pytest.importorskip("flint")
@@ -370,6 +371,32 @@ def test_what_would_cost_much_is_refused(name, monkeypatch):
     assert sum(done[:-1]) <= check_arb.MOST_WORK
 
 
+def hundred_turns(places):
+    """Limits of an arm in radians: 200 pi apart, cut off below and above after some places."""
+    with flint.ctx.workprec(1000):
+        low = int((200 * flint.arb.pi() * flint.arb(10) ** places).floor().unique_fmpz())
+    return [f"{str(k)[:3]}.{str(k)[3:]}" for k in (low, low + 1)]
+
+
+@pytest.mark.parametrize("places", [30, 36, 38, 40, 60, 90])
+def test_limits_are_at_most_a_hundred_turns_apart_to_the_last_place(places):
+    below, above = hundred_turns(places)
+    robot = ROBOT.replace('"deg"', '"rad"').replace("limits = [-170, 170]", "limits = [0, {}]")
+    statement = {"set": "path", "points": [[["0", "0"], ["0", "0.1"]]]}
+    assert verdict(proof_of(statement, 1, 2, robot.replace("{}", below))) == "proved"
+    with pytest.raises(ValueError, match="turns apart"):
+        verdict(proof_of(statement, 1, 2, robot.replace("{}", above)))
+
+
+def test_limits_of_two_long_words_are_told_apart_too():
+    below, _ = hundred_turns(185)
+    high, low = below[:99], int(below[99:])
+    robot = ROBOT.replace('"deg"', '"rad"')
+    grammar_robot.read_robot(robot.replace("[-170, 170]", f"[-{low}e-185, {high}]"))
+    with pytest.raises(ValueError, match="turns apart"):
+        grammar_robot.read_robot(robot.replace("[-170, 170]", f"[-{low + 1}e-185, {high}]"))
+
+
 # --- witnesses ------------------------------------------------------------------------------------
 
 LOW_ROOF = ROBOT.replace("offset = -90", "offset = 1.999")
@@ -501,3 +528,68 @@ def test_no_answer_but_a_sentence_even_where_a_checker_fails(monkeypatch):
     monkeypatch.setattr(check_arb, "waves_of", broken)
     with pytest.raises(ValueError, match="failed"):
         verdict(path(SQUARE))
+
+
+# --- what a producer may rely on ------------------------------------------------------------------
+
+LETTERS = {2: 10_000, 3: 10_000, 4: 500, 5: 500, 6: 500}
+"""By the number of joints, letters of trees that both checkers follow: the page says so."""
+
+
+@pytest.mark.parametrize("kinds", ["revolute", "revolute prismatic", "prismatic"])
+@pytest.mark.parametrize("cells", [1, 40])
+@pytest.mark.parametrize("joints", LETTERS)
+def test_both_checkers_follow_as_many_letters_as_the_page_says(joints, cells, kinds, monkeypatch):
+    """Counted, not timed: one letter costs no more than its part of the work; leaves cost most."""
+    most = min(LETTERS[joints], grammar_robot.MOST_ROWS) if cells == 1 else LETTERS[joints]
+    text = robot_file(joints, joints, kinds).replace("offset = ", "offset = -9999 # ")
+    text = text.replace("clearance = ", "clearance = 0 # ").replace("radius", "# radius")
+    points = [[f"{k}e-9"] * joints for k in range(cells + 1)]
+    statement = {"set": "path", "points": [points], "margin": "1e-9"}
+    names = ("gap", "floor", "other")
+    content = proof_of(statement, cells, 2, text)
+    content = json.dumps(content | {"proof": {name: ["."] * cells for name in names}})
+    done = []
+    monkeypatch.setattr(check_arb._Work, "add", lambda _, n: done.append(n))
+    assert check_arb.verify(content) == "proved"
+    assert sum(done) / (3 * cells) <= check_arb.MOST_WORK / most
+    assert not check.check(content).refuted
+    assert check.Ball.work / (3 * cells) <= check.MAX_WORK / most
+
+
+def test_many_half_spaces_above_slides_are_proved_by_both():
+    kinds = ["prismatic", "revolute"] * 3
+    rows = [
+        f'[[joint]]\nname = "q{j}"\ntype = "{kind}"\nparent = "{j}"\nframe = "{j + 1}"\n'
+        "origin = [1, 0, 0]\naxis = [0, 1, 0]\nlimits = [-1, 1]\n"
+        for j, kind in enumerate(kinds)
+    ]
+    walls = [
+        f'[[boundary]]\nname = "w{i}"\ntype = "half-space"\npoint = "tip"\nnormal = [0, 0, 1]\n'
+        "offset = -99\n"
+        for i in range(600)
+    ]
+    home = f"home = {{ {', '.join(f'q{j} = 0' for j in range(6))} }}"
+    text = ROBOT[: ROBOT.index("[[joint]]")].replace("home = { q1 = 0, q2 = 0 }", home)
+    text += "".join(rows) + '[[point]]\nname = "tip"\nframe = "6"\nat = [1, 0, 0]\n'
+    text += "".join(walls)
+    content = proof_of({"set": "box", "points": [[["0"] * 6, ["0.1"] * 6]]}, 1, 2, text)
+    content = json.dumps(content | {"proof": {f"w{i}": ["."] for i in range(600)}})
+    assert check_arb.verify(content) == "proved"
+    assert not check.check(content).refuted
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_high_corner_of_a_box_stands_for_all_where_slides_bend(seed):
+    """All corners of a box in six joints cost minutes, and the work of them was not counted."""
+    robot = grammar_robot.read_robot(robot_file(seed, 5, "revolute prismatic"))
+    low, high = ((Fraction(x),) * 5 for x in (1, 3))
+    cell = cells.Box(low, high)
+    gap = next(boundary for boundary in robot.boundaries if boundary.name == "gap")
+    with flint.ctx.workprec(check_arb.BITS):
+        waves = interpolation.waves_of(robot, gap, Fraction(0), [flint.arb(3)] * 5)
+        rows = [[flint.arb(int(x)) for x in step] for step in cell.steps(waves.joints)]
+        one = waves._widest(rows[-1:])
+        every = waves._widest(rows)
+    assert [float(x) for x in one] == pytest.approx([float(x) for x in every])
+    assert len(one) == len(waves.slides)

@@ -334,3 +334,8 @@ def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
     axes = Figure().subplots()
     _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
     assert len(axes.get_xticks()) < 50
+
+
+def test_a_table_keeps_the_bar_of_an_absolute_value_in_its_cell() -> None:
+    text = figures.table(["step", "holds"], [("so |c| ≤ d", "yes"), (-3, "no")]).data
+    assert text.splitlines()[2:] == [r"| so \|c\| ≤ d | yes |", "| \N{MINUS SIGN}3 | no |"]

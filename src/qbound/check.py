@@ -1347,12 +1347,11 @@ def _check_angles(robot: Robot, statement: Statement) -> None:
 def proof_of(robot: Robot, statement: Statement) -> str:
     """Say what was proved of the set."""
     names = ", ".join(ascii(boundary.name) for boundary in robot.boundaries) or "no boundary"
-    limited = ", ".join(ascii(joint.name) for joint in robot.joints if joint.limits) or "no joint"
+    limited = ", ".join(ascii(joint.name) for joint in robot.joints if joint.limits)
     margin = f"{written(statement.margin)} {robot.length_unit}"
-    return (
-        f"proved: every configuration of the set keeps {names}, each with a margin of {margin},"
-        f" and the limits of {limited}"
-    )
+    limits = f", and the limits of {limited}" if limited else ""
+    keeps = f"every configuration of the set keeps {names}, each with a margin of {margin}"
+    return f"proved: {keeps}{limits}"
 
 
 def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
@@ -1375,9 +1374,7 @@ def described(robot: Robot, statement: Statement) -> list[str]:
         lines += [" ".join(map(_point, loop)) for loop in statement.loops]
     else:
         low, high = (_point(tuple(map(end, zip(*points, strict=True)))) for end in (min, max))
-        lines += [
-            f"{len(points)} corners in {len(statement.loops)} lists, all from {low} to {high}"
-        ]
+        lines.append(f"corners: {len(points)}, lists: {len(statement.loops)}, from {low} to {high}")
     around = [robot.joints[j].name for j in goes_round(robot, statement)]
     return lines + [f"goes all the way round {name!a}: every angle occurs" for name in around]
 

@@ -20,7 +20,7 @@ from qbound.cli.values import box, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
-from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify
+from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify, certify_region
 from qbound.proofs.points import as_decimal, read_points
 from qbound.proofs.reports import certificate_lines, folded
 
@@ -83,17 +83,31 @@ def run(options: argparse.Namespace) -> int:
         with working("proofs and witnesses around the largest scale"):
             found = bracket_scale(text)
         return _say_bracket(robot, found, options)
-    with working("what the options ask for"):
-        asked = statement(robot, options, margin)
-    shown = progress("searching for a proof", STEPS)
-    answer = certify(text, asked, tell=lambda part: shown(int(part * STEPS)))
-    shown(STEPS)
+    answer = _answer(text, robot, options, margin)
     _write(options, answer)
     if options.output != "-" or not answer.text:
         say(
             *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
         )
     return STATUS[answer.verdict]
+
+
+def _answer(text: str, robot: Robot, options: argparse.Namespace, margin: str) -> Certificate:
+    """Prove or refute what the options ask for."""
+    with working("what the options ask for"):
+        asked = None if options.region else statement(robot, options, margin)
+    shown = progress("searching for a proof", STEPS)
+
+    def tell(part: float) -> None:
+        shown(int(part * STEPS))
+
+    if asked is None:
+        inset = statements.usual_inset(robot) if options.inset is None else options.inset
+        answer = certify_region(text, inset, margin, held(robot, options.slice), tell)
+    else:
+        answer = certify(text, asked, tell=tell)
+    shown(STEPS)
+    return answer
 
 
 def _write(options: argparse.Namespace, answer: Certificate) -> None:
@@ -154,9 +168,9 @@ def _how_to_check(options: argparse.Namespace, answer: Certificate) -> Iterator[
 
 
 def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:
-    """State what the options ask for."""
+    """State what the options ask for, but for a region."""
     values = held(robot, options.slice)
-    if options.inset is not None and not options.region:
+    if options.inset is not None:
         raise ValueError("--inset: only --region is proved but for an inset")
     if options.box:
         return statements.box(*box(robot, options.box), margin)
@@ -165,9 +179,6 @@ def statement(robot: Robot, options: argparse.Namespace, margin: str) -> stateme
     if options.polygon:
         loop = statements.anticlockwise(read_points(robot, options.polygon))
         return statements.filled([loop], margin)
-    if options.region:
-        inset = statements.usual_inset(robot) if options.inset is None else options.inset
-        return statements.inner_polygon(robot, inset, margin=margin, held=values)
     scale = float(as_decimal("--scale", options.scale or "1"))
     return statements.home_polygon(robot, scale, margin, values)
 

@@ -42,7 +42,14 @@ def second_order(form: HarmonicForm, cells: Floats) -> Floats:
     return np.asarray((form(centre)[:, None] + slope - bend / 2).min(axis=1))
 
 
-def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool = False) -> Floats:
+def bending(
+    form: HarmonicForm,
+    cells: Floats,
+    steps: Floats,
+    *,
+    concave: bool = False,
+    upwards: bool = False,
+) -> Floats:
     r"""Bound minus the second derivative along steps, anywhere in the cells.
 
     Parameters
@@ -53,6 +60,9 @@ def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool =
     concave : bool
         Whether the bounds hold for every mean of the steps as well, as bounds that are convex
         in the step.
+    upwards : bool
+        Whether to count squares that bend upwards, too: they spoil no bound, but a bound by
+        tangents is far below them where a cell is long.
 
     Returns
     -------
@@ -63,7 +73,7 @@ def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool =
     A wave times sliding joints, :math:`f = \mathrm{Re}\,A e^{iu} \prod q_j`, is bounded by the
     product rule factor after factor, :math:`(fq)'' = f''q + 2f'd`, with the largest abs(q) of the
     cell. That is not convex in the step, and the largest of the steps stands for all. A lone
-    square with a positive amplitude bends upwards: it counts for nothing.
+    square with a positive amplitude bends upwards: it counts for nothing, unless asked for.
     """
     waves = form.waves
     size = np.abs(waves.amplitudes)
@@ -76,8 +86,8 @@ def bending(form: HarmonicForm, cells: Floats, steps: Floats, *, concave: bool =
             far = np.broadcast_to(far.max(axis=1, keepdims=True), far.shape)
         bend = with_slides(waves, np.abs(cells).max(axis=1), u, far)
         lone = (waves.powers == 2).any(axis=1) & (waves.powers.sum(axis=1) == 2)
-        upwards = lone & ~waves.turns.any(axis=1) & (waves.amplitudes.real > 0)
-        size = np.where(upwards, 0, size)
+        rising = lone & ~waves.turns.any(axis=1) & (waves.amplitudes.real > 0)
+        size = np.where(rising & (not upwards), 0, size)
     return np.tensordot(bend, size, axes=([-1], [-1]))
 
 
@@ -97,7 +107,7 @@ def worst_edges(
         Numbers of edges, in the order of `simplices.edges`; the longest where nothing bends.
     """
     steps = edges(cells)
-    bend = bending(form, cells, steps)
+    bend = bending(form, cells, steps, upwards=True)
     if which is not None:
         bend = bend[np.arange(len(cells)), :, which]
     flat = bend.max(axis=1, keepdims=True) <= 0

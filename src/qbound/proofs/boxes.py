@@ -94,6 +94,7 @@ class BoxBound:
         lone = (waves.powers == 2).any(axis=1) & (waves.powers.sum(axis=1) == 2)
         upwards = lone & ~waves.turns.any(axis=1) & (waves.amplitudes.real > 0)
         self.sizes = np.where(upwards, 0, size)[sliding]
+        self.spread = size[sliding]  # a tangent is far below a square that bends upwards, too
         used = np.isin(np.arange(len(free)), form.joints()) & free
         self.signs = np.array(list(product(*((-1, 1) if x else (0,) for x in used))), dtype=float)
         self.signs = self.signs[: (len(self.signs) + 1) // 2]  # opposite corners bend alike
@@ -112,7 +113,9 @@ class BoxBound:
         rise = -np.abs(slope) - bend / 2
         rows, worst = np.arange(len(centres)), rise.argmin(axis=1)
         step = steps[rows, worst] * -np.sign(slope[rows, worst])[:, None]
-        least = self.form(centres) + rise[rows, worst] - self._slides(centres, halves) / 2
+        least = (
+            self.form(centres) + rise[rows, worst] - self._slides(centres, halves, self.sizes) / 2
+        )
         return least, centres + step
 
     def violation(self, places: Floats) -> Floats | None:
@@ -127,21 +130,20 @@ class BoxBound:
         for j in range(halves.shape[1]):
             cut = halves.copy()
             cut[:, j] /= 2
-            bend = ((cut @ self.largest) * cut).sum(axis=1) + self._slides(centres, cut)
-            totals.append(np.where(halves[:, j] > 0, bend, np.inf))
+            totals.append(np.where(halves[:, j] > 0, self._bending(centres, cut), np.inf))
         total = np.stack(totals, axis=1)
         flat = np.isclose(total.min(axis=1), self._bending(centres, halves), rtol=1e-9, atol=0)
         return np.asarray(np.where(flat, halves.argmax(axis=1), total.argmin(axis=1)))
 
     def _bending(self, centres: Floats, halves: Floats) -> Floats:
         bend = ((halves @ self.largest) * halves).sum(axis=1)
-        return np.asarray(bend + self._slides(centres, halves))
+        return np.asarray(bend + self._slides(centres, halves, self.spread))
 
-    def _slides(self, centres: Floats, halves: Floats) -> Floats:
-        """Bound minus the second derivative of the waves with slides, on each box as a whole."""
+    def _slides(self, centres: Floats, halves: Floats, sizes: Floats) -> Floats:
+        """Bound the second derivative of the waves with slides, on each box as a whole."""
         if not self.sliding.any():
             return np.zeros(len(centres))
         waves = self.form.waves
         u = (halves @ np.abs(waves.turns).T)[:, None]
         bend = with_slides(waves, np.abs(centres) + halves, u, halves[:, None])[:, 0]
-        return np.asarray(bend[:, self.sliding] @ self.sizes)
+        return np.asarray(bend[:, self.sliding] @ sizes)

@@ -7,7 +7,8 @@ The search here is floating point and untrusted: what it finds is written down, 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -33,10 +34,12 @@ from qbound.proofs.statements import (
     Statement,
     decimal,
     home_vertices,
+    inner_polygon,
     scaled_polygon,
     units,
     wider,
 )
+from qbound.proofs.triangulation import CrossesItself
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Evidence, Witness, beyond_limits, deepest, witness
 from qbound.tolerances import NEGLIGIBLE
@@ -54,6 +57,10 @@ SEARCHING = 0.99
 
 DEEPEST = 60
 """Cuts on top of each other before a search gives up; the checkers follow 120."""
+
+
+PER_ARC = (12, 48, 192)
+"""Points on each arc of a region, in turn, until its polygon is proved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +163,30 @@ def certify(
     violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
     evidence = deepest(robot, statement, cells, violated)
     return _refuted(text, robot, statement, cells, evidence, searches)
+
+
+def certify_region(
+    text: str,
+    inset: float,
+    margin: str = "0",
+    held: Mapping[int, float] | None = None,
+    tell: Tell = silent,
+) -> Certificate:
+    """Prove home's component but for a strip along its arcs; see `statements.inner_polygon`.
+
+    It is safe by its definition. So a polygon that crosses itself or is refuted was drawn through
+    too few points, and says nothing of the component: it is drawn again through more, and what is
+    left in the end is undecided.
+    """
+    robot = parse_robot(tomllib.loads(text))
+    for per_arc in PER_ARC:
+        with suppress(CrossesItself):
+            statement = inner_polygon(robot, inset, per_arc, margin, held)
+            answer = certify(text, statement, tell=tell)
+            if answer.verdict is not Verdict.REFUTED:
+                return answer
+    why = "undecided: the polygon through points of the region's arcs leaves the region or crosses"
+    return Certificate(Verdict.UNDECIDED, "", f"{why} itself; another inset may do")
 
 
 def _refuted(

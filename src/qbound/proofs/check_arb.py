@@ -20,9 +20,9 @@ from qbound.proofs.interpolation import (
     Waves,
     boundary_value,
     exact,
-    joints_of,
     reach_of,
     units,
+    values_of,
     waves_of,
 )
 from qbound.proofs.verdict import Verdict
@@ -36,7 +36,7 @@ WITNESS_BITS = 640
 DEEPEST = 120
 """Cuts on top of each other."""
 
-MOST_WORK = 15_000_000
+MOST_WORK = 32_000_000
 """Products that a check may take, some 15 seconds; counted before they are made."""
 
 WAVES_WORK, CUT_WORK = 30, 50
@@ -130,7 +130,7 @@ def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
     if {boundary.name for boundary in needed} != set(content.proof):
         refuse("the boundaries of the proof are not those that need one")
     reach = reach_of(robot, content.statement.points)
-    work.add(sum(WAVES_WORK * 3 ** len(joints_of(boundary)) for boundary in needed))
+    work.add(sum(WAVES_WORK * values_of(robot, boundary) for boundary in needed))
     for boundary in needed:
         trees = content.proof[boundary.name]
         if len(trees) != len(cells):
@@ -181,17 +181,17 @@ class _Leaf:
         waves, joints = self.waves, self.waves.joints
         steps = [self._scaled(step) for step in cell.steps(joints)]
         n = len(joints)
-        self.work.add(len(waves.rows) * (n + 6) + len(steps) * n * (n + 1))
+        self.work.add(len(waves.rows) * (n + 6) + len(steps) * (2 * n + 4) + len(waves.slides) * 12)
         middle = cell.centre
-        centre = self._scaled([middle[j] for j in joints])
-        value, slope = waves.expanded(centre)
+        value, slope = waves.expanded(self._scaled([middle[j] for j in joints]))
         if waves.slides:
             corners = [self._scaled([corner[j] for j in joints]) for corner in cell.corners]
-            value -= waves.bending(corners, steps) / 2
-        for step in steps:
-            d = arb_mat(n, 1, step)
-            bend = sum((x * y for x, y in zip(step, (waves.matrix * d).entries(), strict=True)), 0)
-            if not value + sum((g * x for g, x in zip(slope, step, strict=True)), 0) - bend / 2 > 0:
+            value -= waves.bending(corners, steps[-1:] if isinstance(cell, Box) else steps) / 2
+        rows = arb_mat(steps)
+        rises = (rows * arb_mat(n, 1, slope)).entries()
+        for step, rise, bent in zip(steps, rises, (rows * waves.matrix).tolist(), strict=True):
+            bend = sum((x * y for x, y in zip(step, bent, strict=True)), 0)
+            if not value + rise - bend / 2 > 0:
                 return False
         return True
 

@@ -2,11 +2,13 @@
 
 Along one joint a boundary function is ``a cos q + b sin q + c``, or ``a q^2 + b q + c``: three
 values determine it. So the values at 0, 1/3 and 2/3 of a turn of each joint that turns, and at 0, 1
-and -1 of each that slides, are enough. Numbers are balls.
+and -1 of each that slides, are enough; the height over a plane has no square, and -1 is left out.
+Numbers are balls.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -55,6 +57,9 @@ class Waves:
                 for i, j in product(range(n), repeat=2):
                     entries[n * i + j] += size * (wave.turns[i] * wave.turns[j])
         self.matrix = arb_mat(n, n, entries)
+        turns = [k for wave in self.slides for k in wave.turns]
+        self.turns = arb_mat(len(self.slides), n, turns)
+        self.sizes = [abs(wave.amplitude) for wave in self.slides]
 
     def expanded(self, q: Sequence[Any]) -> tuple[Any, list[Any]]:
         """Return a number that is at most the value at q by `rest`, and the gradient there."""
@@ -84,22 +89,39 @@ class Waves:
         own = 1 if powers[j] == 1 else 2 * q[j]
         return reduce(lambda a, b: a * b, others, own)
 
-    def bending(self, corners: Sequence[Any], steps: Sequence[Any]) -> Any:
-        """Bound minus the second derivative of the waves with slides, by the product rule."""
+    def bending(self, corners: Sequence[Any], steps: Any) -> Any:
+        """Bound minus the second derivative of the waves with slides, by the product rule.
+
+        Parameters
+        ----------
+        corners : sequence of sequence of arb
+        steps : sequence of sequence of arb
+            From the centre to each corner; of a box to its high corner alone, which bounds all.
+        """
         largest = [_largest(column) for column in zip(*corners, strict=True)]
         farthest = [_largest(column) for column in zip(*steps, strict=True)]
         total = 0
-        for wave in self.slides:
+        for wave, size, u in zip(self.slides, self.sizes, self._widest(steps), strict=True):
             lone = sum(wave.powers) == max(wave.powers) == 2 and not any(wave.turns)
             if lone and wave.amplitude.real > 0:
                 continue  # it bends upwards
-            u = _largest([sum(k * x for k, x in zip(wave.turns, d, strict=True)) for d in steps])
             y, slope, bend = 1, u, u * u
             for q, d, power in zip(largest, farthest, wave.powers, strict=True):
                 for _ in range(power):
                     y, slope, bend = y * q, slope * q + y * d, bend * q + 2 * slope * d
-            total += abs(wave.amplitude) * bend
+            total += size * bend
         return total
+
+    def _widest(self, steps: Sequence[Any]) -> list[Any]:
+        """Return for each wave with slides the largest of abs(turns . step)."""
+        from flint import arb_mat
+
+        if len(steps) == 1:  # of a box: the corner that turns each joint the same way as the wave
+            signless = [abs(k) for k in self.turns.entries()]
+            turns = arb_mat(self.turns.nrows(), self.turns.ncols(), signless)
+            return list((turns * arb_mat(steps).transpose()).entries())
+        rows = (self.turns * arb_mat(steps).transpose()).tolist()
+        return [_largest(row) for row in rows]
 
 
 def _largest(values: Sequence[Any]) -> Any:
@@ -228,18 +250,14 @@ def _rotation(axis: Sequence[Any], angle: Any) -> Any:
 
 def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence[Any]) -> Waves:
     """Return a boundary function as waves: each amplitude is a sum of weighted values."""
-    from flint import acb, acb_mat, arb
+    from flint import acb, acb_mat
 
-    joints = joints_of(boundary)
-    turning = [robot.joints[j].turns for j in joints]
-    third = 2 * arb.pi() / 3
-    nodes = [[0 * third, third, 2 * third] if r else [arb(0), arb(1), arb(-1)] for r in turning]
-    values = [acb(value) for value in _values(robot, boundary, margin, nodes)]
-    for r in turning:  # each joint in turn comes first, and goes to the end
-        along_first = acb_mat(3, len(values) // 3, values)
-        values = (_weights(r) * along_first).transpose().entries()
-    signs = [(0, 1, -1) if r else (0, 0, 0) for r in turning]
-    powers = [(0, 0, 0) if r else (0, 1, 2) for r in turning]
+    joints, kinds = joints_of(boundary), _kinds(robot, boundary)
+    values = [acb(value) for value in _values(robot, boundary, margin, [k.nodes for k in kinds])]
+    for kind in kinds:  # each joint in turn comes first, and goes to the end
+        along_first = acb_mat(len(kind.nodes), len(values) // len(kind.nodes), values)
+        values = (kind.weights * along_first).transpose().entries()
+    signs, powers = [kind.turns for kind in kinds], [kind.powers for kind in kinds]
     rows = []
     for turns, lengths, amplitude in zip(product(*signs), product(*powers), values, strict=True):
         first = next((k for k in turns if k), 0)
@@ -248,15 +266,36 @@ def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence
     return _gathered(joints, rows, [reach[j] for j in joints])
 
 
-def _weights(turns: bool) -> Any:
-    """Return the matrix from three values to three amplitudes, along one joint."""
-    from flint import acb, acb_mat, fmpq
+def values_of(robot: Robot, boundary: Boundary) -> int:
+    """Return how many values of a boundary function determine it."""
+    flat = 2 if boundary.normal is not None else 3
+    return math.prod(3 if robot.joints[j].turns else flat for j in joints_of(boundary))
 
-    if not turns:
-        half = fmpq(1, 2)
-        return acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
-    root = acb(fmpq(2, 3)).exp_pi_i()
-    return acb_mat(3, 3, [root ** (-w * k) / 3 for w in (0, 1, -1) for k in range(3)])
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """How a function goes along one joint: from values at nodes, by weights, to amplitudes."""
+
+    nodes: Sequence[Any]
+    weights: Any
+    turns: tuple[int, ...]
+    powers: tuple[int, ...]
+
+
+def _kinds(robot: Robot, boundary: Boundary) -> list[_Kind]:
+    """Return how a boundary function goes along each of its joints."""
+    from flint import acb, acb_mat, arb, fmpq
+
+    third, root, half = 2 * arb.pi() / 3, acb(fmpq(2, 3)).exp_pi_i(), fmpq(1, 2)
+    thirds = acb_mat(3, 3, [root ** (-w * k) / 3 for w in (0, 1, -1) for k in range(3)])
+    turning = _Kind([0 * third, third, 2 * third], thirds, (0, 1, -1), (0, 0, 0))
+    if boundary.normal is not None:
+        line = acb_mat(2, 2, [1, 0, -1, 1])
+        sliding = _Kind([arb(0), arb(1)], line, (0, 0), (0, 1))
+    else:
+        square = acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
+        sliding = _Kind([arb(0), arb(1), arb(-1)], square, (0, 0, 0), (0, 1, 2))
+    return [turning if robot.joints[j].turns else sliding for j in joints_of(boundary)]
 
 
 def _gathered(joints: range, rows: Sequence[Wave], reach: Sequence[Any]) -> Waves:

@@ -6,21 +6,27 @@ the robot file's own unit of angle or length, the inside of a polygon on the lef
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.bending import second_order
+from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.proofs import grammar, unrolled
 from qbound.proofs.cells import check_polygon
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
+from qbound.region.arcs import Arc
 from qbound.region.loops import behind
+from qbound.region.problem import clearance_problem
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]
@@ -28,6 +34,10 @@ Point = list[str]
 
 DIGITS = 12
 """Decimals that are written: a hundred times finer than a double resolves a turn in degrees."""
+
+
+ON_LIMIT = 1e-9
+"""What is this near to a joint's limit, rad or length, lies on it."""
 
 
 def units(robot: Robot) -> Floats:
@@ -173,31 +183,39 @@ def inner_polygon(
 ) -> Statement:
     """State that the home component, but for a strip along its arcs, is safe.
 
-    Every boundary is asked for `inset` more; the component of home that this leaves is bounded by
-    arcs again, and a polygon is drawn through points of them.
+    Every boundary is asked for `inset` more than the margin; the component of home that this leaves
+    is bounded by arcs again, and a polygon is drawn through points of them.
 
     Parameters
     ----------
     inset : float
         Length, more than 0.
     per_arc : int
-        Points on each arc.
+        Points on each arc, or more: see the notes.
 
     Raises
     ------
     ValueError
-        If the home pose is in no component.
+        If the home pose is in no component, or the polygon needs too many corners.
 
     Notes
     -----
+    Where an arc bends into the component its chords leave the component. They are halved until a
+    lower bound shows that each keeps every boundary with half of the inset.
+
     A component that goes all the way round a joint is cut open half a turn away from home; its
     polygon reaches from one side of the cut to the other, a full turn on.
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
-    _check_inset(robot, inset, held)
-    component = _home(with_extra_clearance(robot, inset), held)
-    loops = [_thinned(loop, per_arc) for loop in component.loops]
+    asked = with_extra_clearance(robot, float(Fraction(margin)))
+    _check_inset(asked, inset, held)
+    component = _home(with_extra_clearance(asked, inset), held)
+    halfway = clearance_problem(with_extra_clearance(asked, inset / 2), held)
+    loops = [_traced(loop, per_arc, halfway.forms) for loop in component.loops]
+    corners = sum(map(len, loops))
+    if corners > grammar.MOST_POINTS:
+        raise ValueError(f"an inset of {inset:g} takes {corners} corners: ask for a larger one")
     polygons = [loops] if not any(component.wraps) else _cut_open(robot, component, loops, held)
     return _united(
         filled([_decimals(robot, loop, held) for loop in polygon], margin) for polygon in polygons
@@ -283,11 +301,33 @@ def _corners(loop: Sequence[Any]) -> Floats:
     return np.array(found).reshape(-1, 2)
 
 
-def _thinned(loop: Sequence[Any], per_arc: int) -> Floats:
-    rows = [np.unique(np.linspace(0, len(arc.points) - 1, per_arc).round()) for arc in loop]
-    return np.concatenate(
-        [arc.points[row[:-1].astype(int)] for arc, row in zip(loop, rows, strict=True)]
-    )
+def _traced(loop: Sequence[Arc], per_arc: int, halfway: HarmonicForm) -> Floats:
+    """Return points of a loop whose chords keep all forms; the first is not repeated."""
+    return np.concatenate([_points_of(arc, per_arc, halfway)[:-1] for arc in loop])
+
+
+def _points_of(arc: Arc, per_arc: int, halfway: HarmonicForm) -> Floats:
+    """Choose points of an arc, its ends included, and halve each chord that may leave the forms."""
+    straight = np.array(arc.pieces.straight())
+    s, parts = _first_points(straight, per_arc), len(straight)
+    while True:
+        q = arc.at(s)
+        chords = np.stack([q[:-1], q[1:]], axis=1)
+        curved = ~straight[((s[:-1] + s[1:]) / 2 * parts).astype(int)]
+        bad = np.flatnonzero(curved & (second_order(halfway, chords) <= 0).any(axis=1))
+        if not len(bad) or len(s) > grammar.MOST_POINTS:
+            return q
+        s = np.insert(s, bad + 1, (s[bad] + s[bad + 1]) / 2)
+
+
+def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
+    """Return parameters of `per_arc` points of an arc: of straight pieces the ends alone."""
+    count = max(1, math.ceil((per_arc - 1) / len(straight)))
+    parts = [
+        k + np.linspace(0, 1, 1 if line else count, endpoint=False)
+        for k, line in enumerate(straight)
+    ]
+    return np.concatenate([*parts, [len(straight)]]) / len(straight)
 
 
 def _within_limits(robot: Robot, q: Floats) -> list[Point]:
@@ -300,13 +340,19 @@ def _within_limits(robot: Robot, q: Floats) -> list[Point]:
 
 
 def _clamped(x: float, limits: tuple[float, float] | None, unit: float) -> str:
-    text = decimal(x / unit)
     for end, side in zip(limits or (), (1, -1), strict=False):
-        if abs(x - end) <= 1e-9:  # on the limit: the decimal of the file
-            return decimal(float(f"{end / unit:.14g}"))
-        if side * (Fraction(text) - Fraction(end / unit)) < 0:
-            return decimal(end / unit)
-    return text
+        if side * (x - end) <= ON_LIMIT:
+            return _limit(end / unit, side)
+    return decimal(x / unit)
+
+
+def _limit(end: float, side: int) -> str:
+    """Write a limit: as its file does where that is a short decimal, else rounded inwards."""
+    text, rounding = decimal(float(f"{end:.14g}")), 4 * Fraction(math.ulp(end))
+    if side * (Fraction(text) - Fraction(end)) >= -rounding:
+        return text
+    steps = side * math.ceil(side * (Fraction(end) + side * rounding) * 10**DIGITS)
+    return f"{Decimal(steps).scaleb(-DIGITS):f}"
 
 
 def _distinct(points: Sequence[Point]) -> list[Point]:

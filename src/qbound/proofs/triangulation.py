@@ -12,6 +12,10 @@ Corner = tuple[Fraction, Fraction]
 Triangle = tuple[int, int, int]
 
 
+class CrossesItself(ValueError):
+    """Of loops that cross themselves or each other, or do not have the inside on their left."""
+
+
 def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
     """Fill a polygon, convex or not, with or without holes, by triangles of its own corners.
 
@@ -27,8 +31,8 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
 
     Raises
     ------
-    ValueError
-        If the loops cross themselves or each other, or do not have the inside on their left.
+    CrossesItself
+        A `ValueError`.
 
     Notes
     -----
@@ -47,7 +51,8 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
     turned = [shapely.LinearRing(ring).is_ccw for ring in (outline, *holes)]
     if not polygon.is_valid or turned != [True, *(False for _ in holes)]:
         reason = shapely.is_valid_reason(polygon)
-        raise ValueError(f"the polygon crosses itself, or its inside is not on the left: {reason}")
+        why = "the polygon crosses itself, or its inside is not on the left"
+        raise CrossesItself(f"{why}: {reason}")
     triangles = shapely.orient_polygons(shapely.constrained_delaunay_triangles(polygon))
     number = {place: k for k, place in enumerate(place for ring in rings for place in ring)}
     corners = [[number[place] for place in part.exterior.coords[:3]] for part in triangles.geoms]
