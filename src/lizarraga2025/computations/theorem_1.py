@@ -19,7 +19,7 @@ from lizarraga2025.evidence.proofs import (
     right_side,
     vanishes,
 )
-from lizarraga2025.evidence.rounding import contact, degrees, radii
+from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
 from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import components, pair_vector
 from qbound.boundary.functions import closest_approach
@@ -100,7 +100,7 @@ def pair_meets(number: int) -> Outcome:
     limit = contact(pair)
     with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
     slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm: a single digit, of a converted"
-    slip += " text, decides."
+    slip += f" text, decides. {other_slips()}"
     return Outcome(
         judge(holds=gap <= limit, corrected=with_9_09 <= limit),
         f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
