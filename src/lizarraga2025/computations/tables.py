@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from math import prod
 from typing import Any, Final
 
@@ -51,9 +52,9 @@ from lizarraga2025.verdicts import (
     strongest,
     undetermined,
 )
-from qbound import circle_roots, components, pair_vector
+from qbound import HarmonicForm, circle_roots, clearance, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
-from qbound.forms.angles import TURN
+from qbound.forms.angles import TURN, first_from
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
@@ -302,10 +303,44 @@ def unit_of_the_floor() -> Outcome:
     points = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
     return Outcome(
         judge(holds=points["mm"] == 6, corrected=points["cm"] == 6),
-        f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points; at"
-        f" {height['mm']:.3f} cm the curve of the floor turns back before it reaches the upper side"
-        f" of the box, and {points['mm'] or 'no'} such points exist.",
+        f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points. At"
+        f" {height['mm']:.3f} cm {_end_of_the_floor(height['mm'])}",
     )
+
+
+def _end_of_the_floor(height: float) -> str:
+    """Tell where β_{7,3,1} ends, and how often its component meets the box, with a lower floor."""
+    arm, box = _with_floor(height), paper_rule.box(robot())
+    form = clearance(arm, arm.boundary("B7"))
+    crossings = [q for joint in (0, 1) for q in _on_the_sides(form, box, joint)]
+    corners = np.array(list(product(*zip(box.lower, box.upper, strict=True))))
+    kept = int((form(corners) > 0).sum())
+    z_01, z_12, x_12, x_23 = (
+        paper.offsets_in_cm()[label] for label in ("z_{0,1}", "z_{1,2}", "x_{1,2}", "x_{2,3}")
+    )
+    # Its inverse sine ends where the argument is 1, and q_1 + q_2 is 90°.
+    end = circle_roots(z_12, -x_12, x_23 - z_01 + height).q[1]
+    (on_top,) = (q for q in crossings if q[1] == box.upper[1])
+    return (
+        f"β_{{7,3,1}} ends at ({np.degrees(end):.2f}°, {90 - np.degrees(end):.2f}°), before the"
+        f" upper side of the box at {np.degrees(box.upper[1]):.2f}°. The component β_{{7,3}} as a"
+        f" whole meets the sides in {len(crossings)} points there too, and with {kept} corners of"
+        f" the box these are {len(crossings) + kept}; but the one on the upper side, at q_1 ="
+        f" {np.degrees(on_top[0]):.2f}°, lies on β_{{7,3,2}} a turn on, not on a bound of Table 6."
+    )
+
+
+def _on_the_sides(form: HarmonicForm, box: paper_rule.Box, joint: int) -> list[Floats]:
+    """Return where a form vanishes on the two sides of the box along which a joint moves, rad."""
+    found = []
+    for fixed in (box.lower, box.upper):
+        q = np.array(fixed)
+        c0, a, b = form.along(joint, q)
+        for root in first_from(box.lower[joint], circle_roots(a, b, -c0).q):
+            q[joint] = root
+            if box.lower[joint] < root < box.upper[joint]:
+                found.append(q.copy())
+    return found
 
 
 @computes("T-5.2")

@@ -187,6 +187,20 @@ def step_of_the_proof(number: int) -> Outcome:
     )
 
 
+@computes("E-24.1")
+def rotations_in_a_row() -> Outcome:
+    g = general()
+    product = paper.work_out(paper.ROTATIONS_IN_A_ROW, {"R_0a": g.R_0a, "R_ab": g.R_ab})
+    derived = g.chain.rotation("0", "b")
+    commute = vanishes(derived - g.R_ab @ g.R_0a)
+    return Outcome(
+        judge(holds=vanishes(derived - product)),
+        "An identity in two general rotations; the order matters, for with the factors exchanged it"
+        f" is {'one too' if commute else 'none'}. It says nothing of the vectors: that"
+        " r_{0,b} - r_{0,a} is R_{0,a} r_{a,b}, which the step uses too, is eq. (20) for b.",
+    )
+
+
 @computes("E-25")
 def rotation_taken_out() -> Outcome:
     return strongest(

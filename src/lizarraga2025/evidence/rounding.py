@@ -15,6 +15,9 @@ from qbound.model.robot import Pair, Robot
 HALF_DIGIT = 0.005
 """Largest error of a length rounded to two decimals, cm."""
 
+COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
+"""Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""
+
 SMALL = 1e-9
 """A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
 
@@ -118,8 +121,12 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     component : int
         The component that vanishes.
     """
-    error = HALF_DIGIT * (2 + np.sqrt(2))
-    return float(error * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
+    return float(COMPONENT * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
+
+
+def turned_by_rounding(slope: float) -> float:
+    """Return how far, rad, rounding of the offsets can turn a root of a component of this slope."""
+    return COMPONENT / abs(slope)
 
 
 def grid_error(inside: np.ndarray, cell: float) -> float:
