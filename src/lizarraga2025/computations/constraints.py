@@ -94,15 +94,19 @@ def sign_of_a_half_space() -> Outcome:
     return strongest(
         {
             "positive where its own limit is kept": judge(holds=own),
-            **{
-                f"positive in the selected region, {_greek(name)}": judge(holds=keeps)
-                for name, keeps in kept.items()
-            },
+            "positive in the selected region": judge(
+                holds=all(kept.values()), under=kept["beta_{7,3}"]
+            ),
         },
         "Each is the coordinate of the tool less its limit, so its sign tells the side. In the"
-        f" selected region that of the floor is kept. Least values at its six points: {depths},"
-        f" {WALLS}.",
+        f" selected region {_named(kept, keeps=True)} is positive, {_named(kept, keeps=False)} not"
+        f" everywhere. Least values at its six points: {depths}, {WALLS}.",
     )
+
+
+def _named(kept: Mapping[str, bool], *, keeps: bool) -> str:
+    """Return the components that keep their limit, or those that do not."""
+    return " and ".join(_greek(name) for name, one in kept.items() if one is keeps) or "none"
 
 
 WALLS: Final = "with x_min of 15 and -15 cm, a unit that is open (T-5.2)"

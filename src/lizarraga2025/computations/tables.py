@@ -321,12 +321,13 @@ def _end_of_the_floor(height: float) -> str:
     # Its inverse sine ends where the argument is 1, and q_1 + q_2 is 90°.
     end = circle_roots(z_12, -x_12, x_23 - z_01 + height).q[1]
     (on_top,) = (q for q in crossings if q[1] == box.upper[1])
+    bound = "β_{7,3,2} a turn on, not on" if form.gradient(on_top)[1] > 0 else "β_{7,3,1},"
     return (
         f"β_{{7,3,1}} ends at ({np.degrees(end):.2f}°, {90 - np.degrees(end):.2f}°), before the"
         f" upper side of the box at {np.degrees(box.upper[1]):.2f}°. The component β_{{7,3}} as a"
         f" whole meets the sides in {len(crossings)} points there too, and with {kept} corners of"
         f" the box these are {len(crossings) + kept}; but the one on the upper side, at q_1 ="
-        f" {np.degrees(on_top[0]):.2f}°, lies on β_{{7,3,2}} a turn on, not on a bound of Table 6."
+        f" {np.degrees(on_top[0]):.2f}°, lies on {bound} a bound of Table 6."
     )
 
 
