@@ -274,9 +274,7 @@ def _copy_of_the_other(label: str) -> str:
     q2 = lower + np.pi / 2
     value = float(_component(label)([q1, q2]))
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
-    end = (
-        " With + before cos⁻¹ it is the other root, the lower end." if is_lower_end(label) else ""
-    )
+    end = " With + before cos⁻¹ it is the other root, the lower end." if is_lower_end(label) else ""
     return (
         " It is the upper bound a turn lower, one pose, and the window leaves no value of q_2 out:"
         f" at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"

@@ -83,9 +83,7 @@ def slips_of_table_4() -> dict[str, float]:
 def _one_slip(number: str) -> list[str]:
     """Return a number with one digit changed, or with two neighbouring digits exchanged."""
     dot, digits = number.index("."), number.replace(".", "")
-    texts = {
-        digits[:i] + new + digits[i + 1 :] for i in range(len(digits)) for new in "0123456789"
-    }
+    texts = {digits[:i] + new + digits[i + 1 :] for i in range(len(digits)) for new in "0123456789"}
     texts |= {
         digits[:i] + digits[i + 1] + digits[i] + digits[i + 2 :] for i in range(len(digits) - 1)
     }
@@ -121,7 +119,9 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     component : int
         The component that vanishes.
     """
-    return float(COMPONENT * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
+    return float(
+        COMPONENT * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component]))
+    )
 
 
 def turned_by_rounding(slope: float) -> float:
