@@ -239,8 +239,9 @@ def bound_of_a_half_space(label: str) -> Outcome:
     found, is_upper = half_space_bound(label), _side(label) == "upper"
     is_end = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
     text = (
-        f"{limit_of(label)}By eq. (36) it exists for {found.part:.0f} % of a turn of the first joint: elsewhere the"
-        " wall does not cut the circle of the second. There it is a root of the component, which is"
+        f"{limit_of(label)}By eq. (36) it exists for {found.part:.0f} % of a turn of the first"
+        " joint: elsewhere the wall does not cut the circle of the second. There it is a root of"
+        " the component, which is"
         f" {'positive' if is_end else 'negative'} just {'below' if is_upper else 'above'} it."
     )
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):

@@ -100,7 +100,7 @@ def sign_of_a_half_space() -> Outcome:
         },
         "Each is the coordinate of the tool less its limit, so its sign tells the side. In the"
         f" selected region {_named(kept, keeps=True)} is positive, {_named(kept, keeps=False)} not"
-        f" everywhere. Least values at its six points: {depths}, {WALLS}.",
+        f" everywhere. Least values at its six points: {depths}, {_side_walls()}.",
     )
 
 
@@ -109,8 +109,11 @@ def _named(kept: Mapping[str, bool], *, keeps: bool) -> str:
     return " and ".join(_greek(name) for name, one in kept.items() if one is keeps) or "none"
 
 
-WALLS: Final = "with x_min of 15 and -15 cm, a unit that is open (T-5.2)"
-"""What is said where a margin is one of the side walls."""
+def _side_walls() -> str:
+    """Tell where the side walls are taken to be."""
+    at = " and ".join(f"{wall.offset:g}" for wall in half_spaces()[:2])
+    return f"with x_min of {at} cm, a unit that is open (T-5.2)"
+
 
 GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
 """Components of the geometric boundary functions that are not zero throughout."""
@@ -167,10 +170,11 @@ def joint_limits() -> Outcome:
 @computes("E-11")
 def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
-    seen, fits = [], {}
+    seen, walls, fits = [], [], {}
     for d in (0.01, 0.1, 0.5):
         area, corners = _home(_at_a_distance(d))
         bounding = sum(gap < d for gap in gaps)
+        walls.append(bounding)
         fits[str(d)] = bounding == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
     stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
@@ -183,10 +187,11 @@ def least_distance() -> Outcome:
             ),
         },
         "With 0.5 cm the outlines of all regions keep that distance, with 0.1 cm they do not. Of"
-        f" the robot studied no distance is printed, and the pairs come as close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no"
-        f" wall at all; every pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}. That"
-        f" there are 3 walls at the first is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09"
-        f" the pair B4 comes as close as {by_digit:.4f} cm and is a wall too.",
+        f" the robot studied {'a' if stated else 'no'} distance is printed, and the pairs come as"
+        f" close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no wall at all; every"
+        f" pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}. That the first has only"
+        f" {walls[0]} walls is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09 the pair B4"
+        f" comes as close as {by_digit:.4f} cm.",
     )
 
 
@@ -241,6 +246,6 @@ def limits_in_space() -> Outcome:
             "all limits of Table 5 at once": judge(holds=all(kept.values())),
         },
         f"{len(upper) or 'No'} upper limits, two lower ones for x and one for z are printed."
-        f" Margins at the six points of the selected region: {depths}, {WALLS}. Only the floor is kept"
-        " there, as the caption has it.",
+        f" Margins at the six points of the selected region: {depths}, {_side_walls()}. Only the"
+        " floor is kept there, as the caption has it.",
     )

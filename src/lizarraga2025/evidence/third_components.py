@@ -1,4 +1,4 @@
-"""Where are the third components of the point pairs positive together, against the windows?"""
+"""Where the third components of the point pairs are positive together, against the windows."""
 
 from __future__ import annotations
 
@@ -79,7 +79,8 @@ def _shift(of: Robot, joint: int, q: float, bound: paper_rule.Bound) -> float:
     """Return how far rounding can move the root of a third component from that of a bound."""
     pose = np.array(of.home, dtype=float)
     pose[joint] = q
-    slope = pair_vector(of, of.boundary(bound.boundary)).gradient(pose)[:, joint]
+    pair = next(pair for pair in pairs(of) if pair.name == bound.boundary)
+    slope = pair_vector(of, pair).gradient(pose)[:, joint]
     return sum(turned_by_rounding(float(slope[j])) for j in (2, bound.component - 1))
 
 
