@@ -309,6 +309,7 @@ def test_the_readings_that_fit_decide_the_verdict(fits, verdict) -> None:
         (["true but says nothing", "refuted"], "true but says nothing"),
         (["refuted", "not determined by the text", "misprint"], "not determined by the text"),
         (["misprint", "refuted"], "misprint"),
+        (["true but says nothing", "misprint"], "misprint"),
         (["refuted", "refuted"], "refuted"),
     ],
 )

@@ -84,6 +84,9 @@ SELECTION: Final = {
 TABLE_5: Final = {5: ("S_x", "x_{min,1}"), 6: ("S_x", "x_{min,2}"), 7: ("S_z", "z_{min,1}")}
 """``B_i = S r_{0,3}`` less a vector with one limit, where S selects: S and limit, by i."""
 
+CONSTRAINTS: Final = {10: "(q_min <= q) & (q <= q_max)", 11: "r >= d_min"}
+"""Eqs. (10) and (11), with r for the length of the vector between two points."""
+
 THEOREM_1: Final = {
     14: "x**2 + y**2 + z**2",
     15: "r_ab + R_ab @ r_bm - r_an",
@@ -104,6 +107,9 @@ THEOREM_1: Final = {
 The points a+n and b+m are written by their last letter (``r_an``, ``r_0an``). Eq. (18) adds a step:
 its vector and matrix up to b-1 are ``r_1`` and ``R_1``, the step from there is ``r_2``.
 """
+
+ROTATIONS_IN_A_ROW: Final = "R_0a @ R_ab"
+"""What R_{0,b} is rewritten as, before eq. (24)."""
 
 UNIT_VECTOR: Final = "r/sqrt(x**2 + y**2 + z**2)"
 """Right side of eq. (8)."""

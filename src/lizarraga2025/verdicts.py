@@ -20,12 +20,15 @@ VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
 FAVOUR: Final[tuple[Verdict, ...]] = (
     "confirmed",
     "confirmed with a condition",
-    "true but says nothing",
     "not determined by the text",
     "misprint",
+    "true but says nothing",
     "refuted",
 )
-"""The verdicts, the most favourable to the statement first."""
+"""The verdicts, the most favourable to the statement first.
+
+A slip of the pen leaves what its author meant; a sentence that says nothing leaves nothing.
+"""
 
 
 @dataclass(frozen=True)

@@ -28,9 +28,11 @@ def with_theorem_2(**sides: str) -> World:
     return world(printed={"THEOREM_2": changed})
 
 
-def with_offset(label: str) -> World:
-    """Return the world that prints a limit which ours leaves out."""
-    return world(printed={"OFFSETS": (*paper.OFFSETS, paper.Offset(label, 1.0, "cm", 1))})
+def with_a_constraint(equation: int, old: str, new: str) -> World:
+    """Return the world that prints eq. (10) or (11) the other way round."""
+    text = paper.CONSTRAINTS[equation]
+    assert old in text
+    return world(printed={"CONSTRAINTS": {equation: text.replace(old, new)}})
 
 
 def with_component(name: str, old: str, new: str) -> World:
@@ -87,17 +89,13 @@ WORLDS: dict[str, World] = {
     "E-4": world(replaced={"qbound.model.frames.Frames.position": summed}),
     "E-5": world(replaced={"qbound.model.frames.Frames.precedes": is_parent}),
     "E-8": world(printed={"UNIT_VECTOR": paper.UNIT_VECTOR.replace("+ z", "- z")}),
-    "E-9": world(
-        replaced={
-            "lizarraga2025.printed.EQUATION_29": {"beta_{7,3}": paper.EQUATION_29["beta_{7,3}"]}
-        }
-    ),
+    "E-9": world(robots={"minervabot-v2-corrected": ROBOT}),
     "E-9.1": with_component("beta_{5,1}", "- x_min_1", "+ x_min_1"),
     "E-9.2": world(
         printed={"TABLE_6": {"beta_{1,1,1}": paper.TABLE_6["beta_{1,1,2}"] + " - 2*pi"}}
     ),
-    "E-10": with_offset("q_{1,max}"),
-    "E-11": with_offset("d_{min}"),
+    "E-10": with_a_constraint(10, "q <= q_max", "q >= q_max"),
+    "E-11": with_a_constraint(11, ">=", "<="),
     "E-12": world(robots={"minervabot-v2": with_boundaries(ROBOT, B7={"used": False})}),
     "E-13": with_a_sign(19, "- r_0an", "+ r_0an"),
     "E-14": with_a_sign(14, "+ z", "- z"),
@@ -116,6 +114,7 @@ WORLDS: dict[str, World] = {
     "E-22": with_a_sign(22, "- (r_0a", "+ (r_0a"),
     "E-23": with_a_sign(23, "- R_0a", "+ R_0a"),
     "E-24": with_a_sign(24, "- R_0a", "+ R_0a"),
+    "E-24.1": world(printed={"ROTATIONS_IN_A_ROW": "R_ab @ R_0a"}),
     "E-25": with_a_sign(25, "- r_an", "+ r_an"),
     "E-26": BRACKET_26,
     "E-27": BRACKET_27,
@@ -144,6 +143,7 @@ WORLDS: dict[str, World] = {
     "E-35": with_theorem_2(_35="-c/d"),
     "E-36": with_theorem_2(_36_lower="0"),
     "E-37": with_theorem_2(_37="pm*acos(c/d) + 2*pi*k"),
+    "E-39.2": with_theorem_2(_37="pm*acos(c/d) + 2*pi*k"),
     "E-38": with_theorem_2(_38="atan2(b, a) + acos(c/d) + 2*pi*k"),
     "E-39": with_theorem_2(_39_lower="arctan(b, a) + acos(c/d) + 2*pi*k - pi"),
     "E-39.1": world(

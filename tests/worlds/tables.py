@@ -92,7 +92,7 @@ WORLDS: dict[str, World] = {
     "T-6.4": bound("2,3", "- acos", "+ acos"),
     "T-6.5": bound("3,1", "- acos", "+ acos"),
     "T-6.6": bound("3,3", "arctan(-x_2_11, z_2_11)", "arctan(x_2_11, -z_2_11) - pi"),
-    "T-6.7": bound("4,1", "- acos", "+ acos"),
+    "T-6.7": moved(p13=(9.09, 0.0, 5.25)),
     "T-6.8": bound("4,3", "- acos", "+ acos"),
     "T-6.9": bound("5,1", "- acos", "+ acos", k=(2,)),
     "T-6.10": bound("6,1", "- acos", "+ acos", k=(2,)),

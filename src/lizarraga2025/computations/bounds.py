@@ -14,11 +14,11 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Outcome, judge
+from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import HarmonicForm, circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.forms.angles import TURN, nearest_turn
-from qbound.model.robot import Pair, Robot
+from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.symbols import joint_symbols, with_symbols
 
 Floats = NDArray[np.float64]
@@ -130,12 +130,19 @@ def bound_of_a_pair(label: str) -> Outcome:
     is_root = placed and found.residual < RESIDUAL
     with_arctan = is_root and found.plain_residual < RESIDUAL
     met = found.meets or not found.at_contact
-    return Outcome(
-        judge(
-            holds=with_arctan and met,
-            constrains=found.at_contact,
-            under=is_root and (met or right.meets),
-        ),
+    return strongest(
+        {
+            "a root of its component": judge(
+                holds=with_arctan and met,
+                constrains=found.at_contact,
+                under=is_root and (met or right.meets),
+            ),
+            "a limit at which the points meet": judge(
+                holds=with_arctan and found.meets,
+                under=is_root and right.meets,
+                corrected=not found.at_contact and meets_at_the_other_root(label),
+            ),
+        },
         f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
 
@@ -162,7 +169,7 @@ def _place(label: str, found: PairBound, right: PairBound) -> str:
     return (
         f"{apart}, so that it stops no motion. They meet at the other root, {degrees(found.other)},"
         f" up to {found.other_distance:.4f} cm, inside the window"
-        f"{_with_the_other_sign(_meets_at_the_other_root(label))}."
+        f"{_with_the_other_sign(meets_at_the_other_root(label))}."
     )
 
 
@@ -177,7 +184,7 @@ def _other_sign(label: str) -> str:
     return text.replace(old, new)
 
 
-def _meets_at_the_other_root(label: str) -> bool:
+def meets_at_the_other_root(label: str) -> bool:
     """Tell whether the points meet at the bound with the sign (and the digit) corrected."""
     of = corrected()
     vector = pair_vector(of, _pair(label, of))
@@ -232,13 +239,32 @@ def bound_of_a_half_space(label: str) -> Outcome:
     found, is_upper = half_space_bound(label), _side(label) == "upper"
     is_end = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
     text = (
-        f"By eq. (36) it exists for {found.part:.0f} % of a turn of the first joint: elsewhere the"
-        " wall does not cut the circle of the second. There it is a root of the component, which is"
+        f"{limit_of(label)}By eq. (36) it exists for {found.part:.0f} % of a turn of the first"
+        " joint: elsewhere the wall does not cut the circle of the second. There it is a root of"
+        " the component, which is"
         f" {'positive' if is_end else 'negative'} just {'below' if is_upper else 'above'} it."
     )
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
         text += _copy_of_the_other(label)
-    return Outcome(judge(holds=found.residual < RESIDUAL, constrains=is_end), text)
+    is_root = found.residual < RESIDUAL
+    return strongest(
+        {
+            "a root of its component": judge(holds=is_root, constrains=is_end),
+            "an end of the values at which the wall's limit is kept": judge(
+                holds=is_root and is_end,
+                corrected=not is_end and not is_upper and is_lower_end(label),
+            ),
+        },
+        text,
+    )
+
+
+def limit_of(label: str) -> str:
+    """Tell which limit is computed with, where the text leaves its unit open."""
+    wall = robot().boundary(f"B{paper.indices(label)[0]}")
+    if wall.name not in ("B5", "B6") or not isinstance(wall, HalfSpace):
+        return ""
+    return f"Computed with {wall.offset:g} cm; the unit is open (T-5.2). "
 
 
 def _copy_of_the_other(label: str) -> str:
@@ -249,9 +275,7 @@ def _copy_of_the_other(label: str) -> str:
     q2 = lower + np.pi / 2
     value = float(_component(label)([q1, q2]))
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
-    end = (
-        " With + before cos⁻¹ it is the other root, the lower end." if _is_lower_end(label) else ""
-    )
+    end = " With + before cos⁻¹ it is the other root, the lower end." if is_lower_end(label) else ""
     return (
         " It is the upper bound a turn lower, one pose, and the window leaves no value of q_2 out:"
         f" at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
@@ -263,7 +287,7 @@ NULL_AT: Final = {5: 0.0, 6: np.pi}
 """Values of the first joint, rad, at which the argument of the inverse cosine is zero, exactly."""
 
 
-def _is_lower_end(label: str) -> bool:
+def is_lower_end(label: str) -> bool:
     """Tell whether the bound with the other sign is a root above which the component rises."""
     q1 = half_space_bound(label).q[:, 0]
     q = np.stack([q1, _of_q1(_other_sign(label))(q1)], -1)
@@ -298,10 +322,26 @@ def rows_against_the_theorem() -> Outcome:
     return Outcome(
         judge(holds=are_roots and not both, under=are_roots and bool(a_turn_apart)),
         f"{len(a_turn_apart)} of {len(rows)} rows are eq. (39), with θ by atan2: their two bounds"
-        f" are one root of the component, a full turn apart. The row of {rest} is not: its bounds"
+        " are one root of the component, that of eq. (38), a full turn apart. Where that root is"
+        f" not the one wanted, in the rows of {_of_the_other_root()}, the sign before cos⁻¹ is the"
+        f" slip (T-6.4), which eq. (37) hands on (E-37). The row of {rest} is not: its bounds"
         " are the two roots of its component, between which it is positive. No row is eq. (31),"
         " which is longer than a turn.",
     )
+
+
+def _of_the_other_root() -> str:
+    """Return the components whose lower bound would be right with the other sign."""
+    found = []
+    for i, j in (paper.indices(name) for name in paper.EQUATION_29):
+        label = f"beta_{{{i},{j},2}}"
+        if i < 5:
+            wrong = not pair_bound(label).at_contact
+        else:
+            wrong = bool((half_space_bound(label).slope < 0).any())
+        if wrong:
+            found.append(f"β_{{{i},{j}}}")
+    return ", ".join(found)
 
 
 def _ends_of_a_row(i: int, j: int) -> tuple[Floats, float]:

@@ -10,11 +10,12 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import half_spaces, pairs, robot, tool_form
+from lizarraga2025.evidence import third_components
+from lizarraga2025.evidence.arms import corrected, half_spaces, pairs, robot, tool_form
 from lizarraga2025.evidence.joint_region import square, vertices
-from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import clearance
+from lizarraga2025.evidence.rounding import SMALL, degrees
+from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest, undetermined
+from qbound import clearance, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Robot
 from qbound.region import find_region, paper_rule
@@ -40,13 +41,26 @@ def sign_of_a_component() -> Outcome:
             "a rule for all components of a pair at once": judge(
                 holds=not (beyond and any(x > 0 for x in of_2.values()))
             ),
+            "a rule for the third components together, where these are not zero throughout": judge(
+                holds=False, under=all(one.agree for one in third_components.sides(corrected()))
+            ),
         },
         "The pose q = (-90°, 0°) lies in the selected region and is reached from home without"
         f" touching a boundary, and yet {_values(negative)}. Of these {' and '.join(sides)} bounds"
         " the region (caption of Figure 4). The pose (-140°, 0°) lies outside, and yet"
-        f" {_values(of_2)} have two signs. A pair is in contact only where all its components"
-        " vanish, so no sign of theirs tells on which side it is.",
+        f" {_values(of_2)} have two signs. The third components together do tell it: those of B_5"
+        " and B_6 are zero throughout, that of B_7 is the height above the floor, and those of the"
+        f" pairs are all positive, with x_{{2,13}} = 9.09 (T-4.2), for"
+        f" {third_components.in_words(corrected())}. Rounding allows"
+        f" {_largest('allowed')}, and explains the differences of up to {_largest('apart')} and the"
+        f" {_largest('rest')} of q_1 beyond in which they are positive too. As printed they are"
+        f" for {third_components.in_words(robot())}.",
     )
+
+
+def _largest(name: str) -> str:
+    """Return a measure of the third components, of the joint where it is largest."""
+    return degrees(max(getattr(one, name) for one in third_components.sides(corrected())))
 
 
 def _values(components: Mapping[str, float]) -> str:
@@ -85,8 +99,20 @@ def sign_of_a_half_space() -> Outcome:
             ),
         },
         "Each is the coordinate of the tool less its limit, so its sign tells the side. In the"
-        f" selected region that of the floor is kept. Least values at its six points: {depths}.",
+        f" selected region {_named(kept, keeps=True)} is positive, {_named(kept, keeps=False)} not"
+        f" everywhere. Least values at its six points: {depths}, {_side_walls()}.",
     )
+
+
+def _named(kept: Mapping[str, bool], *, keeps: bool) -> str:
+    """Return the components that keep their limit, or those that do not."""
+    return " and ".join(_greek(name) for name, one in kept.items() if one is keeps) or "none"
+
+
+def _side_walls() -> str:
+    """Tell where the side walls are taken to be."""
+    at = " and ".join(f"{wall.offset:g}" for wall in half_spaces()[:2])
+    return f"with x_min of {at} cm, a unit that is open (T-5.2)"
 
 
 GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
@@ -123,9 +149,16 @@ def joint_limits() -> Outcome:
         joints = tuple(replace(joint, limits=limits) for joint in robot().joints)
         area[name], _ = _home(replace(robot(), joints=joints))
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
-    return Outcome(
-        judge(holds=True) if stated else undetermined(same),
-        f"{len(stated) or 'No'} limits are printed. The windows of Table 6 end at"
+    return strongest(
+        {
+            "a form of constraint": _limits_are_kept(),
+            "the limits of the robot studied": (
+                judge(holds=True) if stated else undetermined(same)
+            ),
+        },
+        "Limits of ±90° for each joint hold on the outline of every region that is found with them,"
+        " and not without. Of the robot studied"
+        f" {len(stated) or 'no'} limits are printed. The windows of Table 6 end at"
         f" {box[0, 0]:.2f}° and {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and"
         f" {box[1, 1]:.2f}° for the second, so limits beyond these fit all that is printed and"
         " change nothing: the area around home is "
@@ -137,21 +170,60 @@ def joint_limits() -> Outcome:
 @computes("E-11")
 def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
-    seen, fits = [], {}
+    seen, walls, fits = [], [], {}
     for d in (0.01, 0.1, 0.5):
-        boundaries = tuple(
-            replace(b, clearance=d) if b in pairs() else b for b in robot().boundaries
-        )
-        area, corners = _home(replace(robot(), boundaries=boundaries))
+        area, corners = _home(_at_a_distance(d))
         bounding = sum(gap < d for gap in gaps)
+        walls.append(bounding)
         fits[str(d)] = bounding == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
     stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
-    return Outcome(
-        judge(holds=True) if stated else undetermined(fits),
-        f"The pairs come as close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no"
-        f" wall at all; every pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}.",
+    by_digit = closest_approach(corrected(), pairs(corrected())[-1])[1]
+    return strongest(
+        {
+            "a form of constraint": _distances_are_kept(),
+            "the distance of the robot studied": (
+                judge(holds=True) if stated else undetermined(fits)
+            ),
+        },
+        "With 0.5 cm the outlines of all regions keep that distance, with 0.1 cm they do not. Of"
+        f" the robot studied {'a' if stated else 'no'} distance is printed, and the pairs come as"
+        f" close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no wall at all; every"
+        f" pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}. That the first has only"
+        f" {walls[0]} walls is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09 the pair B4"
+        f" comes as close as {by_digit:.4f} cm.",
     )
+
+
+def _limits_are_kept() -> Verdict:
+    """Judge whether the regions found with limits keep eq. (10), and not those without."""
+    limits = {"q_min": -np.pi / 2 - SMALL, "q_max": np.pi / 2 + SMALL}
+    joints = tuple(replace(j, limits=(-np.pi / 2, np.pi / 2)) for j in robot().joints)
+    limited, free = _outline(replace(robot(), joints=joints)), _outline(robot())
+    keeps = [paper.work_out(paper.CONSTRAINTS[10], {"q": q, **limits}) for q in (limited, free)]
+    return judge(holds=bool(keeps[0].all()), constrains=not keeps[1].all())
+
+
+def _distances_are_kept() -> Verdict:
+    """Judge whether the regions found with a distance of 0.5 cm keep eq. (11)."""
+    kept = []
+    for d in (0.5, 0.1):
+        q = _outline(_at_a_distance(d))
+        r = np.array([np.linalg.norm(pair_vector(robot(), pair)(q), axis=-1) for pair in pairs()])
+        kept.append(paper.work_out(paper.CONSTRAINTS[11], {"r": r, "d_min": 0.5 - SMALL}).all())
+    return judge(holds=bool(kept[0]), constrains=not kept[1])
+
+
+def _outline(arm: Robot) -> Any:
+    """Return points on the outlines of all regions of an arm, rad, shape (n, 2)."""
+    loops = [loop for one in find_region(arm).components for loop in one.loops]
+    return np.concatenate([arc.points for loop in loops for arc in loop])
+
+
+def _at_a_distance(d: float) -> Robot:
+    """Return the robot with its pairs kept at a distance, cm."""
+    boundaries = (replace(b, clearance=d) if b in pairs() else b for b in robot().boundaries)
+    return replace(robot(), boundaries=tuple(boundaries))
 
 
 def _home(arm: Robot) -> tuple[float, int]:
@@ -174,6 +246,6 @@ def limits_in_space() -> Outcome:
             "all limits of Table 5 at once": judge(holds=all(kept.values())),
         },
         f"{len(upper) or 'No'} upper limits, two lower ones for x and one for z are printed."
-        f" Margins at the six points of the selected region: {depths}. Only the floor is kept"
-        " there, as the caption has it.",
+        f" Margins at the six points of the selected region: {depths}, {_side_walls()}. Only the"
+        " floor is kept there, as the caption has it.",
     )

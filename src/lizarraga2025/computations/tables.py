@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from math import prod
 from typing import Any, Final
 
@@ -20,6 +21,9 @@ from lizarraga2025.computations.bounds import (
     HalfSpaceBound,
     PairBound,
     half_space_bound,
+    is_lower_end,
+    limit_of,
+    meets_at_the_other_root,
     pair_bound,
 )
 from lizarraga2025.computations.registry import computes, computes_each
@@ -31,7 +35,14 @@ from lizarraga2025.evidence.arms import (
     robot,
     symbolic_robot,
 )
-from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL, contact, degrees, radii
+from lizarraga2025.evidence.rounding import (
+    HALF_DIGIT,
+    SMALL,
+    contact,
+    degrees,
+    other_slips,
+    radii,
+)
 from lizarraga2025.verdicts import (
     FAVOUR,
     VERDICTS,
@@ -41,9 +52,9 @@ from lizarraga2025.verdicts import (
     strongest,
     undetermined,
 )
-from qbound import circle_roots, components, pair_vector
+from qbound import HarmonicForm, circle_roots, clearance, components, pair_vector
 from qbound.boundary.functions import closest_approach, position
-from qbound.forms.angles import TURN
+from qbound.forms.angles import TURN, first_from
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
@@ -183,17 +194,18 @@ def row_of_kinematics(frames: tuple[str, str]) -> Outcome:
 
 @computes_each({"T-3.1": 1, "T-3.2": 2, "T-3.3": 3, "T-4.2": 4})
 def offsets_of_a_pair(number: int) -> Outcome:
+    """Judge whether the two points of a pair are equally far from the joint between them."""
     pair = pairs()[number - 1]
     first, second = radii(robot(), pair)
     with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
     gap, limit = abs(first - second), contact(pair)
-    slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm."
+    slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm. {other_slips()}"
     slip += " All hangs on one digit of a converted text: where the page has 9.09, nothing is off."
     return Outcome(
         judge(holds=gap <= limit, corrected=with_9_09 <= limit),
         f"The points are {first:.4f} and {second:.4f} cm from the joint between them. The"
         f" difference of {gap:.4f} cm compares with {limit:.4f} cm that rounding to two decimals"
-        f" can cause.{slip if number == 4 else ''}",
+        f" can cause.{slip if gap > limit else ''}",
     )
 
 
@@ -245,7 +257,8 @@ def _roots_of_b4(of: Robot) -> int:
 def table_4() -> Outcome:
     rows = (unit_of_table_4(), offsets_of_a_pair(4), vector_of_a_pair(4))
     return Outcome(
-        _of_a_table(rows), f"{_in_words(rows)}: the unit (T-4.1), one digit (T-4.2), the vector."
+        _of_a_table(rows),
+        f"{_in_words(rows)}: the unit (T-4.1), one digit (T-4.2), the vector. {other_slips()}",
     )
 
 
@@ -290,10 +303,45 @@ def unit_of_the_floor() -> Outcome:
     points = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
     return Outcome(
         judge(holds=points["mm"] == 6, corrected=points["cm"] == 6),
-        f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points; at"
-        f" {height['mm']:.3f} cm the curve of the floor turns back before it reaches the upper side"
-        f" of the box, and {points['mm'] or 'no'} such points exist.",
+        f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points. At"
+        f" {height['mm']:.3f} cm {_end_of_the_floor(height['mm'])}",
     )
+
+
+def _end_of_the_floor(height: float) -> str:
+    """Tell where β_{7,3,1} ends, and how often its component meets the box, with a lower floor."""
+    arm, box = _with_floor(height), paper_rule.box(robot())
+    form = clearance(arm, arm.boundary("B7"))
+    crossings = [q for joint in (0, 1) for q in _on_the_sides(form, box, joint)]
+    corners = np.array(list(product(*zip(box.lower, box.upper, strict=True))))
+    kept = int((form(corners) > 0).sum())
+    z_01, z_12, x_12, x_23 = (
+        paper.offsets_in_cm()[label] for label in ("z_{0,1}", "z_{1,2}", "x_{1,2}", "x_{2,3}")
+    )
+    # Its inverse sine ends where the argument is 1, and q_1 + q_2 is 90°.
+    end = circle_roots(z_12, -x_12, x_23 - z_01 + height).q[1]
+    (on_top,) = (q for q in crossings if q[1] == box.upper[1])
+    bound = "β_{7,3,2} a turn on, not on" if form.gradient(on_top)[1] > 0 else "β_{7,3,1},"
+    return (
+        f"β_{{7,3,1}} ends at ({np.degrees(end):.2f}°, {90 - np.degrees(end):.2f}°), before the"
+        f" upper side of the box at {np.degrees(box.upper[1]):.2f}°. The component β_{{7,3}} as a"
+        f" whole meets the sides in {len(crossings)} points there too, and with {kept} corners of"
+        f" the box these are {len(crossings) + kept}; but the one on the upper side, at q_1 ="
+        f" {np.degrees(on_top[0]):.2f}°, lies on {bound} a bound of Table 6."
+    )
+
+
+def _on_the_sides(form: HarmonicForm, box: paper_rule.Box, joint: int) -> list[Floats]:
+    """Return where a form vanishes on the two sides of the box along which a joint moves, rad."""
+    found = []
+    for fixed in (box.lower, box.upper):
+        q = np.array(fixed)
+        c0, a, b = form.along(joint, q)
+        for root in first_from(box.lower[joint], circle_roots(a, b, -c0).q):
+            q[joint] = root
+            if box.lower[joint] < root < box.upper[joint]:
+                found.append(q.copy())
+    return found
 
 
 @computes("T-5.2")
@@ -376,23 +424,30 @@ ROWS = {f"T-6.{row}": paper.indices(name) for row, name in enumerate(paper.EQUAT
 
 SURROUNDS: Final = "bounds between which the region lies"
 SEPARATES: Final = "a range that ends where a collision begins"
-"""The two fair readings of a row, as words that complete "read as"."""
+RESPECTED: Final = "the range in which the wall is respected"
+"""The fair readings of a row, of a pair and of a wall, as words that complete "read as"."""
 
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] < 5})
 def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
-    upper, lower = (pair_bound(f"beta_{{{ij[0]},{ij[1]},{k}}}") for k in (1, 2))
+    labels = [f"beta_{{{ij[0]},{ij[1]},{k}}}" for k in (1, 2)]
+    upper, lower = map(pair_bound, labels)
     are_roots = max(upper.plain_residual, lower.plain_residual) < RESIDUAL
     as_printed = are_roots and _surrounds(ij[0], lower.plain, upper.plain)
     with_atan2 = _surrounds(ij[0], lower.value, upper.value)
     at_contact = upper.at_contact and lower.at_contact
     met = upper.distance <= upper.allowed
+    right_digit = all(pair_bound(label, corrected_digit=True).meets for label in labels)
     readings = {
-        SURROUNDS: judge(holds=as_printed, constrains=at_contact, under=with_atan2),
+        SURROUNDS: judge(
+            holds=as_printed and (met or not at_contact),
+            constrains=at_contact,
+            under=with_atan2 and right_digit,
+        ),
         SEPARATES: judge(
             holds=as_printed and at_contact and met,
-            under=with_atan2 and at_contact,
-            corrected=not at_contact,
+            under=with_atan2 and right_digit,
+            corrected=not at_contact and all(map(meets_at_the_other_root, labels)),
         ),
     }
     text = f"From {degrees(lower.value)} to {degrees(upper.value)}, a full turn. "
@@ -442,11 +497,13 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
             holds=are_roots and _region_is_between(lower, upper),
             constrains=bool(length.max() < TURN - SMALL),
         ),
-        SEPARATES: judge(
-            holds=are_roots and not negative, corrected=bool((upper.slope <= 0).all())
+        RESPECTED: judge(
+            holds=are_roots and not negative,
+            corrected=bool((upper.slope <= 0).all()) and is_lower_end(f"beta_{{{i},{j},2}}"),
         ),
     }
-    text = f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1. There it"
+    text = limit_of(f"beta_{{{i},{j},2}}")
+    text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1. There it"
     if np.ptp(length) < SMALL:
         text += " is a full turn long, one root twice: the region lies in it, and so does any pose,"
         text += f" a turn on or back. The component is negative in {100 * negative:.0f} % of it."

@@ -19,7 +19,7 @@ from lizarraga2025.evidence.proofs import (
     right_side,
     vanishes,
 )
-from lizarraga2025.evidence.rounding import contact, degrees, radii
+from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
 from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import components, pair_vector
 from qbound.boundary.functions import closest_approach
@@ -100,7 +100,7 @@ def pair_meets(number: int) -> Outcome:
     limit = contact(pair)
     with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
     slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm: a single digit, of a converted"
-    slip += " text, decides."
+    slip += f" text, decides. {other_slips()}"
     return Outcome(
         judge(holds=gap <= limit, corrected=with_9_09 <= limit),
         f"They are {a:.4f} and {b:.4f} cm from the joint between them and come as close as"
@@ -184,6 +184,20 @@ def step_of_the_proof(number: int) -> Outcome:
     return Outcome(
         judge(holds=all(is_identity(number, left, *seen) for seen in observers)),
         f"An identity {words}, in general rotations and vectors.",
+    )
+
+
+@computes("E-24.1")
+def rotations_in_a_row() -> Outcome:
+    g = general()
+    product = paper.work_out(paper.ROTATIONS_IN_A_ROW, {"R_0a": g.R_0a, "R_ab": g.R_ab})
+    derived = g.chain.rotation("0", "b")
+    commute = vanishes(derived - g.R_ab @ g.R_0a)
+    return Outcome(
+        judge(holds=vanishes(derived - product)),
+        "An identity in two general rotations; the order matters, for with the factors exchanged it"
+        f" is {'one too' if commute else 'none'}. It says nothing of the vectors: that"
+        " r_{0,b} - r_{0,a} is R_{0,a} r_{a,b}, which the step uses too, is eq. (20) for b.",
     )
 
 

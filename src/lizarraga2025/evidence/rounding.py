@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from functools import cache
+from typing import Any, Final
 
 import numpy as np
 
-from lizarraga2025.evidence.arms import robot
+from lizarraga2025 import printed as paper
+from lizarraga2025.evidence.arms import pairs, robot
 from qbound.model.robot import Pair, Robot
 
 HALF_DIGIT = 0.005
 """Largest error of a length rounded to two decimals, cm."""
+
+COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
+"""Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""
 
 SMALL = 1e-9
 """A length (cm) or angle (rad) that is rounding: offsets carry 1e-2, roundoff leaves 1e-13."""
@@ -51,6 +57,55 @@ def contact(pair: Pair) -> float:
     return float(sum(HALF_DIGIT * slope for slope in slopes))
 
 
+TABLE_4: Final = (("12", "x_{1,12}", "z_{1,12}"), ("13", "x_{2,13}", "z_{2,13}"))
+"""Points of Table 4, with the labels of their offsets."""
+
+
+@cache
+def slips_of_table_4() -> dict[str, float]:
+    """Return the gaps, cm, of B4 with one digit of Table 4 changed, or two neighbours exchanged.
+
+    Only those that rounding explains, such as "x_{2,13} = 9.09".
+    """
+    cm, pair = paper.offsets_in_cm(), pairs()[3]
+    found = {}
+    for point, *labels in TABLE_4:
+        for place, label in zip((0, 2), labels, strict=True):
+            for text in _one_slip(f"{cm[label]:.2f}"):
+                at = robot().point(point).at.copy()
+                at[place] = float(text)
+                first, second = radii(_moved(point, at), pair)
+                if abs(first - second) <= contact(pair):
+                    found[f"{label} = {text}"] = abs(first - second)
+    return dict(sorted(found.items(), key=lambda item: item[1]))
+
+
+def _one_slip(number: str) -> list[str]:
+    """Return a number with one digit changed, or with two neighbouring digits exchanged."""
+    dot, digits = number.index("."), number.replace(".", "")
+    texts = {digits[:i] + new + digits[i + 1 :] for i in range(len(digits)) for new in "0123456789"}
+    texts |= {
+        digits[:i] + digits[i + 1] + digits[i] + digits[i + 2 :] for i in range(len(digits) - 1)
+    }
+    return [f"{text[:dot]}.{text[dot:]}" for text in sorted(texts - {digits})]
+
+
+def _moved(name: str, at: np.ndarray) -> Robot:
+    points = tuple(replace(p, at=at) if p.name == name else p for p in robot().points)
+    return replace(robot(), points=points)
+
+
+def other_slips() -> str:
+    """Tell which other single slips in Table 4 would do as well as x_{2,13} = 9.09."""
+    found = {name: gap for name, gap in slips_of_table_4().items() if name != "x_{2,13} = 9.09"}
+    listed = ", ".join(f"{name} ({gap:.4f} cm)" for name, gap in found.items())
+    return (
+        "Within the rounding one changed digit or two exchanged ones also give"
+        f" {listed or 'none'}; 9.09 is chosen because it is the number of the opposite corner,"
+        " x_{2,11}, whose z_{2,11} is -z_{2,13}."
+    )
+
+
 def at_a_root(slope: np.ndarray, component: int) -> float:
     """Return the largest distance, cm, of points that meet, where one printed component vanishes.
 
@@ -64,8 +119,14 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     component : int
         The component that vanishes.
     """
-    error = HALF_DIGIT * (2 + np.sqrt(2))
-    return float(error * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
+    return float(
+        COMPONENT * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component]))
+    )
+
+
+def turned_by_rounding(slope: float) -> float:
+    """Return how far, rad, rounding of the offsets can turn a root of a component of this slope."""
+    return COMPONENT / abs(slope)
 
 
 def grid_error(inside: np.ndarray, cell: float) -> float:

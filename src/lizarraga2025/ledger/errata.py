@@ -43,7 +43,7 @@ def _is_erratum(one: Claim) -> bool:
 
 def _part(one: Claim) -> str:
     rows = {_row(label) for label in paper.TABLE_6 if one.id in (_bound(label), _row(label))}
-    return rows.pop() if rows and one.verdict == "true but says nothing" else one.finding
+    return rows.pop() if rows and one.verdict == "misprint" else one.finding
 
 
 def _leader(part: str, entries: Sequence[Claim]) -> str:
