@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from typing import Any
 
 from qbound.cli.chosen import add_robot, add_slice
@@ -42,8 +41,8 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Pave; 0 if the tolerance is met, 3 if cells ran out before."""
-    if not (math.isfinite(options.tolerance) and options.tolerance > 0):
-        raise ValueError(f"--tolerance {options.tolerance}: a positive number is wanted")
+    if not 0 < options.tolerance < 1:
+        raise ValueError(f"--tolerance {options.tolerance}: a part between 0 and 1 is wanted")
     robot = load_robot(options.robot)
     values = held(robot, options.slice)
     problem = exact_problem(exact_robot(options.robot), values)

@@ -17,7 +17,7 @@ from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
-from qbound.units import file_units
+from qbound.units import counted, file_units
 
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
@@ -46,9 +46,10 @@ def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
     """Say in sentences what a paving encloses."""
     inner, outer = paving.bracket
     unit = _volume_unit(robot, paving)
-    yield f"volume between {below(inner):.9g} {unit} and {above(outer):.9g} {unit}"
+    yield f"volume between {max(below(inner), 0.0):.9g} {unit} and {above(outer):.9g} {unit}"
     yield f"{100 * float(paving.undecided_fraction):.3g} % of the range is undecided"
-    yield ", ".join(f"{sum(map(len, cells))} cells {w}" for w, cells in _groups(paving).items())
+    counts = {word: sum(map(len, cells)) for word, cells in _groups(paving).items()}
+    yield ", ".join(f"{counted(count, 'cell')} {word}" for word, count in counts.items())
 
 
 def _volume_unit(robot: Robot, paving: Paving) -> str:
@@ -94,7 +95,7 @@ def connection_line(found: Connection) -> str:
     if found.answer == "infeasible":
         which = " and ".join(("first", "second")[k] for k in found.infeasible)
         return f"infeasible: the {which} pose violates a boundary, proved"
-    return f"undecided after {cells}: the poses, or a passage between them, are too tight"
+    return f"undecided: {cells} are too few to prove a path, or that there is none"
 
 
 def _separating_cells(found: Connection, pose: list[float]) -> list[dict[str, Any]]:
