@@ -59,7 +59,7 @@ def table(entries: list[dict[str, Any]]) -> str:
 def row(entry: dict[str, Any]) -> str:
     """Return a result as a row whose id is its anchor."""
     anchor, name = cite.anchor(entry["id"]), escape(entry["id"])
-    unit = "" if entry["unit"] == "1" else entry["unit"]
+    unit = "" if entry["unit"] == "1" else entry["unit"].replace("^2", "²")
     error = f"{entry['error']:g}" if entry["error"] else "exact"
     rule = "" if entry["rule"] == "none" else f"{entry['rule']} rule"
     about = ", ".join(word for word in (entry["reference"], rule) if word)

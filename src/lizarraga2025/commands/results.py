@@ -62,6 +62,6 @@ def _is_named(entry: dict[str, Any], name: str) -> bool:
 
 
 def _about(entry: dict[str, Any]) -> str:
-    rule = "" if entry["rule"] == "none" else f"{entry['rule']}'s rule"
+    rule = "" if entry["rule"] == "none" else f"{entry['rule']} rule"
     words = [word for word in (entry["reference"], rule) if word]
     return f"  ({', '.join(words)})" if words else ""
