@@ -281,7 +281,7 @@ def other_regions_are_out_of_reach() -> Outcome:
         "The regions are the connected pieces of what the clearances leave, with the d_min ="
         f" {robot().required_distance(pairs()[0]):g} cm of the robot file, as the text prints none;"
         f" {sum(with_home)} of {len(with_home)} contains home. It is bounded by {', '.join(names)},"
-        " so every way out of it crosses one of these. With d_min = 0 the pairs make no wall (E-11).",
+        " so every way out of it crosses one. With d_min = 0 the pairs make no wall (E-11).",
     )
 
 
