@@ -19,14 +19,14 @@ from lizarraga2025.collisions import (
 )
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import corrected, of_slides, robot, symmetric, tool_form
+from lizarraga2025.evidence.arms import corrected, of_slides, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     bodies_allow,
     drawn,
     scaled,
 )
-from lizarraga2025.evidence.rounding import SMALL, rounded
+from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,

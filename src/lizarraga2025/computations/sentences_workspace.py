@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import corrected, floor, robot, symmetric, tool_form
+from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     body_gap,
@@ -21,7 +21,7 @@ from lizarraga2025.evidence.joint_region import (
     share_of_square,
     vertices,
 )
-from lizarraga2025.evidence.rounding import SMALL, rounded
+from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     LEFT,
     PLANE,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -67,13 +66,6 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     """
     error = HALF_DIGIT * (2 + np.sqrt(2))
     return float(error * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component])))
-
-
-def rounded(of: Robot) -> Robot:
-    """Return the robot with its offsets rounded to two decimals, as the tables print them."""
-    points = tuple(replace(point, at=point.at.round(2)) for point in of.points)
-    joints = tuple(replace(joint, origin=joint.origin.round(2)) for joint in of.joints)
-    return replace(of, points=points, joints=joints)
 
 
 def grid_error(inside: np.ndarray, cell: float) -> float:
