@@ -237,7 +237,7 @@ def strong_dependence() -> Outcome:
     return Outcome(
         judge(holds=bool(spread.min() > 90 and np.ptp(reach) / reach.max() > 0.2)),
         f"At scale {SCALE:g}, over the {len(reach)} sequences of neighbours, the final joint values"
-        f" spread over"
+        " spread over"
         f" {spread[0]:.2f}° and {spread[1]:.2f}° and the final reach from {reach.min():.4f} to"
         f" {reach.max():.4f} cm.",
     )
