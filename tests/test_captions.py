@@ -105,6 +105,21 @@ def test_any_number_and_range_shows_both_colours() -> None:
             assert 0 < free.mean() < 1
 
 
+def test_opposite_joint_paths_are_point_reflections_and_the_tools_are_not() -> None:
+    """By hand on the symmetric arm: links of 30 cm at 60° and of 25 cm, corners by the library."""
+    arm = load_robot("minervabot-v2-symmetric")
+    hexagon = shapely.Polygon([corner.q for corner in closed_form.vertices(arm)])
+    for scale in (1.0, 0.95, 0.8):
+        shrunk = shapely.affinity.scale(hexagon, scale, scale, origin=hexagon.centroid)
+        q = np.array(shrunk.exterior.coords)[:6]
+        np.testing.assert_allclose(
+            q + np.roll(q, 3, axis=0), np.tile(np.radians([-60, -120]), (6, 1))
+        )
+        first, second = q[:, 0] - np.pi / 3, q.sum(axis=1)  # of each link, from x downwards
+        z = -30 * np.sin(first) - 25 * np.sin(second)
+        assert np.ptp(z + np.roll(z, 3)) > 50
+
+
 def test_by_the_tools_limit_alone_no_place_has_both_colours() -> None:
     """The limit looks at the height of the tool, which both postures of a place share."""
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (1000, 2))

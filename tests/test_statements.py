@@ -262,6 +262,39 @@ def test_the_right_column_of_table_6_is_never_below_the_left() -> None:
                 assert difference.real > -1e-12
 
 
+def test_the_tool_stays_out_of_the_box_of_the_three_walls() -> None:
+    q = DRAWN[paper_rule.feasible(ROBOT, DRAWN)]
+    found = equation_29(*q.T)
+    between = (found["beta_{5,1}"] < 0) & (found["beta_{6,1}"] > 0)
+    assert between.any()
+    assert not (between & (found["beta_{7,3}"] < 0)).any()
+
+
+def test_eq_31_leaves_no_angle_out_and_the_restated_interval_does() -> None:
+    """Its length less a turn is twice the arccosine, which is never negative."""
+    ends = [paper.expression(paper.THEOREM_2[f"31 {end}"]) for end in ("lower", "upper")]
+    names = {str(symbol): symbol for end in ends for symbol in end.free_symbols}
+    for c in np.linspace(-1, 1, 21):
+        values = {names["a"]: 0.6, names["b"]: 0.8, names["c"]: c, names["k"]: 0}
+        low, high = (float(end.subs(values)) for end in ends)
+        assert high - low >= 2 * np.pi - 1e-9
+    q = np.linspace(-np.pi, np.pi, 1001)
+    assert (0.6 * np.cos(q) + 0.8 * np.sin(q) < 0.5).any()
+
+
+def test_open_paths_enclose_nothing_and_closed_ones_feasible_places() -> None:
+    for order in ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0)):
+        assert shapely.LineString(tool(legs(order, 0.95))[::7]).is_simple
+        ring = shapely.LinearRing(tool(legs((*order, order[0]), 0.95)))
+        faces = shapely.union_all(shapely.polygonize([shapely.node(ring)]))
+        assert faces.area > 1000
+        low, high = np.reshape(faces.bounds, (2, 2))
+        places = np.random.default_rng(9).uniform(low, high, (20_000, 2))
+        places = places[shapely.contains_xy(faces, *places.T)]
+        either = [paper_rule.feasible(ROBOT, q) for q in postures(places)]
+        assert np.any(either, axis=0).all()
+
+
 # --- effort ---------------------------------------------------------------------------------------
 
 

@@ -1,4 +1,4 @@
-"""What is a collision? Three readings of Figure 11 that the paper's equations allow.
+"""What is a collision? Four readings of Figure 11 that the paper's equations allow.
 
 The paper does not state the test behind its red points. Two more readings belong to the library:
 `qbound.sampling.keeps_clear` (eqs. (11) and (12)) and `qbound.region.paper_rule.feasible` (the
@@ -29,6 +29,12 @@ def keeps_components_positive(robot: Robot, q: Floats) -> Bools:
     """No component of a boundary function in use is negative: eq. (9) to the letter."""
     used = [b for b in robot.boundaries if b.used]
     return _all_of((components(robot, b)(q).min(axis=-1) >= 0 for b in used), q)
+
+
+def keeps_third_components_positive(robot: Robot, q: Floats) -> Bools:
+    """No third (z) component of a boundary function in use is negative: eq. (9) of these alone."""
+    used = [b for b in robot.boundaries if b.used]
+    return _all_of((components(robot, b)(q)[..., 2] >= 0 for b in used), q)
 
 
 def keeps_geometric(robot: Robot, q: Floats) -> Bools:

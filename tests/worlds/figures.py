@@ -11,6 +11,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import arms, joint_region
 from qbound.paths.traversal import Traversal, traverse
 from support.worlds import World, robot_file, with_boundaries, world
+from worlds.sentences import linear_places
 
 
 def floor_at(height: float) -> World:
@@ -84,7 +85,7 @@ WORLDS: dict[str, World] = {
     "F-9.1": world(printed={"ORDERS": {9: (1, 2, 3, 4, 5)}}),
     "F-10.1": world(robots={"minervabot-v2": robot_file("minervabot-v2-symmetric")}),
     "F-10.2": world(replaced={"qbound.geometry.polygon.centroid": lambda vertices: vertices[0]}),
-    "F-10.3": world(robots={"minervabot-v2-symmetric": robot_file()}),
+    "F-10.3": linear_places,
     "F-11.1": world(printed={"SAMPLES": {"test": "windows of Table 6"}}),
     "F-11.2": world(printed={"SAMPLES": {"test": "the tool's limit alone, eq. (12)"}}),
     "F-11.3": floor_at(24.0),

@@ -11,6 +11,7 @@ from unittest.mock import patch
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.computations import figures_workspace
 from lizarraga2025.evidence import arms, joint_region, proofs
 from qbound import HarmonicForm, load_robot
 from qbound.boundary.functions import position
@@ -114,12 +115,6 @@ def slide_that_moves_nothing() -> Robot:
     return replace(of, points=ARM.points, boundaries=ARM.boundaries)
 
 
-def about_home(factor: float | None = None, of: Robot | None = None) -> np.ndarray:
-    """Return the polygon scaled about the home pose in place of its centroid."""
-    factor = joint_region.SCALE if factor is None else factor
-    return polygon.scaled(joint_region.vertices(of), factor, np.zeros(2))
-
-
 def on_the_boundary() -> Sample:
     """Return configurations drawn from the boundary itself."""
     q = np.concatenate([arc.points for arc in joint_region.by_windows().loops[0]])
@@ -158,6 +153,17 @@ def held_on_the_other_side() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def linear_places() -> Iterator[None]:
+    """Put the tool where a linear map of the joints does, for the middles of opposite places."""
+
+    def of_a_linear_map(_: Robot, name: str) -> HarmonicForm:
+        return position(sliding_in_place_of_turning(), name)
+
+    with world()(), patch.object(figures_workspace, "position", of_a_linear_map):
+        yield
+
+
 ROTATION, RESTRICT = frames.axis_rotation, HarmonicForm.restrict
 SLIDING, GENERAL = arms.sliding, proofs.general
 
@@ -188,6 +194,9 @@ WORLDS: dict[str, World] = {
     "S-5": LINEAR,
     "S-6": DRAWN_ON_IT,
     "S-7": UNBOUNDED,
+    "S-7.1": world(
+        printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}
+    ),
     "S-8": CEILING,
     "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
     "S-10": HIGH_LIMIT,
@@ -211,7 +220,13 @@ WORLDS: dict[str, World] = {
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),
-    "S-20.1": arm(with_boundaries(ARM, B5={"offset": -60.0}, B6={"offset": -60.0})),
+    "S-20.1": arm(
+        with_boundaries(ARM, B5={"offset": 60.0}, B6={"offset": -60.0}, B7={"used": False})
+    ),
+    "S-20.2": arm(load_robot("minervabot-v2-corrected")),
+    "S-20.3": world(
+        printed={"TABLE_6": {"beta_{1,3,1}": paper.TABLE_6["beta_{1,3,1}"].replace("pi +", "")}}
+    ),
     "S-21": SLIDES,
     "S-21.1": world(
         printed={
@@ -238,6 +253,7 @@ WORLDS: dict[str, World] = {
     "S-34": POINT_LIKE,
     "S-35": SYMMETRIC,
     "S-36": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.3}),
+    "S-36.1": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1.0}),
     "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
     "S-38": UNBOUNDED,
     "S-39": DRAWN_ON_IT,
@@ -253,10 +269,10 @@ WORLDS: dict[str, World] = {
     "S-49": held_on_the_other_side,
     "S-50": CEILING,
     "S-51": world(printed={"EQUATION_29": {"beta_{1,1}": "x_1_7*cos(q1) - x_0_6 - z_1_7*sin(q1)"}}),
-    "S-52": LITTLE_OF_THE_OTHER,
+    "S-52": HIGH_LIMIT,
     "S-53": HIGH_LIMIT,
     "S-54": POINT_LIKE,
-    "S-55": world(replaced={f"{EVIDENCE}.joint_region.scaled": about_home}),
+    "S-55": linear_places,
     "S-56": SIGN_OF_16,
 }
 

@@ -14,12 +14,15 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import floor, half_spaces, pairs, robot, symbolic_robot
 from lizarraga2025.evidence.joint_region import (
+    X_IN_CM,
     body_gap,
     by_windows,
     depth_below_edges,
+    in_base_box,
     largest_scale,
     least_height,
     scaled,
+    square,
     vertices,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
@@ -33,6 +36,8 @@ from qbound.region import paper_rule, solve, state
 from qbound.symbols import joint_symbols
 
 Floats = NDArray[np.float64]
+
+PICTURE: Final = "The picture, which was not at hand, may show it."
 
 
 @computes("F-1")
@@ -103,7 +108,7 @@ def _components(labels: Iterable[str]) -> set[tuple[int, ...]]:
 def six_curves() -> Outcome:
     named, found = set(paper.FIGURE_4_BOUNDS), _edges()
     same = _components(named) == _components(found) and len(found) == len(named)
-    with_arctan = _sides("arctan")
+    with_arctan = sides_of_the_box("arctan")
     return Outcome(
         judge(holds=same and with_arctan <= named, under=same),
         f"With the inverse tangent as atan2 the region has {len(found)} bounding curves, of the"
@@ -113,12 +118,12 @@ def six_curves() -> Outcome:
     )
 
 
-def _sides(reading: paper.Reading) -> set[str]:
+def sides_of_the_box(reading: paper.Reading) -> set[str]:
     """Return the labels of the highest lower and the lowest upper bound of each joint."""
     found = set()
     for of_joint in ((1, 2), (3, 4)):
         values = {
-            label: _bound(label, reading)
+            label: bound_of_a_pair(label, reading)
             for label in paper.TABLE_6
             if paper.indices(label)[0] in of_joint
         }
@@ -127,7 +132,7 @@ def _sides(reading: paper.Reading) -> set[str]:
     return found
 
 
-def _bound(label: str, reading: paper.Reading) -> float:
+def bound_of_a_pair(label: str, reading: paper.Reading) -> float:
     """Return the value, rad, of a printed bound of a point pair."""
     printed = paper.expression(paper.TABLE_6[label], arctan=reading)
     return float(printed.subs(symbolic_robot()[1]))
@@ -141,8 +146,10 @@ def _greek(label: str) -> str:
 def the_index_of_one_bound() -> Outcome:
     (k,) = {paper.indices(label)[2] for label in paper.FIGURE_4_BOUNDS if "{3,3," in label}
     side = float(paper_rule.box(robot()).upper[1])
-    values = {k: _bound(f"beta_{{3,3,{k}}}", "atan2") for k in (1, 2)}
-    raised = {k: _bound(f"beta_{{3,3,{k}}}", "arctan") + np.pi for k in (1, 2)}  # a < 0: add pi
+    values = {k: bound_of_a_pair(f"beta_{{3,3,{k}}}", "atan2") for k in (1, 2)}
+    raised = {  # a < 0: add pi
+        k: bound_of_a_pair(f"beta_{{3,3,{k}}}", "arctan") + np.pi for k in (1, 2)
+    }
     fits = {
         "the index is a slip": bool(np.isclose(values[1], side)) and values[2] < 0 < values[1],
         "the row is a slip": bool(np.isclose(raised[2], side)) and 0 < raised[2] < TURN,
@@ -164,7 +171,7 @@ def red_lines_play_no_part() -> Outcome:
         label
         for label in paper.TABLE_6
         if paper.indices(label)[0] < 5 and paper.indices(label)[:2] not in named
-        if _is_inside(box, pairs()[paper.indices(label)[0] - 1], _bound(label, "atan2"))
+        if _is_inside(box, pairs()[paper.indices(label)[0] - 1], bound_of_a_pair(label, "atan2"))
     ]
     closes = _components(_edges()) == named
     ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
@@ -173,16 +180,23 @@ def red_lines_play_no_part() -> Outcome:
         sum(c.area for c in solve(state(robot(), used, ranges, names), robot().home).components)
         for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
     ]
+    by_pairs = square()[((box.lower <= square()) & (square() <= box.upper)).all(axis=-1)]
+    by_rule = by_pairs[paper_rule.feasible(robot(), by_pairs)]
     return strongest(
         {
             "lines that the authors leave out": judge(holds=closes and not cuts_in),
             "lines that would cut nothing off": judge(
                 holds=not cuts_in and np.ptp(areas) < SMALL, under=not cuts_in
             ),
+            "B5 and B6 as sides of a box round the base, whose top is B7": judge(
+                holds=bool(in_base_box(by_pairs).any() and not in_base_box(by_rule).any())
+            ),
         },
         f"The six lines named close the region alone, and of the other lines of point pairs"
         f" {len(cuts_in) or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in"
-        f" force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}."
+        f" force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}"
+        f" ({X_IN_CM}). As sides of one box that the tool must stay out of they would cut nothing"
+        " off, but its top B7 neither, which is cyan: the windows alone keep the tool out of it."
         " Why they are left out the text does not say.",
     )
 
@@ -302,7 +316,7 @@ def which_factor_and_which_centroid() -> Outcome:
         undetermined(fits),
         f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried are"
         f" safe. The centroids of the area and of the six points are {apart:.4f}° apart and allow"
-        f" scales up to {both[0]:.9f} and {both[1]:.9f}.",
+        f" scales up to {both[0]:.9f} and {both[1]:.9f}. {PICTURE}",
     )
 
 

@@ -11,16 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.collisions import keeps_components_positive, keeps_geometric, misses_points
+from lizarraga2025.collisions import (
+    keeps_components_positive,
+    keeps_geometric,
+    keeps_third_components_positive,
+    misses_points,
+)
+from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import corrected, robot, symmetric, tool_form
+from lizarraga2025.evidence.arms import corrected, of_slides, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     bodies_allow,
     drawn,
     scaled,
 )
-from lizarraga2025.evidence.rounding import HALF_DIGIT, SMALL
+from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
@@ -33,8 +39,10 @@ from lizarraga2025.evidence.tool_paths import (
     path_through,
     simple_neighbours,
     simple_sequences,
+    spread_of_middles,
 )
-from lizarraga2025.verdicts import Outcome, judge, undetermined
+from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.boundary.functions import position
 from qbound.forms.angles import TURN
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
@@ -73,7 +81,7 @@ def which_order_of_the_six_points() -> Outcome:
     return Outcome(
         undetermined(fits),
         f"The text names neither start nor direction. The {sum(fits.values())} closed walks along"
-        f" the region's edges all stay feasible at scale {SCALE}.",
+        f" the region's edges all stay feasible at scale {SCALE}. {PICTURE}",
     )
 
 
@@ -110,7 +118,7 @@ def final_pose_of_the_six_points() -> Outcome:
     return Outcome(
         undetermined({str(pose): True for pose in kinds}),
         f"The text states neither start nor direction nor return: {len(ends)} walks round the six"
-        f" points fit, with {len(kinds)} different final poses.",
+        f" points fit, with {len(kinds)} different final poses. {PICTURE}",
     )
 
 
@@ -124,7 +132,7 @@ def which_five_points() -> Outcome:
         f"The text does not name the points. Of 360 orders of five of the six (a walk and its"
         f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself; of"
         f" the {len(neighbour_sequences())} walks through five neighbours, in either direction,"
-        f" {neighbours}. The book shows 6-1-2-3-4.",
+        f" {neighbours}. {PICTURE}",
     )
 
 
@@ -182,38 +190,72 @@ def opposite_paths() -> Outcome:
 
 @computes("F-10.1")
 def the_regions_are_not_symmetric() -> Outcome:
-    printed, one_digit = (asymmetry(arm, SCALE) for arm in (robot(), corrected()))
-    rounding = 2 * np.hypot(HALF_DIGIT, HALF_DIGIT)
-    return Outcome(
-        judge(holds=printed > rounding),
-        f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
-        f" printed offsets, {one_digit:.4f} cm with x_{{2,13}} at 9.09 cm.",
+    printed, one_digit, of_rounding = (
+        asymmetry(arm, SCALE) for arm in (robot(), corrected(), rounded(symmetric()))
     )
+    return Outcome(
+        judge(holds=one_digit > of_rounding + SMALL, under=printed > of_rounding + SMALL),
+        f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
+        f" printed x_{{2,13}} = 9.00, {one_digit:.4f} cm with 9.09 (T-4.2). As far apart,"
+        f" {of_rounding:.4f} cm, are those of the exactly symmetric arm with its offsets rounded to"
+        " hundredths.",
+    )
+
+
+SCALES: Final = (1.0, SCALE, 0.8)
 
 
 @computes("F-10.2")
 def asymmetry_from_scaling() -> Outcome:
-    scales = (1.0, SCALE, 0.8)
-    printed, exact = ([asymmetry(arm, s) for s in scales] for arm in (robot(), symmetric()))
-    brought_in = printed[0] < SMALL < max(printed) or exact[0] < SMALL < max(exact)
+    printed, exact = ([asymmetry(arm, s) for s in SCALES] for arm in (robot(), symmetric()))
+    centres = [spreads_of_middles(s)["tool"] for s in SCALES]
+    brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact, centres))
     return Outcome(
         judge(holds=brought_in),
         f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
         " scaling changes the asymmetry and does not bring it in. On the exactly symmetric arm they"
-        f" are mirror images at scales {', '.join(f'{s:g}' for s in scales)}.",
+        f" are mirror images at scales {', '.join(f'{s:g}' for s in SCALES)}, and point reflections"
+        " at none of them, unscaled neither (F-10.3).",
     )
 
 
 @computes("F-10.3")
 def asymmetry_from_nonlinearity() -> Outcome:
+    exact, spreads = asymmetry(symmetric(), SCALE), spreads_of_middles(SCALE)
     bends = [_bend(arm) for arm in (robot(), symmetric())]
-    exact = asymmetry(symmetric(), SCALE)
-    return Outcome(
-        judge(holds=exact > SMALL),
-        f"The tool's path bends away from its chords by up to {bends[0]:.2f} cm on the printed arm"
-        f" and {bends[1]:.2f} cm on the exactly symmetric one: as nonlinear, and its paths are"
-        " mirror images.",
+    return strongest(
+        {
+            "point reflections, as the two joint paths are": judge(
+                holds=nonlinearity_breaks_point_symmetry()
+            ),
+            "mirror images": judge(holds=exact > SMALL),
+        },
+        "On the exactly symmetric arm the two joint paths are point reflections of each other:"
+        " opposite points have one middle. A linear map keeps that; the middles of the tool's"
+        f" opposite places are {spreads['tool']:.2f} cm apart. Mirror images its paths are,"
+        f" although they bend away from their chords by up to {bends[1]:.2f} cm, those of the"
+        f" printed arm by {bends[0]:.2f} cm.",
     )
+
+
+def nonlinearity_breaks_point_symmetry() -> bool:
+    """Tell whether joint paths are point reflections, and the tool's by a linear map alone."""
+    spreads = spreads_of_middles(SCALE)
+    return max(spreads["joints"], spreads["linear"]) < SMALL < spreads["tool"]
+
+
+def spreads_of_middles(factor: float) -> dict[str, float]:
+    """Return how far the middles of opposite points of the symmetric arm are apart, rad and cm.
+
+    Of its joint values, of the tool's places, and of the places that a linear map gives: two slides
+    in place of the joints.
+    """
+    q = scaled(factor, symmetric())
+    return {
+        "joints": spread_of_middles(q),
+        "tool": spread_of_middles(position(symmetric(), symmetric().tool)(q)),
+        "linear": spread_of_middles(position(of_slides(), of_slides().tool)(q)),
+    }
 
 
 def _bend(arm: Robot) -> float:
@@ -231,6 +273,7 @@ TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
     "clearances, eqs. (11) and (12)": keeps_clear,
     "windows of Table 6": paper_rule.feasible,
     "signs of all components, eq. (9)": keeps_components_positive,
+    "signs of the third components, eq. (9)": keeps_third_components_positive,
     "whole bodies and the tool's limit": lambda _, q: bodies_allow(q),
 }
 """What can make a point red: the test for a configuration that stays blue, by name."""
@@ -265,7 +308,7 @@ def what_a_red_point_is() -> Outcome:
         undetermined(fits),
         f"The test is not in the text. Of one draw of {len(drawn().q)} configurations are free, to"
         f" 0.3 %: {parts}. By {out or 'none'} no place has both colours, as the text says some"
-        f" have (F-11.2); each of the other {len(_mixing())} could be meant.",
+        f" have (F-11.2); each of the other {len(_mixing())} could be meant. {PICTURE}",
     )
 
 
@@ -312,5 +355,5 @@ def how_many_samples_over_which_range() -> Outcome:
     return Outcome(
         undetermined(fits),
         "The text draws n configurations and gives neither n nor the range of each joint. All"
-        f" {sum(fits.values())} choices tried show both colours: {', '.join(fits)}.",
+        f" {sum(fits.values())} choices tried show both colours: {', '.join(fits)}. {PICTURE}",
     )

@@ -9,9 +9,11 @@ import numpy as np
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
+from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
+    SCALE,
     body_gap,
     by_clearances,
     by_windows,
@@ -25,7 +27,7 @@ from lizarraga2025.evidence.joint_region import (
     scaled,
     vertices,
 )
-from lizarraga2025.evidence.proofs import general, is_identity, vanishes
+from lizarraga2025.evidence.proofs import general, is_identity, theorem_2, vanishes
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     is_cut_by_the_singular_line,
@@ -80,8 +82,8 @@ def final_pose_depends_on_the_path() -> Outcome:
     reach = [float(w.reach[-1]) for w in paths]
     return Outcome(
         judge(holds=len(poses) > 1 and np.ptp(reach) > 1),
-        f"The {len(paths)} sequences of five neighbours end in {len(poses)} poses, with the tool"
-        f" {min(reach):.4f} to {max(reach):.4f} cm from joint 1.",
+        f"At scale {SCALE:g} the {len(paths)} sequences of five neighbours end in {len(poses)}"
+        f" poses, with the tool {min(reach):.4f} to {max(reach):.4f} cm from joint 1.",
     )
 
 
@@ -121,10 +123,31 @@ def accuracy_and_effort() -> Outcome:
     closed = {k: effort.closed_form_evaluations(10.0**-k) for k in (3, 6, 9)}
     random = {k: effort.samples_needed(10.0**-k) for k in closed}
     text = "; ".join(f"1e-{k}: {closed[k]} against {random[k]:.2g} random samples" for k in closed)
-    return Outcome(
-        judge(holds=all(closed[k] < random[k] for k in closed)),
-        "Solutions of Theorem 2 for the area of the joint region within a relative error of"
-        f" {text}.",
+    return strongest(
+        {
+            "done with eq. (38) and atan2, or Theorem 2 restated": judge(
+                holds=all(closed[k] < random[k] for k in closed)
+            ),
+            "done with Theorem 2 as printed": judge(holds=interval(31).excludes),
+        },
+        "Roots, by Theorem 2 restated (TH-2), for the area of the joint region within a relative"
+        f" error of {text}. Eq. (31) as printed leaves no angle out, so it bounds no area.",
+    )
+
+
+@computes("S-7.1")
+def theorems_that_bound_q() -> Outcome:
+    steps = theorem_2()
+    return strongest(
+        {
+            "Theorem 2 restated": judge(
+                holds=interval(31).excludes, under=bool(steps) and all(steps.values())
+            ),
+            "Theorem 2 as printed": judge(holds=True, constrains=interval(31).excludes),
+        },
+        "The text names no theorem so; of its two Theorem 2 bounds q. As printed its interval"
+        " leaves no angle out; restated, it has as its ends the two roots, and"
+        f" {sum(steps.values())} of the {len(steps)} steps of its proof are identities.",
     )
 
 
@@ -145,10 +168,11 @@ def boundary_of_the_workspace() -> Outcome:
             "the workspace in the plane of the tool": judge(holds=whole, under=rest),
         },
         f"In joint space the boundary is {counted(len(region.loops), 'closed curve')} through"
-        f" {len(found)} points, which Theorem 2 gives in closed form as a complete decomposition"
-        f" finds them. Its image in the plane of the tool encloses {areas['enclosed']:.2f} of"
-        f" {areas['union']:.2f} cm² that are reached; the rest, reached in both postures, ends"
-        " outside at the image of the singular line, which has to be added.",
+        f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
+        " complete decomposition finds them. Its image in the plane of the tool encloses"
+        f" {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are reached; the rest,"
+        " reached in both postures, ends outside at the image of the singular line, which has to be"
+        " added.",
     )
 
 
@@ -272,15 +296,23 @@ def without_homogeneous_matrices() -> Outcome:
     same = sp.expand((block * sp.Matrix([*point, 1]))[:3, :] - (turn * point + step))
     products = {"R and r": len(turn), "the 4 by 4 matrix": len(block)}
     joints = {len(pair_vector(robot(), pair).joints()) for pair in pairs()}
-    return Outcome(
-        judge(
-            holds=same == sp.zeros(3, 1) and len(turn) < len(block) and joints == {1},
-            under=same == sp.zeros(3, 1) and len(turn) < len(block),
-        ),
+    equal = same == sp.zeros(3, 1)
+    vary = sum(not entry.is_number for entry in block[:3, :3])
+    return strongest(
+        {
+            "against the full 4 by 4 matrix from the base": judge(
+                holds=equal and len(turn) < len(block) and joints == {1},
+                under=equal and len(turn) < len(block),
+            ),
+            "against a 4 by 4 matrix whose constant row is not computed": judge(
+                holds=len(turn) < vary
+            ),
+        },
         "Eq. (16) needs no 4 by 4 matrix and none from the base: with consecutive links each pair"
         f" of the robot depends on {max(joints)} of {len(robot().joints)} joints, and a point costs"
-        f" {products['R and r']} products instead of {products['the 4 by 4 matrix']}. The numbers"
-        " in R and r are the twelve of the homogeneous matrix that vary.",
+        f" {products['R and r']} products instead of {products['the 4 by 4 matrix']}. R and r hold"
+        " the twelve entries of the homogeneous matrix that vary: who leaves out its constant row"
+        " takes as many products.",
     )
 
 
@@ -326,9 +358,9 @@ def four_tables() -> Outcome:
     number = len(pairs())
     return strongest(
         {
-            "four tabulated functions, each with its diagram": judge(holds=number == 4),
+            "four tabulated functions, each with its offsets": judge(holds=number == 4),
             "four tables with a number": judge(holds=len(tables) == 4, corrected=number == 4),
         },
         f"The offsets of the {number} pairs stand in {number} parts of {len(tables)} numbered"
-        " tables, as the same section says two paragraphs on.",
+        " tables, as the same section says two paragraphs on. The diagrams were not at hand.",
     )

@@ -8,7 +8,12 @@ from functools import cache
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.computations.figures_workspace import (
+    nonlinearity_breaks_point_symmetry,
+    spreads_of_middles,
+)
 from lizarraga2025.computations.registry import computes
+from lizarraga2025.computations.sentences_workspace import pass_made_safe
 from lizarraga2025.evidence.arms import of_slides, pairs, robot, sliding, symbolic_robot, symmetric
 from lizarraga2025.evidence.joint_region import SCALE, largest_scale, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
@@ -194,6 +199,7 @@ def scaling_resolves_singularities() -> Outcome:
     least = {s: float(np.abs(det_jacobian(scaled(s))).min()) for s in (1.0, *scales)}
     return strongest(
         {
+            "a path that passes the singular pose safely (S-32)": pass_made_safe(),
             "a region without singular poses": judge(holds=not any(inside)),
             "paths that meet none": judge(holds=not any(passing)),
             "points farther from them": judge(holds=min(least.values()) == least[1.0]),
@@ -203,7 +209,7 @@ def scaling_resolves_singularities() -> Outcome:
         f" {len(neighbour_sequences())} sequences of neighbours pass one, as any five of the six"
         " points lie on both sides of the singular line. The points come no farther from it: the"
         f" least |det J| of them is {least[1.0]:.2f} cm² unscaled and {least[0.95]:.2f} cm² at"
-        " scale 0.95. What the scaling does is to make the pass feasible (S-32).",
+        " scale 0.95. What the scaling does is to make the pass feasible.",
     )
 
 
@@ -230,7 +236,8 @@ def strong_dependence() -> Outcome:
     spread = np.degrees(np.ptp(ends, axis=0))
     return Outcome(
         judge(holds=bool(spread.min() > 90 and np.ptp(reach) / reach.max() > 0.2)),
-        f"Over the {len(reach)} sequences of neighbours the final joint values spread over"
+        f"At scale {SCALE:g}, over the {len(reach)} sequences of neighbours, the final joint values"
+        " spread over"
         f" {spread[0]:.2f}° and {spread[1]:.2f}° and the final reach from {reach.min():.4f} to"
         f" {reach.max():.4f} cm.",
     )
@@ -241,22 +248,32 @@ def causes_of_asymmetry() -> Outcome:
     exact = {s: asymmetry(symmetric(), s) for s in (1.0, SCALE, 0.8)}
     printed = {s: asymmetry(robot(), s) for s in exact}
     alone = {"nonlinearity": exact[1.0] > SMALL, "scaling": max(exact.values()) > SMALL}
+    centres = {s: spreads_of_middles(s)["tool"] for s in (1.0, SCALE)}
+    apart = {
+        "nonlinearity": nonlinearity_breaks_point_symmetry(),
+        "scaling": centres[1.0] < SMALL < centres[SCALE],
+    }
     needed = printed[1.0] < SMALL < printed[SCALE]
     added = printed[SCALE] > printed[1.0]
-    text = "; ".join(f"{s:g}: {apart:.4f}" for s, apart in printed.items())
+    text = "; ".join(f"{s:g}: {off:.4f}" for s, off in printed.items())
     return strongest(
         {
-            "what makes the paths unsymmetric by itself": judge(
+            "no point reflections, as the joint paths are, by nonlinearity or scaling": judge(
+                holds=all(apart.values()), under=any(apart.values())
+            ),
+            "no mirror images, by either alone": judge(
                 holds=all(alone.values()), under=any(alone.values())
             ),
-            "that without which they would be symmetric": judge(holds=needed),
-            "the scaling adding to it": judge(holds=added),
+            "no mirror images, and without the scaling they would be": judge(holds=needed),
+            "less of mirror images by the scaling": judge(holds=added),
         },
-        "That the paths are unsymmetric holds (F-10.1). The symmetric arm, scaled and as nonlinear,"
-        f" has {'un' if any(alone.values()) else ''}symmetric paths. The printed arm's are"
-        f" unsymmetric without scaling too, and {'more' if added else 'less'} so with it (cm apart,"
-        f" by scale: {text}). What decides is the data, or a pair of sequences that are no"
-        " mirror images.",
+        "On the symmetric arm the two joint paths are point reflections of each other. The tool's"
+        " are not, by the nonlinearity and not by the scaling: the middles of opposite places are"
+        f" {centres[1.0]:.2f} cm apart unscaled and {centres[SCALE]:.2f} cm at scale {SCALE:g}."
+        f" They are {'no ' if any(alone.values()) else ''}mirror images, scaled and as nonlinear."
+        " The printed arm's paths are no mirror images without scaling either, and"
+        f" {'more' if added else 'less'} apart with it (cm, by scale: {text}): there the data"
+        " decide, or a pair of sequences that are no mirror images.",
     )
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
+from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import (
     corrected,
@@ -19,10 +20,13 @@ from lizarraga2025.evidence.arms import (
     tool_form,
 )
 from lizarraga2025.evidence.joint_region import (
+    X_IN_CM,
     bodies_allow,
+    body_gap,
     by_clearances,
     by_windows,
     depth_below_edges,
+    in_base_box,
     largest_scale,
     least_height,
     square,
@@ -82,12 +86,17 @@ def exactly_where_it_meets_itself() -> Outcome:
     printed = [closest_approach(robot(), pair)[1] for pair in pairs()]
     exact = [closest_approach(symmetric(), pair)[1] for pair in pairs(symmetric())]
     digit = [closest_approach(corrected(), pair)[1] for pair in pairs(corrected())]
+    allowed = [contact(pair) for pair in pairs()]
     return Outcome(
-        judge(holds=max(printed) < SMALL, under=max(exact) < SMALL),
+        judge(
+            holds=all(gap < most for gap, most in zip(printed, allowed, strict=True)),
+            under=max(exact) < SMALL
+            and all(gap < most for gap, most in zip(digit, allowed, strict=True)),
+        ),
         f"With the offsets to two decimals the points of a pair come to within {min(printed):.4f}"
-        f" to {max(printed):.4f} cm of each other, with one digit corrected to within"
-        f" {max(digit):.4f} cm. With the unrounded shape behind them all four pairs meet, at one"
-        " angle each.",
+        f" to {max(printed):.4f} cm of each other, with x_{{2,13}} = 9.09 (T-4.2) to within"
+        f" {max(digit):.4f} cm; rounding allows {min(allowed):.4f} cm and more. With the unrounded"
+        " shape behind them all four pairs meet, at one angle each.",
     )
 
 
@@ -107,7 +116,7 @@ def half_spaces_are_independent() -> Outcome:
         },
         f"{sum(alone)} of the {len(alone)} functions vanish in poses in which no other does. Of the"
         f" 8 combinations of signs {len(patterns)} occur: B5 asks x >= 15 cm and B6 x >= -15 cm of"
-        " the same point, so B5 implies B6.",
+        f" the same point ({X_IN_CM}), so B5 implies B6.",
     )
 
 
@@ -129,11 +138,22 @@ def limits_are_respected() -> Outcome:
         for walls in (half_spaces()[2:], half_spaces()[1:], half_spaces())
     ]
     kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
-    return Outcome(
-        judge(holds=all(kept), under=areas[0] > 0),
+    q = square()
+    inside = int(in_base_box(q[paper_rule.feasible(robot(), q)]).sum())
+    return strongest(
+        {
+            "three sides of one box round the base that the tool stays out of": judge(
+                holds=inside == 0
+            ),
+            "three half-spaces, of which the caption of Figure 4 names one": judge(
+                holds=all(kept), under=areas[0] > 0
+            ),
+        },
         "The selected region respects B7, the one that its caption names. B5 and B6 of the same"
-        f" table are drawn in red and cut it: with B6 in force {areas[1]:.4f} of {areas[0]:.4f}"
-        f" rad² would be left, with B5 too {areas[2]:.4f}.",
+        f" table are drawn in red and, as half-spaces, cut it: with B6 in force {areas[1]:.4f} of"
+        f" {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}. As the sides of a box"
+        f" from -15 to 15 cm whose top is B7 they ask for less: of {len(q) ** 2} configurations on"
+        f" a grid {inside or 'none'} in the region has the tool in it ({X_IN_CM}).",
     )
 
 
@@ -142,6 +162,51 @@ def _limited(walls: tuple[HalfSpace, ...]) -> Problem:
     box = paper_rule.box(robot())
     ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
     return state(robot(), walls, ranges, [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")])
+
+
+@computes("S-20.2")
+def the_complete_workspace() -> Outcome:
+    free = {name: _free_by_bodies_and_by_rule(arm) for name, arm in _robots().items()}
+    same = {name: np.array_equal(*both) for name, both in free.items()}
+    whole, rule = free["printed"]
+    angle = {name: _angle_to_contact(arm) for name, arm in _robots().items()}
+    return Outcome(
+        judge(holds=same["printed"], under=same["corrected"] and same["symmetric"]),
+        f"Of {whole.size} configurations on a grid a check of the whole bodies frees"
+        f" {np.count_nonzero(whole)}. The windows and the tool's limit leave out"
+        f" {np.count_nonzero(whole & ~rule)} of them, for one side stops {angle['printed']:.4f}°"
+        f" early, and free {np.count_nonzero(rule & ~whole) or 'none'} of the others. With"
+        f" x_{{2,13}} = 9.09 (T-4.2) both free the same, and no side is off by more than"
+        f" {angle['corrected']:.4f}°. In the plane of the tool the image of the region is meant,"
+        " not what the image of its boundary encloses (S-50).",
+    )
+
+
+def _free_by_bodies_and_by_rule(arm: Robot) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return on a grid of 120 by 120 what a check of the whole bodies frees, and what the rule."""
+    q = square(120)
+    return (body_gap(q, arm) > 0) & (floor()(q) >= 0), paper_rule.feasible(arm, q)
+
+
+@computes("S-20.3")
+def the_range_is_quantified() -> Outcome:
+    box, region = paper_rule.box(robot()), by_windows()
+    corners = sorted(corner.q.tolist() for corner in closed_form.vertices(robot()))
+    found = sorted(vertex.q.tolist() for vertex in region.vertices)
+    same = len(found) == len(corners) and np.allclose(found, corners, atol=SMALL)
+    return Outcome(
+        judge(holds=same and _gives(box, "arctan"), under=same and _gives(box, "atan2")),
+        "With the inverse tangent as atan2 Table 6 gives the four sides of the box of windows, and"
+        f" its bounds meet in the {len(corners)} corners that a complete decomposition of the"
+        " region finds: closed formulas of the offsets, as precise as these. With arctan it gives"
+        " other sides. Whether a contact is where a bound is, is another question (S-28).",
+    )
+
+
+def _gives(box: paper_rule.Box, reading: paper.Reading) -> bool:
+    """Tell whether the rows of Table 6 for the pairs give the sides of the box."""
+    sides = sorted(bound_of_a_pair(label, reading) for label in sides_of_the_box(reading))
+    return np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
 
 
 @computes("S-21")
@@ -213,9 +278,10 @@ def other_regions_are_out_of_reach() -> Outcome:
     others = len(with_home) - 1
     return Outcome(
         judge(holds=others > 0 and with_home == [True, *([False] * others)]),
-        f"The regions are the connected pieces of what the clearances leave; {sum(with_home)} of"
-        f" {len(with_home)} contains home. It is bounded by {', '.join(names)}, so every way out of"
-        " it crosses one of these.",
+        "The regions are the connected pieces of what the clearances leave, with the d_min ="
+        f" {robot().required_distance(pairs()[0]):g} cm of the robot file, as the text prints none;"
+        f" {sum(with_home)} of {len(with_home)} contains home. It is bounded by {', '.join(names)},"
+        " so every way out of it crosses one. With d_min = 0 the pairs make no wall (E-11).",
     )
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
+from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     body_gap,
@@ -21,7 +24,9 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     LEFT,
+    PLANE,
     RIGHT,
+    aspect,
     crossings,
     det_jacobian,
     enclosed,
@@ -36,10 +41,15 @@ from lizarraga2025.evidence.tool_paths import (
     stretched_poses,
     workspace,
 )
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
 from qbound.geometry import polygon
 from qbound.region import paper_rule
 from qbound.sampling import sample
+
+if TYPE_CHECKING:
+    import shapely
+
+Floats = NDArray[np.float64]
 
 
 @computes("S-30")
@@ -63,13 +73,23 @@ def why_the_path_stays_open() -> Outcome:
     outside = rest > SMALL and bool(np.isclose(rest, areas["twice"], rtol=1e-6))
     middle = np.array([polygon.centroid(vertices())[0], stretched()])
     reached = bool(paper_rule.feasible(robot(), middle))
+    apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
     return Outcome(
-        judge(holds=reached and outside),
+        judge(holds=reached and outside, constrains=apart < SMALL),
         "The outer edge of what the tool reaches is the image of the singular line, which no path"
         f" through the points draws: the path round the region encloses {areas['enclosed']:.2f} of"
         f" {areas['union']:.2f} cm², and the rest, reached in both postures, ends at the stretched"
-        " arm. That a path of five different points ends elsewhere than it begins is F-8.2.",
+        " arm. But a path through different points is open without it too: the three points on"
+        " either side of the singular line, between which no path passes the stretched pose, put"
+        f" the tool at places at least {apart:.2f} cm apart.",
     )
+
+
+def _least_apart(q: Floats) -> float:
+    """Return the least distance of any two of the tool's places, cm; infinite for fewer."""
+    places = tool_form()(q)
+    apart = np.linalg.norm(places[:, None] - places, axis=-1)
+    return float(apart[~np.eye(len(q), dtype=bool)].min(initial=np.inf))
 
 
 @computes("S-31")
@@ -86,15 +106,11 @@ def stretched_is_singular() -> Outcome:
 @computes("S-2")
 @computes("S-32")
 def scaling_settles_the_stretched_pose() -> Outcome:
-    least = {s: float(floor()(stretched_poses(s)).min(initial=np.inf)) for s in (1.0, 0.99, SCALE)}
-    feasible = {s: len(feasible_neighbours(s)) for s in least}
+    least, feasible = heights_of_the_pass(), {s: len(feasible_neighbours(s)) for s in (1.0, SCALE)}
     passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
     return strongest(
         {
-            "a path planned in joint space that passes the stretched pose safely": judge(
-                holds=least[1.0] < 0 < least[0.99] and feasible[0.99] > 0,
-                under=least[1.0] < 0 < least[SCALE] and feasible[SCALE] > 0,
-            ),
+            "a path planned in joint space that passes the stretched pose safely": pass_made_safe(),
             "a path that keeps off the stretched pose": judge(holds=not all(passing)),
         },
         "Where the outline of the six points passes the stretched pose, the tool's height above"
@@ -103,6 +119,21 @@ def scaling_settles_the_stretched_pose() -> Outcome:
         f" neighbours are feasible, unscaled {feasible[1.0]}; the limit is scale"
         f" {largest_scale().scale:.6f}. {sum(passing)} of them pass the stretched pose.",
     )
+
+
+def pass_made_safe() -> Verdict:
+    """Judge whether scaling makes a path feasible where it passes the stretched pose."""
+    least = heights_of_the_pass()
+    return judge(
+        holds=least[1.0] < 0 < least[0.99] and bool(feasible_neighbours(0.99)),
+        under=least[1.0] < 0 < least[SCALE] and bool(feasible_neighbours(SCALE)),
+    )
+
+
+def heights_of_the_pass() -> dict[float, float]:
+    """Return the least height, cm, of the tool where the outline passes the stretched pose."""
+    scales = (1.0, 0.99, SCALE)
+    return {s: float(floor()(stretched_poses(s)).min(initial=np.inf)) for s in scales}
 
 
 @computes("S-33")
@@ -133,21 +164,25 @@ def choice_decides_the_pose() -> Outcome:
 
 @computes("S-35")
 def choice_decides_the_reach() -> Outcome:
-    ways = [[path_through(o, None, arm) for o in (RIGHT, LEFT)] for arm in (robot(), symmetric())]
+    arms = robot(), corrected(), rounded(symmetric()), symmetric()
+    ways = [[path_through(o, None, arm) for o in (RIGHT, LEFT)] for arm in arms]
     final = [[float(way.reach[-1]) for way in pair] for pair in ways]
+    printed, one_digit, of_rounding, _ = (abs(right - left) for right, left in final)
     largest = [float(way.reach.max()) for way in ways[0]]
     spread = [float(path_through(o).reach[-1]) for o in neighbour_sequences()]
     return strongest(
         {
             "the reach in the final pose": judge(
-                holds=abs(final[0][0] - final[0][1]) > 0.01, under=float(np.ptp(spread)) > 1
+                holds=one_digit > of_rounding + SMALL, under=printed > of_rounding + SMALL
             ),
             "the largest reach on the way": judge(holds=bool(np.ptp(largest) > 0.01)),
         },
-        f"The final reach is {final[0][0]:.4f} cm on the right and {final[0][1]:.4f} cm on the"
-        f" left; over all sequences of neighbours it runs from {min(spread):.4f} to"
-        f" {max(spread):.4f} cm. Between right and left it differs by the rounded data alone: on"
-        f" the symmetric arm it is {final[1][0]:.4f} cm for both. The largest reach on the way is"
+        f"At scale {SCALE:g} the final reach is {final[0][0]:.4f} cm on the right and"
+        f" {final[0][1]:.4f} cm on the left with the printed x_{{2,13}} = 9.00,"
+        f" {final[1][0]:.4f} and {final[1][1]:.4f} cm with 9.09 (T-4.2): the difference that"
+        " rounding to hundredths gives the exactly symmetric arm, whose reach is"
+        f" {final[3][0]:.4f} cm on both sides. Over all sequences of neighbours it runs from"
+        f" {min(spread):.4f} to {max(spread):.4f} cm (S-4). The largest reach on the way is"
         f" {largest[0]:.4f} cm on either.",
     )
 
@@ -183,6 +218,50 @@ def _mirror_image_is_reached() -> bool:
     return bool(mirrored and paper_rule.feasible(symmetric(), straight).all())
 
 
+@computes("S-36.1")
+def regions_of_figures_8_and_9() -> Outcome:
+    opened, closed = (
+        [_enclosed(o) for o in (RIGHT, LEFT)],
+        [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
+    )
+    shares = [_feasible_share(faces) for faces in closed]
+    return strongest(
+        {
+            "what a path encloses with the straight joint path back to its start": judge(
+                holds=min(faces.area for faces in closed) > 1 and min(shares) == 1
+            ),
+            "what an open path encloses by itself": judge(
+                holds=min(faces.area for faces in opened) > 0
+            ),
+        },
+        "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
+        f" {max(faces.area for faces in opened):.0f} cm². With the straight joint path back they"
+        f" enclose {closed[0].area:.2f} and {closed[1].area:.2f} cm², where of the places of the"
+        f" draw {100 * min(shares):.4g} % at the least have a feasible posture.",
+    )
+
+
+def _back(order: tuple[int, ...]) -> tuple[int, ...]:
+    return (*order, order[0])
+
+
+def _enclosed(order: tuple[int, ...]) -> shapely.Geometry:
+    """Return what the tool's path through points of the scaled polygon encloses, cm."""
+    import shapely
+
+    line = shapely.LineString(path_through(order).tool[:, PLANE])
+    return shapely.union_all(shapely.polygonize([shapely.node(line)]))
+
+
+def _feasible_share(faces: shapely.Geometry) -> float:
+    """Return of the draw's places in an area the part that has a feasible posture."""
+    import shapely
+
+    q = drawn().q[shapely.contains_xy(faces, *drawn().tool[:, PLANE].T)]
+    either = paper_rule.feasible(robot(), q) | paper_rule.feasible(robot(), other_posture(q))
+    return float(either.mean())
+
+
 @computes("S-37")
 def figure_10_for_11() -> Outcome:
     number, words = paper.ON_NUMERICAL_METHODS
@@ -209,8 +288,9 @@ def sampling_is_costly() -> Outcome:
     text = "; ".join(f"1e-{k}: {drawn:.3g} against {solved}" for k, drawn, solved in rows)
     return Outcome(
         judge(holds=all(drawn > 100 * solved for _, drawn, solved in rows)),
-        "At equal accuracy, configurations judged against solutions of Theorem 2, for a relative"
-        f" error of the area of {text}. At the accuracy of a picture the cost is no obstacle.",
+        "At equal accuracy, configurations judged against roots by Theorem 2 restated (TH-2), for"
+        f" a relative error of the area of {text}. At the accuracy of a picture the cost is no"
+        " obstacle.",
     )
 
 

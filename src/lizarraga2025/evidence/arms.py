@@ -35,6 +35,13 @@ def symmetric() -> Robot:
     return load_robot("minervabot-v2-symmetric")
 
 
+def rounded(of: Robot) -> Robot:
+    """Return the robot with its offsets rounded to two decimals, as the tables print them."""
+    points = tuple(replace(point, at=point.at.round(2)) for point in of.points)
+    joints = tuple(replace(joint, origin=joint.origin.round(2)) for joint in of.joints)
+    return replace(of, points=points, joints=joints)
+
+
 @cache
 def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
-from lizarraga2025.evidence.arms import floor, robot
+from lizarraga2025.evidence.arms import floor, half_spaces, robot, tool_form
 from qbound import find_region
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
@@ -22,6 +22,8 @@ Bools = NDArray[np.bool_]
 
 SCALE = 0.95
 """The book's scale: the paper states none."""
+
+X_IN_CM = "x_min read in cm, which T-5.2 leaves open"
 
 
 @cache
@@ -107,6 +109,13 @@ def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
 def bodies_allow(q: Floats) -> Bools:
     """Tell where no two bodies overlap and the tool keeps its limit."""
     return np.asarray((body_gap(q) > 0) & (floor()(q) >= 0))
+
+
+def in_base_box(q: Floats) -> Bools:
+    """Tell where the tool is in the box round the base that B5, B6 and B7 would bound together."""
+    right, left, top = (half.offset for half in half_spaces())
+    x, _, z = np.moveaxis(tool_form()(q), -1, 0)
+    return np.asarray((left < x) & (x < right) & (z < top))
 
 
 @cache

@@ -113,6 +113,16 @@ def asymmetry(of: Robot, factor: float) -> float:
     return float(other.hausdorff_distance(one))
 
 
+def spread_of_middles(of_points: Floats) -> float:
+    """Return how far apart the middles between opposite points of six are: zero for one centre.
+
+    A point reflection that exchanges the right-hand and the left-hand path takes each stop to the
+    opposite one, so its centre is the middle of all three pairs.
+    """
+    middles = (of_points[:3] + of_points[3:]) / 2
+    return float(np.linalg.norm(middles[:, None] - middles, axis=-1).max())
+
+
 @cache
 def asymmetry_of_the_symmetric() -> float:
     """Return the largest asymmetry of the symmetric arm, unscaled and scaled, cm."""
