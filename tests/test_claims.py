@@ -20,6 +20,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.computations import registry
 from lizarraga2025.evidence import arms, proofs
+from lizarraga2025.evidence.rounding import slips_of_table_4
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import (
     Claim,
@@ -322,6 +323,13 @@ def test_the_strongest_reading_decides_and_all_are_told_where_they_differ(
         len(set(readings)) > 1
     )
     assert set(FAVOUR) == set(VERDICTS)
+
+
+def test_of_single_slips_in_table_4_the_proposed_digit_leaves_the_smallest_gap() -> None:
+    gaps = slips_of_table_4()
+    assert min(gaps, key=gaps.get) == "x_{2,13} = 9.09"
+    assert {"x_{2,13} = 9.10", "x_{1,12} = 4.93", "z_{1,12} = 23.73"} <= gaps.keys()
+    assert "x_{2,13} = 9.00" not in gaps
 
 
 @pytest.mark.parametrize("proof", [proofs.theorem_2, proofs.mirror], ids=["theorem 2", "mirror"])

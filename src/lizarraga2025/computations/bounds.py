@@ -169,12 +169,17 @@ def _place(label: str, found: PairBound, right: PairBound) -> str:
     return (
         f"{apart}, so that it stops no motion. They meet at the other root, {degrees(found.other)},"
         f" up to {found.other_distance:.4f} cm, inside the window"
-        f"{_with_the_other_sign(meets_at_the_other_root(label))}."
+        f"{_with_the_other_sign(label)}."
     )
 
 
-def _with_the_other_sign(proved: bool) -> str:
-    return "; the formula with the other sign of cos⁻¹ gives it" if proved else ""
+def _with_the_other_sign(label: str) -> str:
+    if not meets_at_the_other_root(label):
+        return ""
+    text = "; the formula with the other sign of cos⁻¹ gives it"
+    if meets_at_the_other_root(label, robot()):
+        return text
+    return f"{text}, and with x_{{2,13}} = 9.09 (T-4.2) they meet there within the rounding"
 
 
 def _other_sign(label: str) -> str:
@@ -184,9 +189,12 @@ def _other_sign(label: str) -> str:
     return text.replace(old, new)
 
 
-def meets_at_the_other_root(label: str) -> bool:
-    """Tell whether the points meet at the bound with the sign (and the digit) corrected."""
-    of = corrected()
+def meets_at_the_other_root(label: str, of: Robot | None = None) -> bool:
+    """Tell whether the points meet at the bound with the other sign before the arccosine.
+
+    On the robot with the corrected digit, a finding of its own (T-4.2), unless told otherwise.
+    """
+    of = of or corrected()
     vector = pair_vector(of, _pair(label, of))
     (joint,) = vector.joints()
     q = np.array(of.home)
