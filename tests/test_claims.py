@@ -375,7 +375,7 @@ def test_claims_counts_entries_and_findings(capsys) -> None:
     _, text = said(capsys, "claims", "--kind", "bound")
     ledger = [computed(n) for n in identifiers() if KIND[n] == "bound"]
     assert text.splitlines()[-1] == (
-        f"all: {len(ledger)} entries, {len({one.finding for one in ledger})} findings"
+        f"together: {len(ledger)} entries, {len({one.finding for one in ledger})} findings"
     )
     for verdict, count in counts(ledger).items():
         here = [one for one in ledger if one.verdict == verdict]

@@ -373,7 +373,7 @@ def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: Beaut
         head, value, unit, error, _ = row.find_all(["th", "td"])
         assert head.get_text() == name
         assert value.get_text() == cite.value_text(entry["value"])
-        assert unit.get_text() == ("" if entry["unit"] == "1" else entry["unit"])
+        assert unit.get_text() == ("" if entry["unit"] == "1" else entry["unit"].replace("^2", "²"))
         assert error.get_text() == (f"{entry['error']:g}" if entry["error"] else "exact")
 
 

@@ -109,7 +109,7 @@ its vector and matrix up to b-1 are ``r_1`` and ``R_1``, the step from there is 
 """
 
 ROTATIONS_IN_A_ROW: Final = "R_0a @ R_ab"
-"""What R_{0,b} is rewritten as, before eq. (24)."""
+"""What ``R_{0,b}`` is rewritten as, before eq. (24)."""
 
 UNIT_VECTOR: Final = "r/sqrt(x**2 + y**2 + z**2)"
 """Right side of eq. (8)."""

@@ -42,11 +42,14 @@ def page() -> str:
     return str(tomllib.loads(file.read_text(encoding="utf-8"))["page"])
 
 
+TITLE = "qbound: feasible joint and geometric workspaces of robots through boundary functions"
+
+
 def package() -> str:
     """Return the BibTeX entry of this version of the package."""
     return f"""@software{{qbound,
   author  = {{{{qbound maintainers}}}},
-  title   = {{qbound: feasible joint and geometric workspaces through boundary functions}},
+  title   = {{{TITLE}}},
   version = {{{__version__}}},
   year    = {{{YEAR}}}
 }}"""
