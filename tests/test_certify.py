@@ -203,6 +203,22 @@ def test_a_region_is_never_refuted_by_a_polygon_drawn_badly(monkeypatch, capsys)
     assert "undecided: the polygon" in capsys.readouterr().out
 
 
+RING = "0,0\n1,0\n1,1\n0,1\n"
+
+
+def test_a_ring_that_is_closed_is_the_polygon_and_a_corner_twice_is_named(tmp_path, capsys):
+    ring = tmp_path / "ring.csv"
+    said = []
+    for text in (RING, RING + "0.0,0\n"):
+        ring.write_text(text, encoding="utf-8")
+        assert cli.main(["certify", "minervabot-v2", "--polygon", str(ring)]) == 0
+        said.append(capsys.readouterr().out)
+    assert said[0] == said[1]
+    ring.write_text(RING + "1,0\n0.5,2\n", encoding="utf-8")
+    assert cli.main(["certify", "minervabot-v2", "--polygon", str(ring)]) == 2
+    assert "corner 5 of a loop stands there twice: ['1', '0']" in capsys.readouterr().err
+
+
 def test_a_tiny_inset_is_refused_with_its_number_of_corners(capsys):
     assert cli.main(["certify", "pp-portal", "--region", "--inset", "1e-9"]) == 2
     assert "corners: ask for a larger one" in capsys.readouterr().err

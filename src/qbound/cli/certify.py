@@ -177,7 +177,7 @@ def statement(robot: Robot, options: argparse.Namespace, margin: str) -> stateme
     if options.path:
         return statements.path(read_points(robot, options.path), margin)
     if options.polygon:
-        loop = statements.anticlockwise(read_points(robot, options.polygon))
+        loop = statements.anticlockwise(statements.opened(read_points(robot, options.polygon)))
         return statements.filled([loop], margin)
     scale = float(as_decimal("--scale", options.scale or "1"))
     return statements.home_polygon(robot, scale, margin, values)

@@ -93,13 +93,17 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     Raises
     ------
     ValueError
-        If not exactly two joints change, or the polygon crosses itself.
+        If not exactly two joints change, a corner stands twice, or the polygon crosses itself.
     """
     rows = [[tuple(map(Fraction, point)) for point in loop] for loop in loops]
     columns = list(zip(*(point for loop in rows for point in loop), strict=True))
     free = [j for j, column in enumerate(columns) if len(set(column)) > 1]
     if len(free) != 2:
         raise ValueError(f"a polygon lies in the plane of two joints; here {len(free)} change")
+    for row, loop in zip(rows, loops, strict=True):
+        twice = next((k for k, point in enumerate(row) if point in row[:k]), None)
+        if twice is not None:
+            raise ValueError(f"corner {twice + 1} of a loop stands there twice: {loop[twice]}")
     i, j = free
     places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
@@ -109,6 +113,13 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     corners = tuple(tuple(tuple(point) for point in loop) for loop in rows)
     check_polygon(grammar.Statement("polygon", Fraction(0), corners, tuple(triangulated)))
     return statement
+
+
+def opened(points: Sequence[Sequence[str]]) -> list[list[str]]:
+    """Leave out a last corner that repeats the first one, as tables of closed rings have it."""
+    loop = [list(point) for point in points]
+    closed = len(loop) > 1 and list(map(Fraction, loop[0])) == list(map(Fraction, loop[-1]))
+    return loop[:-1] if closed else loop
 
 
 def anticlockwise(points: Sequence[Sequence[str]]) -> list[list[str]]:
