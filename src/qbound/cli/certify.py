@@ -13,7 +13,7 @@ from typing import Any
 
 from qbound import check
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import check_targets, write_all
+from qbound.cli.files import write_all
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
 from qbound.cli.values import box, held
@@ -67,7 +67,6 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
-    check_targets([options.output], sources=[options.robot])
     if options.with_checker is not None:
         _check_folder(options.with_checker)
     text, _ = robot_text(options.robot)
