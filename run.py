@@ -7,6 +7,7 @@
     python3 run.py pdf      print the book to one PDF (needs Chromium)
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
+    python3 run.py renumber number the chapters in the order of book/index.md, links included
     python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
     python3 run.py licences list the licence of everything that is installed in .venv
     python3 run.py pack     make the files of a release in dist/, with their checksums
@@ -401,6 +402,11 @@ def lint() -> int:
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
+        "Numbers of chapters (run.py renumber)": [
+            in_venv("python"),
+            TOOLS / "renumber.py",
+            "--check",
+        ],
         "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
@@ -452,6 +458,11 @@ def find_uv(scratch: Path) -> str | Path:
         make_venv(scratch)
         must("Installing uv for the moment", [*pip(scratch), "uv"], quiet=True)
     return found or in_venv("uv", scratch)
+
+
+def renumber() -> int:
+    """Give the chapters the numbers of their order in book/index.md: files, titles, links."""
+    return subprocess.call([sys.executable, TOOLS / "renumber.py"], cwd=ROOT)
 
 
 def metadata() -> int:
@@ -508,10 +519,13 @@ def clean() -> int:
     return 0
 
 
+COMMANDS = [book, test, serve, pdf, lint, lock, renumber, metadata, licences, pack, clean]
+
+
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser = argparse.ArgumentParser(prog="run.py", description=(__doc__ or "").split("\n")[0])
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for function in [book, test, serve, pdf, lint, lock, metadata, licences, pack, clean]:
+    for function in COMMANDS:
         text = function.__doc__
         commands.add_parser(
             function.__name__, help=text, description=text, allow_abbrev=False

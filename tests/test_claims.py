@@ -81,7 +81,7 @@ def test_the_test_of_an_entry_exists(name: str) -> None:
 @every_id
 def test_the_chapter_of_an_entry_exists(name: str) -> None:
     chapter, _, anchor = computed(name).evidence.chapter.partition("#")
-    assert (ROOT / "notebooks" / f"{chapter}.md").exists()
+    assert (ROOT / "notebooks" / f"{recorded.file_stem(chapter)}.md").exists()
     assert anchor
 
 
@@ -102,7 +102,7 @@ where = "eq. (1)"
 says = "Something."
 reading = "So."
 evidence.test = "test_it.py::test_it"
-evidence.chapter = "01_it#it"
+evidence.chapter = "it#it"
 """
 
 
@@ -119,7 +119,7 @@ def test_an_entry_is_what_its_file_says(tmp_path: Path) -> None:
     one, other = read_text(tmp_path, ENTRY + more).values()
     assert (one.says, one.reading, one.corrected) == ("Something.", "So.", "")
     assert other.corrected == "Else."
-    assert (one.evidence.test, one.evidence.chapter) == ("test_it.py::test_it", "01_it#it")
+    assert (one.evidence.test, one.evidence.chapter) == ("test_it.py::test_it", "it#it")
 
 
 def test_entries_that_rest_on_one_finding_name_the_entry_that_carries_it(tmp_path: Path) -> None:
@@ -193,10 +193,9 @@ def test_a_function_for_several_entries_is_called_with_the_case_of_each(monkeypa
 
 def test_no_string_of_the_code_names_a_test_or_a_chapter() -> None:
     """They stand in the files of entries, where a referee edits them."""
-    chapters = "|".join(path.stem for path in (ROOT / "notebooks").glob("*.md"))
-    named = re.compile(rf"\btest_\w+|\b({chapters})\b")
+    named = re.compile(rf"\btest_\w+|\b({'|'.join(recorded.CHAPTERS)})#")
     assert named.search("test_frames.py::test_x")
-    assert named.search("02_vector_labelling#equation-eq-1")
+    assert named.search("vector_labelling#equation-eq-1")
     sources = {file: file.read_text(encoding="utf-8") for file in (ROOT / "src").rglob("*.py")}
     assert len(sources) > 50
     found = [

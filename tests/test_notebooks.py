@@ -17,6 +17,7 @@ from jsonschema import Draft202012Validator, validate
 from jupytext.compare import compare_notebooks
 
 from lizarraga2025 import printed as paper
+from lizarraga2025 import recorded
 
 ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = sorted((ROOT / "notebooks").glob("*.md"))
@@ -41,9 +42,7 @@ def cells(path: Path, kind: str) -> list:
 def test_every_chapter_is_a_pair():
     stems = {path.stem for path in (ROOT / "notebooks").iterdir() if path.suffix == ".ipynb"}
     assert stems == {path.stem for path in CHAPTERS}
-    numbers = [stem.partition("_")[0] for stem in stems]  # the order of reading: book/index.md
-    assert all(re.fullmatch(r"\d\d", number) for number in numbers)
-    assert len(set(numbers)) == len(numbers)
+    assert sorted(stems) == [recorded.file_stem(name) for name in recorded.CHAPTERS]
 
 
 @chapters
@@ -73,6 +72,49 @@ def test_a_chapter_defines_nothing_longer_than_three_lines(chapter):
                 assert len(node.body) <= 3, f"{chapter.name}: {node.name} belongs to the library"
 
 
+# What is in sight teaches; the rest is folded (hide-input) or left out of the page (remove-cell).
+FOLDED = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
+LONGEST_CELL = 12  # lines of code in sight
+
+
+@chapters
+def test_code_in_sight_is_short_and_asserts_one_thing(chapter):
+    for cell in cells(chapter, "code"):
+        if FOLDED & set(cell.metadata.get("tags", [])):
+            continue
+        lines = [line for line in cell.source.splitlines() if line.strip()]
+        assert len(lines) <= LONGEST_CELL, f"{chapter.name}: {lines[0]}"
+        asserts = [n for n in ast.walk(ast.parse(cell.source)) if isinstance(n, ast.Assert)]
+        assert len(asserts) <= 1, f"{chapter.name}: {lines[0]}"
+
+
+@chapters
+def test_results_are_recorded_in_one_hidden_cell_at_the_end(chapter):
+    """So it can run twice: the collection is made where it is filled."""
+    recording = [c for c in cells(chapter, "code") if re.search(r"\bresults\.|Results\(", c.source)]
+    assert recording == [cells(chapter, "code")[-1]] == [notebook(chapter).cells[-1]]
+    [cell] = recording
+    assert "remove-cell" in cell.metadata["tags"]
+    assert cell.metadata["jupyter"] == {"source_hidden": True}
+
+
+@chapters
+def test_half_of_the_exercises_run(chapter):
+    text = chapter.read_text(encoding="utf-8")
+    section = text.partition("\n## Exercises\n")[2].partition("\n## ")[0]
+    if section:
+        tasks = len(re.findall(r"^\*\*Exercise \d+\.\*\*", section, re.M))
+        assert tasks >= 2
+        assert section.count("check(") * 2 >= tasks
+
+
+@chapters
+def test_a_link_to_a_chapter_says_its_number(chapter):
+    links = re.findall(r"\[([^\[\]]*)\]\((\d\d)_\w+\.(?:ipynb|md)", chapter.read_text("utf-8"))
+    for text, number in links:
+        assert re.search(rf"\b[Cc]hapter {int(number)}\b|^{int(number)}\. ", text), text
+
+
 @chapters
 def test_a_reference_to_the_paper_is_a_link(chapter):
     text = "\n\n".join(cell.source for cell in cells(chapter, "markdown"))
@@ -85,7 +127,7 @@ def test_a_reference_to_the_paper_is_a_link(chapter):
 NOT_PROSE = [
     r"(?s)```.*?```",  # code
     r"(?s)\$\$.*?\$\$(?: *\(eq:[\w-]+\))?",  # displayed formulas: the paper's, or proved by a cell
-    r"(?m)^:::.*$|^:label:.*$|^\d\. ",  # directives, numbered items
+    r"(?m)^:::.*$|^:label:.*$|^(?:# )?\d+\. ",  # directives, numbered items and titles
     r"`[^`]*`",  # code and the targets of roles
     r"\]\([^)]*\)",  # targets of links
     r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # the ledger's ids, own numbers
@@ -93,7 +135,7 @@ NOT_PROSE = [
 # What a number may name instead of count: Figure 4, eqs. (11), (12), points 6 and 8, point 1 to 2.
 NAMED = (
     r"(?:Figures?|Tables?|Theorems?|Sections?|eqs?\.|[Pp]oints?|[Jj]oints?|[Ll]inks?|[Rr]ows?|[Rr]ules?|"
-    r"[Ss]teps?|functions?|[Ff]rom|CC BY)\s+"
+    r"[Cc]hapters?|[Ss]teps?|functions?|[Ff]rom|CC BY)\s+"
 )
 NUMBERS = r"\(?\d+(?:\.\d+)?\)?(?:(?:,\s+|\s+(?:and|or|to|with)\s+|\s*-\s*)\(?\d+(?!\.\d|\d)\)?)*"
 REFERENCES = [NAMED + NUMBERS, r"\(\d+\)(?:-\(\d+\))?", r"\b\d(?:-\d){2,}\b"]

@@ -19,7 +19,9 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.typing import ExtensionMetadata
 
-PAGE = "chapters/15_what_holds"
+from lizarraga2025.ledger import cite
+
+PAGE = cite.page().removesuffix(".html")
 ID = re.compile(r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b")
 NO_TEXT = (nodes.literal, nodes.literal_block, nodes.reference, nodes.title, nodes.raw, nodes.math)
 
@@ -44,7 +46,7 @@ class LedgerLinks(SphinxPostTransform):
                 text.parent.replace(text, with_links(text, known, page))
 
     def name_entries(self, ledger: Iterable[dict[str, Any]], page: str) -> None:
-        chapter = self.env.docname.rpartition("/")[2]
+        chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
         entries: dict[nodes.Element, list[str]] = defaultdict(list)
         for entry in ledger:
             document, _, anchor = entry["evidence"]["chapter"].partition("#")

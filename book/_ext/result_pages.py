@@ -40,7 +40,8 @@ def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
 
 def section(chapter: str, entries: list[dict[str, Any]]) -> nodes.section:
     """Return the section of a chapter."""
-    title = chapter.replace("_", " ").capitalize()
+    number = recorded.CHAPTERS.index(chapter) + 1
+    title = f"{number}. {chapter.replace('_', ' ').capitalize()}"
     part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
     part += [nodes.title("", title), nodes.raw("", table(entries), format="html")]
     return part

@@ -27,18 +27,29 @@ CHAPTERS = (
     "sampling",
     "every_region",
     "exact_workspace",
+    "bodies",
     "proof",
     "certainty",
-    "your_own_robot",
     "what_holds",
     "errata",
-    "bodies",
+    "your_own_robot",
     "prismatic_joints",
 )
-"""In the order of the book."""
+"""In the order of the book, which ``run.py renumber`` writes here."""
 
 HEAD = ("chapter", "version", "robots")
 """What an entry takes over from its file."""
+
+
+def file_stem(chapter: str) -> str:
+    """Return the name of a chapter's files, which its place in the book begins.
+
+    Raises
+    ------
+    ValueError
+        If the book has no such chapter.
+    """
+    return f"{CHAPTERS.index(chapter) + 1:02d}_{chapter}"
 
 
 def folder() -> Traversable:

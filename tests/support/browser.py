@@ -17,6 +17,8 @@ import matplotlib as mpl
 import pytest
 from fontTools import subset
 
+from lizarraga2025 import recorded
+
 HTML = Path(__file__).resolve().parents[2] / "book" / "_build" / "html"
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
 HOW_TO_GET_CHROMIUM = (
@@ -34,6 +36,12 @@ FLAGS = [
 ]
 PATIENCE = 180_000  # ms: a ceiling for a page that hangs, far above what a busy machine needs
 REMOTE = re.compile(r"^(?!(file|data|blob):)")
+
+
+def chapter_page(name: str) -> str:
+    """The built page of a chapter, by its name: its number is its place in the book."""
+    return f"chapters/{recorded.file_stem(name)}.html"
+
 
 FAMILIES = {
     "narrow": ("STIXGeneral", "STIXGeneralBol"),

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.latex import escaped
+from lizarraga2025.recorded import file_stem
 from qbound import __version__
 
 YEAR: Final = 2026
@@ -39,7 +40,8 @@ PAPER: Final = r"""@article{Lizarraga2025,
 def page() -> str:
     """Return the page of the book that shows the ledger."""
     file = resources.files("lizarraga2025") / "ledger" / "book.toml"
-    return str(tomllib.loads(file.read_text(encoding="utf-8"))["page"])
+    chapter = tomllib.loads(file.read_text(encoding="utf-8"))["chapter"]
+    return f"chapters/{file_stem(chapter)}.html"
 
 
 TITLE = "qbound: feasible joint and geometric workspaces of robots through boundary functions"

@@ -10,6 +10,7 @@ from html import escape
 from lizarraga2025.ledger import cite, errata
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.recorded import file_stem
 from lizarraga2025.verdicts import VERDICTS
 
 WORDS = '<input type="search" name="words" autocomplete="off"'
@@ -59,7 +60,8 @@ def badge(verdict: str) -> str:
 def link_to_chapter(one: Claim) -> str:
     """Return a link to the place in the book that shows the evidence."""
     chapter, _, anchor = one.evidence.chapter.partition("#")
-    return f'<a href="{chapter}.html#{escape(anchor)}">Chapter {int(chapter[:2])}</a>'
+    stem = file_stem(chapter)
+    return f'<a href="{stem}.html#{escape(anchor)}">Chapter {int(stem[:2])}</a>'
 
 
 def typeset(text: str) -> str:

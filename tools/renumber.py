@@ -1,0 +1,128 @@
+"""Number the chapters in the order of the book: files, titles, and every link to them.
+
+The order is that of the toctrees in book/index.md. To put a chapter in the middle, write
+notebooks/NAME.md (any number, or none, before the name), name it there as chapters/NAME, and run
+
+    python3 run.py renumber
+
+A chapter is known by its name everywhere else: the ledger, the results and the tests say "region",
+not "07_region". ``--check`` writes nothing and fails if something would change.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+INDEX = ROOT / "book" / "index.md"
+ORDER = ROOT / "src" / "lizarraga2025" / "recorded.py"
+
+ENTRY = re.compile(r"^chapters/(?:\d\d_)?(\w+)$", re.M)
+LISTED = re.compile(r"(?<=^CHAPTERS = \(\n).*?(?=^\)$)", re.M | re.S)
+TITLE = re.compile(r'^(\s*"?# )(?:\d+\. )?', re.M)  # the first of a file, of a notebook too
+LINK = re.compile(r"\[[^\[\]]*\]\((?:\.\./notebooks/|chapters/)?\d\d_(\w+)\.(?:ipynb|md)[^)]*\)")
+SAID = re.compile(r"(?<=[Cc]hapter )\d+|(?<=^\[)\d+(?=\. )")
+
+
+def main(arguments: list[str]) -> int:
+    """Write what has to change, or with --check only name it."""
+    names = ENTRY.findall(INDEX.read_text(encoding="utf-8"))
+    problem = unlisted(names)
+    if problem:
+        print(problem, file=sys.stderr)
+        return 1
+    changes = renumbered(names)
+    moves = {old: new for old, new in moved(names).items() if old != new}
+    if "--check" in arguments:
+        for path in sorted({*changes, *moves}):
+            print(f"{path.relative_to(ROOT)} is out of order: run `python3 run.py renumber`.")
+        return 1 if changes or moves else 0
+    for path, text in changes.items():
+        path.write_text(text, encoding="utf-8", newline="\n")
+    rename(moves)
+    print(f"{len(names)} chapters; {len(changes)} files written, {len(moves)} renamed.")
+    return 0
+
+
+def unlisted(names: list[str]) -> str:
+    """Say which chapters have no place in the order, or no file."""
+    files = {name_of(path) for path in chapters()}
+    if len(set(names)) < len(names):
+        return "book/index.md names a chapter twice."
+    if files != set(names):
+        return f"book/index.md and notebooks/ differ: {', '.join(sorted(files ^ set(names)))}."
+    return ""
+
+
+def chapters() -> list[Path]:
+    """Return the files of all chapters."""
+    found = (ROOT / "notebooks").iterdir()
+    return sorted(p for p in found if p.suffix in {".md", ".ipynb"} and p.stem != "README")
+
+
+def name_of(path: Path) -> str:
+    """Return a chapter's name, without its number."""
+    return re.sub(r"^\d\d_", "", path.stem)
+
+
+def moved(names: list[str]) -> dict[Path, Path]:
+    """Return the new path of each file of a chapter."""
+    stems = {name: f"{number:02d}_{name}" for number, name in enumerate(names, start=1)}
+    return {path: path.with_name(stems[name_of(path)] + path.suffix) for path in chapters()}
+
+
+def renumbered(names: list[str]) -> dict[Path, str]:
+    """Return the new text of every file that has to change."""
+    numbers = {name: number for number, name in enumerate(names, start=1)}
+    stem = re.compile(rf"\b\d\d_({'|'.join(names)})\b")
+
+    def with_number(match: re.Match[str]) -> str:
+        return f"{numbers[match[1]]:02d}_{match[1]}"
+
+    def with_spoken_number(match: re.Match[str]) -> str:
+        return SAID.sub(str(numbers[match[1]]), match[0])
+
+    changes, titled = {}, set(chapters())
+    for path in texts():
+        old = path.read_text(encoding="utf-8")
+        new = LINK.sub(with_spoken_number, stem.sub(with_number, old))
+        if path == INDEX:
+            new = ENTRY.sub(lambda entry: f"chapters/{with_number(entry)}", new)
+        if path == ORDER:
+            new = LISTED.sub("".join(f'    "{name}",\n' for name in names), new)
+        if path in titled:
+            new = TITLE.sub(rf"\g<1>{numbers[name_of(path)]}. ", new, count=1)
+        if new != old:
+            changes[path] = new
+    return changes
+
+
+def texts() -> list[Path]:
+    """Return every text of the repository that may name a chapter; records of the past stay."""
+    found = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        check=True,
+    ).stdout.decode()
+    kinds = {".md", ".ipynb", ".py", ".toml", ".js", ".html", ".yml"}
+    past = {"CHANGELOG.md"}
+    paths = [ROOT / name for name in found.split("\0") if Path(name).suffix in kinds]
+    kept = [p for p in paths if p.name not in past and "decisions" not in p.parts and p.is_file()]
+    return sorted(kept)
+
+
+def rename(moves: dict[Path, Path]) -> None:
+    """Rename in two steps: chapters may change places with one another."""
+    aside = {old: old.with_name(f"moving-{old.name}") for old in moves}
+    for old, between in aside.items():
+        old.rename(between)
+    for old, new in moves.items():
+        aside[old].rename(new)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
