@@ -172,7 +172,7 @@ def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> 
     """Tell whether both joints move along the plane: turns about its normal, slides across it."""
     wanted = [1.0 if kind == "revolute" else 0.0 for kind in kinds]
     leans = [abs(abs(n @ a) - w) for a, w in zip(axes, wanted, strict=True)]
-    return max(leans) < IN_PLANE
+    return bool(max(leans) < IN_PLANE)
 
 
 def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:
