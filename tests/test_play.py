@@ -26,9 +26,9 @@ from qbound.symbols import with_symbols
 ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "src" / "qbound" / "explorer" / "web"
 PLAY = ROOT / "book" / "_static" / "play"
-ENGINE = """const qboundFigures = {}, qboundEngine = { alongSecond, apply, basis, basisSlope, evaluate,
-framesOf, margins, isSafe, placeIn, pointPlaces, project, restrict, rootsWithin, scaledPolygon,
-viewAxes };"""
+ENGINE = """const qboundFigures = {}, qboundEngine = {
+  alongSecond, basis, evaluate, framesOf, placeIn, pointPlaces, project, restrict, rootsWithin,
+  scaledPolygon, viewAxes };"""
 ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")
 RNG = np.random.default_rng(12)
 
@@ -176,7 +176,9 @@ def test_the_box_has_the_sides_of_the_rule():
     square = [[-np.pi, np.pi]] * 2
     sides = kind("kind.box(kind.straightBounds(robot, 'atan2'), square)", square=square)
     box = paper_rule.box(robot)
-    assert_allclose([[s["value"] for s in pair] for pair in sides], [*zip(box.lower, box.upper)])
+    assert_allclose(
+        [[s["value"] for s in pair] for pair in sides], np.transpose([box.lower, box.upper])
+    )
     names = [s["by"] for pair in sides for s in pair]
     assert names == ["2,1,2", "1,3,1", "4,1,2", "3,3,1"]
 

@@ -9,6 +9,9 @@
   const NOT_IN_USE = ["5,1,1", "5,1,2", "6,1,1", "6,1,2"];
   const SIX = ["1,3,1", "2,1,2", "3,3,1", "4,1,2", "7,3,1", "7,3,2"];
 
+  const LONGEST =
+    "Home is cut off by β₁,₁,₁, β₂,₁,₁, β₃,₃,₂. What is left: q₁ from −180.00° (edge of the square) to 180.00° (edge of the square), q₂ from −180.00° (edge of the square) to 180.00° (edge of the square), less what the curves cut off.";
+
   /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
 
   /** The components of a pair of points that depend on its joint: a cos q + b sin q = c where one
@@ -206,7 +209,7 @@
     };
     const home = robot.free.map((j) => robot.q[j]);
     const { figure, svg } = canvas("The square of both joint angles with the bounds of Table 6.");
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     /** @type {Picture} */
     let drawn;
 
