@@ -42,12 +42,14 @@ function showLegends() {
       polygon && slice.exact,
     ),
     ...legend("dots", "random, safe", sample),
+    ...legend("dots away", "random, safe, cut off", sample && cutOff),
     ...legend("crosses", "random, not safe", sample),
   );
   byId("plane-legend").replaceChildren(
     ...legend("workspace", "one safe posture", workspace && slice.regular),
     ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
-    ...legend("beyond", "behind a wall", walls),
+    ...legend("ground", "ground", plane.svg.querySelector(".ground") !== null),
+    ...legend("beyond", "the side of a wall that is not safe", walls),
   );
 }
 
@@ -63,12 +65,12 @@ function refresh() {
     mark.classList.toggle("violated", lit.violated.size > 0);
   placeArm(robot, plane, state, lit);
   plane.room.toggleAttribute("hidden", !slice.regular);
+  showTask(isSafe(found));
   drawPaths();
   showStatus(found);
   showMargins(found, lit);
   showPose();
   showScale();
-  showTask();
   remember();
   root.dispatchEvent(new CustomEvent("qbound-pose"));
 }
@@ -80,9 +82,20 @@ function litParts(found) {
   const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
   const bold = new Set([...violated, ...(state.hover ? [state.hover] : [])]);
   const near = used.filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach);
+  const closest = tightest(robot, found)?.name ?? null;
   const boundaries = new Set([...bold, ...near.map((one) => one.name)]);
-  const walls = robot.boundaries.filter((wall) => bold.has(wall.name));
-  return { violated, bold, boundaries, points: new Set(walls.flatMap((wall) => wall.points)) };
+  if (closest !== null) boundaries.add(closest);
+  /** @type {(wanted: (name: string) => boolean) => Set<number>} */
+  const pointsOf = (wanted) =>
+    new Set(robot.boundaries.flatMap(({ name, points }) => (wanted(name) ? points : [])));
+  return {
+    violated,
+    bold,
+    closest,
+    boundaries,
+    points: pointsOf((name) => bold.has(name)),
+    named: pointsOf((name) => bold.has(name) || name === closest),
+  };
 }
 
 function drawPaths() {
@@ -104,23 +117,24 @@ function showStatus(found) {
   const [verdict, reason] = statusText(found);
   byId("status").replaceChildren(element("strong", {}, verdict), reason);
   byId("status").classList.toggle("violated", !isSafe(found));
-  byId("posture").textContent = postureText();
-  partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
-  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
-  say(`${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`);
+  if (shows("pose")) {
+    byId("posture").textContent = postureText();
+    partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+  }
+  window.clearTimeout(timers.say);
+  timers.say = window.setTimeout(() => say(verdict, reason), 600);
 }
 
 /** Tell a screen reader, once the arm rests.
- * @type {(text: string) => void} */
-function say(text) {
-  window.clearTimeout(timers.say);
-  timers.say = window.setTimeout(() => {
-    byId("live").textContent = text;
-  }, 600);
+ * @type {(verdict: string, reason: string) => void} */
+function say(verdict, reason) {
+  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
+  byId("live").textContent = `${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`;
 }
 
 /** @type {(found: Margin[], lit: Lit) => void} */
 function showMargins(found, lit) {
+  if (!shows("margins")) return;
   const { rows } = partOf("margins", HTMLTableSectionElement);
   for (const [i, { name, value, unit }] of found.entries()) {
     rows[i].cells[2].textContent = valueText(value, unit);
@@ -129,6 +143,7 @@ function showMargins(found, lit) {
 }
 
 function showPose() {
+  if (!shows("pose")) return;
   for (const [j, { kind }] of robot.joints.entries()) {
     const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
     const value = String(Number((state.q[j] / unit).toFixed(digits)));
@@ -140,7 +155,7 @@ function showPose() {
 }
 
 function showScale() {
-  if (!robot.polygon) return;
+  if (!robot.polygon || !shows("scaling")) return;
   byId("scaling").hidden = !slice.exact;
   inputOf("scale").value = String(state.scale);
   byId("scale-value").textContent = number(state.scale, 4);
