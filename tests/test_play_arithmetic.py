@@ -183,6 +183,12 @@ def test_the_box_has_the_sides_of_the_rule():
     assert names == ["2,1,2", "1,3,1", "4,1,2", "3,3,1"]
 
 
+def test_the_six_that_are_switched_on_alone_bound_the_region():
+    robot, kind = case("switches")
+    labels = {bound.label for vertex in closed_form.vertices(robot) for bound in vertex.bounds}
+    assert {f"beta_{{{name}}}" for name in kind("kind.SIX")} == labels
+
+
 # --- Figure 6 -------------------------------------------------------------------------------------
 
 

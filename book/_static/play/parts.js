@@ -169,8 +169,10 @@
     placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
       violated: names,
       bold: names,
+      closest: null,
       boundaries: names,
       points,
+      named: points,
     });
   }
 
