@@ -193,7 +193,7 @@
       const [, y] = fitted.at([0, limit]);
       const below = `M0 ${y}H${whole.width}V${whole.height}H0Z`;
       group.append(
-        make("path", { class: "beyond", d: below }),
+        make("path", { class: "below", d: below }),
         make("path", { class: "wall", d: `M0 ${y}H${whole.width}` }),
         make(
           "text",
