@@ -18,7 +18,10 @@ from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
 from support.browser import drag, in_every_family, refuse_remote, settle, wait_until
 
-WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
+WALLS = {
+    "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
+    "portal": lambda: (load_robot("pp-portal"), {}),
+}
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
@@ -110,12 +113,16 @@ def test_every_kind_of_robot_opens(open_explorer, name, width):
 def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
     page = open_explorer("out of the plane")
     assert "leaves the plane" in page.inner_text("#posture")
+    assert "obliquely" in page.inner_text("#plane-title")
+    shadow = page.locator("#plane .shadow").first.get_attribute("d")
+    assert page.locator("#plane .wall[d^=M]").count() == 1  # the scale bar: no wall is a line here
     assert not page.locator("#plane .reach-me").is_visible()
     before = pose(page)
     page.click("#plane", position={"x": 60, "y": 60})
     assert pose(page) == before
     page.click("#joints", position={"x": 160, "y": 160})
     assert pose(page) != before
+    assert page.locator("#plane .shadow").first.get_attribute("d") != shadow
     page.check("#show-sample")
     assert page.is_disabled("#flip")
 
@@ -397,7 +404,7 @@ def test_words_in_the_pictures_stand_out_from_their_ground(open_explorer, theme)
     assert min(ratios) >= 4.5
 
 
-@pytest.mark.parametrize("name", ["paper", "many walls"])
+@pytest.mark.parametrize("name", ["paper", *WALLS])
 @pytest.mark.parametrize("width", WIDTHS)
 def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer, width, name):
     page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
@@ -478,7 +485,7 @@ def test_the_closest_boundary_is_named_and_shown(open_explorer):
     )
     assert page.locator("#plane .point-name:not([hidden])").all_text_contents() == ["10", "11"]
     assert page.locator("#plane .gap.closest:not([hidden])").count() == 1
-    page.fill("#value-0", "70")
+    page.fill("#value-0", "40")
     assert "point 3 is" in page.inner_text("#status")
     gap = page.locator("#plane .gap.closest:not([hidden])")
     ends = [float(gap.get_attribute(name)) for name in ("x1", "x2", "y1", "y2")]

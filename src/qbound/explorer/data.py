@@ -30,6 +30,12 @@ Data = dict[str, Any]
 
 SAMPLES: Final = 1500
 SEED: Final = 11
+OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.44])
+"""Towards who looks at an arm that keeps to no plane: from the front, a little from above."""
+
+IN_PLANE: Final = 1e-6
+"""An axis that leans less than this, in rad, is drawn as if it did not."""
+
 Walks = Sequence[Sequence[int]]
 
 
@@ -136,15 +142,20 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     """Choose the plane to draw: across the turning axis, upright, x to the right.
 
-    It is fixed in the frame that carries the first free joint.
+    It is fixed in the frame that carries the first free joint. Where both joints move the arm out
+    of every plane, it is seen obliquely from above.
     """
     frames = robot.frames(q)
     one, other = robot.joints[first], robot.joints[second]
     carrier = frames.rotation(robot.base, one.parent)
     turn = carrier.T @ frames.rotation(robot.base, other.parent)
     axes = [one.mount @ one.axis, turn @ other.mount @ other.axis]
-    n = _across(axes, [one.kind, other.kind])
+    kinds = [one.kind, other.kind]
+    n = _across(axes, kinds)
     up = carrier.T @ np.array([0.0, 0.0, 1.0])
+    oblique = not _keeps_to_plane(n, axes, kinds)
+    if oblique:
+        n = carrier.T @ OBLIQUE
     v = up - (up @ n) * n
     if np.linalg.norm(v) <= 1e-6:
         v = carrier.T @ np.array([0.0, 1.0, 0.0])
@@ -153,7 +164,15 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     u = np.cross(v, n)
     if (carrier @ u) @ np.array([1.0, 1e-3, 0.0]) < 0:
         u = -u
-    return {"frame": first, "u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
+    view = {"u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
+    return {"frame": first, **view, "oblique": oblique}
+
+
+def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> bool:
+    """Tell whether both joints move along the plane: turns about its normal, slides across it."""
+    wanted = [1.0 if kind == "revolute" else 0.0 for kind in kinds]
+    leans = [abs(abs(n @ a) - w) for a, w in zip(axes, wanted, strict=True)]
+    return max(leans) < IN_PLANE
 
 
 def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:

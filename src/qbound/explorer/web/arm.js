@@ -64,7 +64,9 @@ function drawPlane(svg, robot, state, slice, box) {
     box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
   };
   clear(drawn);
-  drawGround(robot, drawn, viewAxes(robot, state.q));
+  const axes = viewAxes(robot, state.q);
+  if (robot.plane.oblique) drawFloor(robot, drawn, axes);
+  else drawGround(robot, drawn, axes);
   drawScaleBar(robot, drawn);
   if (state.show.workspace && slice.regular) drawWorkspace(drawn, slice);
   const walls = drawWalls(robot, drawn, state);
@@ -112,6 +114,39 @@ function drawGround(robot, drawn, axes) {
   layer(drawn, "below").append(make("path", { class: "ground", d }), line);
 }
 
+/** The height of the floor: below the base, the arm's first frame.
+ * @type {(robot: Robot) => number} */
+function floorLevel(robot) {
+  const feet = robot.bodies.flatMap(({ frame, outline }) => (frame === 0 ? outline : []));
+  return Math.min(0, ...feet.map((foot) => foot[2]));
+}
+
+/** Two circles on the floor, which show how it lies where the arm is seen obliquely.
+ * @type {(robot: Robot, drawn: Picture, axes: Place[]) => void} */
+function drawFloor(robot, drawn, axes) {
+  const level = floorLevel(robot);
+  const [x, y] = robot.joints[0].origin;
+  const rings = [0.5, 1].map((share) =>
+    Array.from({ length: 60 }, (_, k) => {
+      const [c, s] = turnedBy((k * TURN) / 60);
+      const at = [x + share * robot.reach * c, y + share * robot.reach * s, level];
+      return drawn.at(project(axes, at));
+    }),
+  );
+  const d = rings.map((ring) => pathText(ring, true)).join("");
+  layer(drawn, "below").append(make("path", { class: "floor", d }));
+}
+
+/** The arm's shadow straight below it, and the plumb line of the tool.
+ * @type {(robot: Robot, q: Pose, at: (place: Place) => Point) => string} */
+function shadowText(robot, q, at) {
+  const level = floorLevel(robot);
+  const tool = pointPlaces(robot, q)[robot.tool];
+  const spine = [...framesOf(robot, q).map((frame) => frame.place), tool];
+  const below = spine.map(([x, y]) => at([x, y, level]));
+  return pathText(below) + pathText([at(tool), below[below.length - 1]]);
+}
+
 /** Walls of the plane: a line, with strokes on the side that is not safe for the points it concerns.
  * @type {(robot: Robot, drawn: Picture, state: State) => SVGPathElement[]} */
 function drawWalls(robot, drawn, state) {
@@ -129,7 +164,7 @@ function drawWalls(robot, drawn, state) {
   /** @type {Point[][]} */
   const hatched = [];
   const lines = robot.boundaries.flatMap((wall) => {
-    if (wall.kind === "pair") return [];
+    if (wall.kind === "pair" || robot.plane.oblique) return [];
     const normal = project(axes, wall.normal);
     const offset = wall.offset - dot(axes[2], wall.normal) * dot(axes[2], places[wall.points[0]]);
     /** @type {Side} */
@@ -223,6 +258,7 @@ function crossing(a, b, side) {
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
   const parts = {
+    shadow: robot.plane.oblique ? [make("path", { class: "shadow" })] : [],
     bodies: robot.bodies.map(({ frame }) =>
       make("polygon", {
         class: frame === 0 ? "body fixed" : "body",
@@ -254,6 +290,7 @@ function placeArm(robot, drawn, state, lit) {
   const places = robot.points.map((point) => at(placeIn(found[point.frame], point.at)));
   const spine = [...found.map((frame) => at(frame.place)), places[robot.tool]];
   drawn.spine.setAttribute("d", pathText(spine));
+  for (const path of drawn.shadow) path.setAttribute("d", shadowText(robot, state.q, at));
   for (const [j, axle] of drawn.axles.entries()) placeAt(axle, spine[j + 1], "c");
   const away = awayFromOther(robot, places, lit);
   for (const [i, place] of places.entries()) {

@@ -224,6 +224,7 @@ function stepTool(direction, large) {
 }
 
 function listen() {
+  if (robot.plane.oblique) byId("plane-title").textContent = "Arm, seen obliquely from above";
   const [jointSvg, planeSvg] = [svgOf("joints"), svgOf("plane")];
   const keys = { h: goHome, f: playFlip };
   draggable(jointSvg, (pixel) => movePose(joints.from(pixel)));

@@ -28,7 +28,7 @@ interface Robot {
   tool: number;
   tool_forms: Term[][];
   reach: number;
-  plane: { frame: number; u: Place; v: Place; n: Place };
+  plane: { frame: number; u: Place; v: Place; n: Place; oblique: boolean };
   views: View[];
   components: Component[];
   polygon: VertexPolygon | null;
@@ -270,6 +270,7 @@ interface JointPicture extends Picture, Handle, PathLayers {
 }
 
 interface ArmParts {
+  shadow: SVGPathElement[]; // on the floor, of an arm that is seen obliquely
   bodies: SVGPolygonElement[];
   spine: SVGPathElement;
   axles: SVGCircleElement[];

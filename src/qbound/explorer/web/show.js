@@ -49,7 +49,7 @@ function showLegends() {
     ...legend("workspace", "one safe posture", workspace && slice.regular),
     ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
     ...legend("ground", "ground", plane.svg.querySelector(".ground") !== null),
-    ...legend("beyond", "the side of a wall that is not safe", walls),
+    ...legend("beyond", "the side of a wall that is not safe", walls && !robot.plane.oblique),
   );
 }
 
