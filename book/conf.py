@@ -46,6 +46,7 @@ extensions = [
     "ledger_links",
     "explorer_pages",
     "front_page",
+    "play",
     "recorded_numbers",
     "result_pages",
 ]

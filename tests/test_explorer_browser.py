@@ -20,15 +20,20 @@ WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
+TOOL = "qboundEngine.toolAt(explorer.slice.map, explorer.pair())"
+SIDE = "Math.sign(qboundEngine.determinant(explorer.slice.map, explorer.pair()))"
 RECORD = """() => {
   window.seen = [];
-  const move = setPair;
-  setPair = (pair) => { seen.push(pair); move(pair); };
+  explorer.root.addEventListener("qbound-pose", () => {
+    const [pair, last] = [explorer.pair(), seen.at(-1)];
+    if (String(pair) !== String(last)) seen.push(pair);
+  });
 }"""
 LISTEN = """() => {
   window.heard = new Set();
-  const note = () => heard.add(byId("task-text").textContent);
-  new MutationObserver(note).observe(byId("task-text"), { childList: true });
+  const text = explorer.part("task-text");
+  const note = () => heard.add(text.textContent);
+  new MutationObserver(note).observe(text, { childList: true });
 }"""
 
 
@@ -68,7 +73,7 @@ def open_explorer(browser, files):
 
 
 def pose(page):
-    return page.evaluate("state.q")
+    return page.evaluate("explorer.state.q")
 
 
 def degrees(page):
@@ -82,7 +87,7 @@ def centre(page, selector):
 
 def on_screen(page, picture, values):
     """Return where values of a picture ("joints" or "plane") lie on the screen."""
-    x, y = page.evaluate("([name, v]) => window.eval(name).at(v)", [picture, values])
+    x, y = page.evaluate("([name, v]) => explorer[name].at(v)", [picture, values])
     box = page.locator(f"#{picture}").bounding_box()
     return box["x"] + x, box["y"] + y
 
@@ -123,20 +128,20 @@ def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
 
 def test_dragging_the_dot_moves_the_arm(open_explorer):
     page = open_explorer()
-    tool = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    tool = page.evaluate(TOOL)
     target = np.radians([-60, -90]).tolist()
     drag(page, centre(page, "#joints .handle"), on_screen(page, "joints", target))
     assert_allclose(degrees(page), [-60, -90], atol=1)
-    assert page.evaluate("toolAt(slice.map, pairOf(state.q))") != tool
+    assert page.evaluate(TOOL) != tool
     assert page.input_value("#value-0") == str(round(degrees(page)[0], 1))
 
 
 def test_dragging_the_tool_keeps_the_posture_and_the_tool_under_the_hand(open_explorer):
     page = open_explorer()
-    side = page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))")
+    side = page.evaluate(SIDE)
     drag(page, centre(page, "#plane .handle"), on_screen(page, "plane", [10.0, 66.0]), 30)
-    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), [10, 66], atol=0.5)
-    assert page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))") == side
+    assert_allclose(page.evaluate(TOOL), [10, 66], atol=0.5)
+    assert page.evaluate(SIDE) == side
 
 
 def test_a_tool_dragged_out_of_reach_stretches_the_arm_and_says_so(open_explorer):
@@ -185,11 +190,11 @@ def test_arrow_keys_move_joints_and_tool(open_explorer):
     for key in ["ArrowRight", "ArrowRight", "Shift+ArrowDown", "ArrowUp"]:
         page.keyboard.press(key)
     assert_allclose(degrees(page), [2, -9], atol=1e-9)
-    before = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))"))
+    before = np.array(page.evaluate(TOOL))
     page.focus("#plane")
     page.keyboard.press("ArrowUp")
-    step = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))")) - before
-    assert_allclose(step, [0, page.evaluate("robot.reach * 0.01")], atol=1e-9)
+    step = np.array(page.evaluate(TOOL)) - before
+    assert_allclose(step, [0, page.evaluate("explorer.robot.reach * 0.01")], atol=1e-9)
     page.keyboard.press("h")
     assert_allclose(pose(page), 0, atol=1e-12)
 
@@ -217,14 +222,14 @@ def test_the_violated_boundary_is_lit_in_table_and_pictures(open_explorer):
 
 def test_switching_the_posture_passes_the_singular_curve_and_keeps_the_place(open_explorer):
     page = open_explorer()
-    place = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    place = page.evaluate(TOOL)
     page.evaluate(RECORD)
     page.click("#flip")
-    wait_until(page, "!isPlaying() && Math.abs(state.q[1]) > 1")
+    wait_until(page, "!explorer.isPlaying() && Math.abs(explorer.state.q[1]) > 1")
     line = math.radians(-59.9993)
     seen = np.array(page.evaluate("window.seen"))[:, 1]
     assert seen.min() < line < seen.max()
-    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), place, atol=1e-6)
+    assert_allclose(page.evaluate(TOOL), place, atol=1e-6)
     assert "Posture A" in page.inner_text("#posture")
 
 
@@ -235,8 +240,8 @@ def test_the_mirrored_pose_is_across_the_singular_curve_and_the_page_says_why(op
     # A frame moves the arm 100 ms on at most; at half speed that is less than the line is thick.
     page.select_option("#speed", "0.5")
     page.click("#task-go")
-    wait_until(page, "byId('task-text').textContent.startsWith('There.')")
-    wait_until(page, "!isPlaying()")
+    wait_until(page, "explorer.part('task-text').textContent.startsWith('There.')")
+    wait_until(page, "!explorer.isPlaying()")
     assert_allclose(degrees(page), [-60, -120], atol=2e-3)
     words = page.evaluate("[...window.heard]")
     assert any(text.startswith("Now both links lie in one line") for text in words)
@@ -260,14 +265,14 @@ def test_a_traversal_plays_pauses_and_goes_on(open_explorer):
     page.select_option("#speed", "2")
     start = pose(page)
     page.click("#play")
-    wait_until(page, "state.progress > 0.05", then="byId('play').click()")
+    wait_until(page, "explorer.state.progress > 0.05", then="explorer.part('play').click()")
     here = pose(page)
     settle(page)
     assert pose(page) == here != start
     assert page.inner_text("#play") == "Play"
     page.click("#play")
-    wait_until(page, "!isPlaying() && state.progress === 1")
-    corners = page.evaluate("walkStops()")
+    wait_until(page, "!explorer.isPlaying() && explorer.state.progress === 1")
+    corners = page.evaluate("explorer.walkStops()")
     assert_allclose(pose(page), corners[-1], atol=1e-9)
     assert "Safe" in page.inner_text("#status")
 
@@ -277,8 +282,8 @@ def test_reduced_motion_jumps_from_vertex_to_vertex(open_explorer):
     page.evaluate(RECORD)
     page.select_option("#speed", "2")
     page.click("#play")
-    wait_until(page, "!isPlaying() && state.progress === 1")
-    corners = page.evaluate("walkStops()")
+    wait_until(page, "!explorer.isPlaying() && explorer.state.progress === 1")
+    corners = page.evaluate("explorer.walkStops()")
     assert_allclose(page.evaluate("window.seen"), corners[1:], atol=1e-9)
 
 
@@ -288,7 +293,7 @@ def test_random_poses_are_shown_and_hidden(open_explorer):
     page.check("#show-sample")
     marks = page.locator("#joints .sample .dots, #plane .sample .dots")
     assert marks.count() == 2
-    drawn = page.evaluate("state.sample.filter((one) => one.safe).length")
+    drawn = page.evaluate("explorer.state.sample.filter((one) => one.safe).length")
     assert marks.first.get_attribute("d").count("M") == drawn > 100
     page.uncheck("#show-sample")
     assert page.locator("#joints .sample").count() == 0
@@ -300,7 +305,7 @@ def test_a_link_restores_the_view(open_explorer):
     page.fill("#value-1", "-30.5")
     page.check("#show-names")
     page.uncheck("#show-workspace")
-    page.evaluate("setScale(0.8)")
+    page.evaluate("explorer.setScale(0.8)")
     wait_until(page, "location.hash.includes('scale=0.8&')")
     link = page.input_value("#link")
     assert link == page.url
@@ -308,7 +313,7 @@ def test_a_link_restores_the_view(open_explorer):
     assert_allclose(degrees(again), [-40, -30.5], atol=1e-3)
     assert again.is_checked("#show-names")
     assert not again.is_checked("#show-workspace")
-    assert again.evaluate("state.scale") == 0.8
+    assert again.evaluate("explorer.state.scale") == 0.8
 
 
 @pytest.mark.parametrize(
@@ -318,16 +323,16 @@ def test_a_link_restores_the_view(open_explorer):
 def test_a_broken_link_opens_the_home_pose(open_explorer, fragment):
     page = open_explorer(fragment=fragment)
     assert pose(page) == [0, 0]
-    assert 0 < page.evaluate("state.scale") < 1
-    assert page.evaluate("state.walk") == 0
+    assert 0 < page.evaluate("explorer.state.scale") < 1
+    assert page.evaluate("explorer.state.walk") == 0
 
 
 def test_a_held_joints_slider_shows_another_slice(open_explorer):
     page = open_explorer("3R, third held")
-    exact = page.evaluate("slice.exact")
+    exact = page.evaluate("explorer.slice.exact")
     before = page.locator("#joints .home").get_attribute("d")
     page.fill("#value-2", "-100")
-    assert (exact, page.evaluate("slice.exact")) == (True, False)
+    assert (exact, page.evaluate("explorer.slice.exact")) == (True, False)
     assert page.locator("#joints .home").get_attribute("d") != before
     assert page.locator("#joints .arc").count() > 0
 

@@ -7,6 +7,7 @@ data of one region.
 from __future__ import annotations
 
 import json
+import re
 from base64 import b64encode
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -24,9 +25,14 @@ from qbound.region import Region
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
 """What repeats the library's computations and knows no page."""
 
-PICTURES: Final = ("drawing.js", "joint_space.js", "arm.js")
-PAGE: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
-SCRIPTS: Final = (*ARITHMETIC, *PICTURES, *PAGE)
+PICTURES: Final = ("drawing.js", "hands.js", "joint_space.js", "arm.js", "parts.js")
+ENGINE: Final = (*ARITHMETIC, *PICTURES, "engine.js")
+"""What every figure of a page shares."""
+
+EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
+"""What each explorer has for itself: its state, and what shows it."""
+
+SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")
 
 
 @dataclass(frozen=True)
@@ -99,7 +105,7 @@ def explorer_page(region: Region) -> str:
     """
     data = _shown(explorer_data(region))
     name = escape(printable(region.robot.name))
-    style, script = _web("explorer.css"), "".join(map(_web, SCRIPTS))
+    style, script = engine_style() + _web("page.css"), engine_script() + _web("start.js")
     return Template(_web("explorer.html")).substitute(
         title=f"{name}: safe poses",
         name=name,
@@ -110,6 +116,30 @@ def explorer_page(region: Region) -> str:
         script=script,
         summary=_summary(data),
     )
+
+
+def engine_script() -> str:
+    """Return the engine: one classic script that defines `qboundEngine` and draws nothing yet.
+
+    Its function ``mount(root, robot, options)`` holds the scripts in `EXPLORER`, so that their
+    names belong to one explorer, and a page may have several.
+    """
+    shared, own = ("".join(map(_web, names)) for names in (ENGINE, EXPLORER))
+    markup = _embedded(_web("parts.html"))
+    mount = f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
+    return _shorter(f"(() => {{\n{shared}const MARKUP = {markup};\n{mount}}})();\n")
+
+
+def engine_style() -> str:
+    """Return the style of an explorer: every rule stands below the class ``qbound``."""
+    return _web("explorer.css")
+
+
+def _shorter(script: str) -> str:
+    """Leave out comments that begin a line, and indentation."""
+    code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
+    lines = (line.strip() for line in code.splitlines())
+    return "".join(f"{line}\n" for line in lines if line and not line.startswith("//"))
 
 
 def _web(name: str) -> str:
@@ -125,7 +155,7 @@ def _shown(data: Any) -> Any:
     return printable(data) if isinstance(data, str) else data
 
 
-def _embedded(data: Data) -> str:
+def _embedded(data: Any) -> str:
     """Write JSON that no HTML parser can take for markup, whatever a name contains."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

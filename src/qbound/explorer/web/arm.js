@@ -56,9 +56,8 @@ function withPair(robot, q, pair) {
   return pose;
 }
 
-/** @type {(robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
-function drawPlane(robot, state, slice, box) {
-  const svg = partOf("plane", SVGSVGElement);
+/** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
+function drawPlane(svg, robot, state, slice, box) {
   const fitted = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
   const drawn = {
     ...fitted,

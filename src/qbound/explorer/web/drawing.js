@@ -24,17 +24,6 @@ function lineHeight(svg) {
   return height;
 }
 
-/** The part of the page that has an id, of the kind that the caller needs.
- * @template {Element} T
- * @param {string} id
- * @param {new () => T} kind
- * @returns {T} */
-function partOf(id, kind) {
-  const found = document.getElementById(id);
-  if (!(found instanceof kind)) throw new Error(`The page has no ${kind.name} "${id}".`);
-  return found;
-}
-
 /** A picture with two scales: `at` leads from values to pixels, `from` back.
  * @type {(svg: SVGSVGElement, ranges: number[][], margin: Picture["box"], equal: boolean) => Picture} */
 function picture(svg, ranges, margin, equal) {
@@ -129,4 +118,29 @@ function thin(names, width) {
 /** @type {(value: number, low: number, high: number) => number} */
 function between(value, low, high) {
   return Math.min(high, Math.max(low, value));
+}
+
+/** @type {(value: number, digits: number) => string} */
+function number(value, digits) {
+  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+  return text.replace("-", "−");
+}
+
+/** @type {Record<string, string>} */
+const LEGEND_SHAPES = {
+  singular: "M0 7H22",
+  polygon: "M1 12L11 2L21 12Z",
+  dots: "M5 7h0M15 7h0",
+  crosses: "M9 5l4 4m0 -4l-4 4",
+};
+
+/** One line of a legend, or none.
+ * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
+function legend(name, text, shows) {
+  if (!shows) return [];
+  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
+  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
+  for (const part of name === "workspace twice" ? [0, 1] : [0])
+    key.append(make("path", { class: name, d, "data-part": part }));
+  return [element("li", {}, key, text)];
 }

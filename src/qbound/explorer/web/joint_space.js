@@ -1,8 +1,7 @@
 /* The picture of joint space. Like the arm's it is handed the state and changes nothing else. */
 
-/** @type {(robot: Robot, state: State, slice: Slice) => JointPicture} */
-function drawJointSpace(robot, state, slice) {
-  const svg = partOf("joints", SVGSVGElement);
+/** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice) => JointPicture} */
+function drawJointSpace(svg, robot, state, slice) {
   const ranges = robot.views.map((view) => [view.low, view.high]);
   const line = lineHeight(svg);
   const margin = { left: 46, right: 12, top: 12, bottom: 12 + 2 * line };

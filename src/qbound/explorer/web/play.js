@@ -7,7 +7,7 @@ let waiting = 0; // with reduced motion the timer
 /* --- the task ---------------------------------------------------------------------------------- */
 
 function hasTask() {
-  return slice.regular && slice.arm.kind === "rr";
+  return shows("task") && slice.regular && slice.arm.kind === "rr";
 }
 
 /** Ask for the mirror image of the present pose.
@@ -69,7 +69,7 @@ function walkStops() {
 function play(stops, from, each) {
   stopPlaying();
   const behavior = calm.matches ? "auto" : "smooth";
-  partOf("plane", SVGSVGElement).scrollIntoView({ block: "nearest", behavior });
+  svgOf("plane").scrollIntoView({ block: "nearest", behavior });
   state.path = stops;
   byId("play").setAttribute("aria-pressed", "true");
   byId("play").textContent = "Pause";

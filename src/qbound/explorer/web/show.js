@@ -18,10 +18,11 @@ function rebuild() {
 /** Both pictures anew, from the slice there is. */
 function redraw() {
   state.sample = state.show.sample ? judgeSample() : [];
-  joints = drawJointSpace(robot, state, slice);
-  plane = drawPlane(robot, state, slice, reachable);
+  joints = drawJointSpace(svgOf("joints"), robot, state, slice);
+  plane = drawPlane(svgOf("plane"), robot, state, slice, reachable);
   showLegends();
   byId("area").textContent = areaText();
+  root.dispatchEvent(new CustomEvent("qbound-draw"));
   if (robot.polygon) inputOf("show-polygon").disabled = !slice.exact;
   refresh();
 }
@@ -50,25 +51,6 @@ function showLegends() {
   );
 }
 
-/** @type {Record<string, string>} */
-const LEGEND_SHAPES = {
-  singular: "M0 7H22",
-  polygon: "M1 12L11 2L21 12Z",
-  dots: "M5 7h0M15 7h0",
-  crosses: "M9 5l4 4m0 -4l-4 4",
-};
-
-/** One line of a legend, or none.
- * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
-function legend(name, text, shows) {
-  if (!shows) return [];
-  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
-  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
-  for (const part of name === "workspace twice" ? [0, 1] : [0])
-    key.append(make("path", { class: name, d, "data-part": part }));
-  return [element("li", {}, key, text)];
-}
-
 /** What moves with the pose. */
 function refresh() {
   const found = margins(robot, state.q);
@@ -88,6 +70,7 @@ function refresh() {
   showScale();
   showTask();
   remember();
+  root.dispatchEvent(new CustomEvent("qbound-pose"));
 }
 
 /** The boundaries that stand out: violated ones, the one pointed at, and those that are near.

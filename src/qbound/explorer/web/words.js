@@ -1,11 +1,5 @@
 /* What the explorer says: numbers with units, the verdict on a pose, its posture. */
 
-/** @type {(value: number, digits: number) => string} */
-function number(value, digits) {
-  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
-  return text.replace("-", "−");
-}
-
 /** @type {(value: number) => string} */
 function lengthText(value) {
   return `${number(value, robot.reach < 10 ? 4 : 2)} ${robot.length_unit}`;
