@@ -1,0 +1,124 @@
+"use strict";
+/* What the figures that one moves in a chapter share: values to set, words that say what holds. */
+{
+  const { element, make, number, pathText } = qboundEngine;
+
+  /** A value with its name, a slider and a field.
+   * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
+  function valueRow({ name, spoken, low, high, step, digits, unit }, change) {
+    const limits = { min: String(low), max: String(high) };
+    const slide = element("input", { type: "range", ...limits, step: String(step) });
+    const field = element("input", { type: "number", ...limits, step: "any" });
+    slide.ariaLabel = spoken;
+    field.ariaLabel = `${spoken}, as a number`;
+    let shown = "";
+    for (const input of [slide, field]) {
+      input.addEventListener("input", () => {
+        const value = Number(input.value);
+        if (input.value !== "" && Number.isFinite(value))
+          change(Math.min(high, Math.max(low, value)));
+      });
+    }
+    field.addEventListener("blur", () => {
+      field.value = shown;
+    });
+    const box = element("span", { className: "unit" }, field, unit);
+    return {
+      row: element("div", { className: "slider" }, element("span", {}, name), slide, box),
+      set(value) {
+        shown = String(Number(value.toFixed(digits)));
+        slide.value = String(value);
+        if (document.activeElement !== field) field.value = shown;
+      },
+    };
+  }
+
+  /** A box to tick.
+   * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
+  function tick(text, checked, change) {
+    const box = element("input", { type: "checkbox", checked });
+    box.addEventListener("change", () => change(box.checked));
+    return element("label", { className: "check" }, box, text);
+  }
+
+  /** @type {(text: string, press: () => void) => HTMLButtonElement} */
+  function button(text, press) {
+    const made = element("button", { type: "button", textContent: text });
+    made.addEventListener("click", press);
+    return made;
+  }
+
+  /** What holds now: seen at once, spoken when the hand has come to rest.
+   * @type {() => { seen: HTMLElement, spoken: HTMLElement, say: (text: string, bad: boolean) => void }} */
+  function statusLine() {
+    const seen = element("p", { className: "status" });
+    const spoken = element("p", { className: "unseen", role: "status" });
+    let timer = 0;
+    return {
+      seen,
+      spoken,
+      say(text, bad) {
+        seen.textContent = text;
+        seen.classList.toggle("violated", bad);
+        window.clearTimeout(timer);
+        timer = window.setTimeout(() => {
+          if (spoken.textContent !== text) spoken.textContent = text;
+        }, 700);
+      },
+    };
+  }
+
+  /** A picture with a name for those who do not see it.
+   * @type {(label: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
+  function canvas(label) {
+    const svg = make("svg", { role: "img", "aria-label": label });
+    svg.id = `${qboundEngine.newPrefix()}picture`;
+    return { figure: element("figure", {}, svg), svg };
+  }
+
+  /** Call at once, and whenever the element has a new width.
+   * @type {(watched: HTMLElement, draw: () => void) => void} */
+  function whenWidthChanges(watched, draw) {
+    let width = -1;
+    new ResizeObserver(() => {
+      if (Math.abs(watched.clientWidth - width) < 1) return;
+      width = watched.clientWidth;
+      draw();
+    }).observe(watched);
+    width = watched.clientWidth;
+    draw();
+  }
+
+  /** @type {(angle: number, digits?: number) => string} */
+  function degrees(angle, digits = 1) {
+    return `${number((angle * 180) / Math.PI, digits)}°`;
+  }
+
+  /** Axes of two joint values in degrees.
+   * @type {(drawn: Picture, group: SVGGElement, step: number) => void} */
+  function jointAxes(drawn, group, step) {
+    const { left, top, right, bottom } = drawn.box;
+    const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
+    for (const k of [0, 1]) {
+      const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
+      for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
+        const value = (tickAt * Math.PI) / 180;
+        const [x, y] = drawn.at(k === 0 ? [value, low[1]] : [low[0], value]);
+        const line = k === 0 ? [[x, top], [x, bottom]] : [[left, y], [right, y]];
+        const at =
+          k === 0 ? { x, y: bottom + 15, "text-anchor": "middle" } : { x: left - 6, y: y + 4, "text-anchor": "end" };
+        group.append(
+          make("path", { class: "grid", d: pathText(line) }),
+          make("text", at, `${tickAt}°`.replace("-", "−")),
+        );
+      }
+    }
+    const middle = (left + right) / 2;
+    group.append(
+      make("text", { x: middle, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
+      make("text", { x: 12, y: (top + bottom) / 2, "text-anchor": "middle" }, "q₂"),
+    );
+  }
+
+  qboundParts = { valueRow, tick, button, statusLine, canvas, whenWidthChanges, degrees, jointAxes };
+}

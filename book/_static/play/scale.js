@@ -1,0 +1,221 @@
+"use strict";
+/* Figure 6: the polygon scaled about its centroid, and how far the tool goes below its limit. */
+{
+  const PIECES = 24; // of an edge: on none of them does the slope of a floor change its sign twice
+  const LEAST = 0.5; // scales of the slider
+  const MOST = 1.05;
+
+  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+
+  /** The height of the tool above its limit as a form of both joints: the first half-space in use.
+   * @type {(robot: Robot) => Matrix} */
+  function floorOf(robot) {
+    const floor = robot.boundaries.find((wall) => wall.kind === "half-space" && wall.used);
+    if (!floor) throw new Error("Figure 6 needs a robot with a floor.");
+    return qboundEngine.restrict(floor.form, robot, robot.q);
+  }
+
+  /** Least value of a form on a straight edge and where: at an end, or where the slope along the
+      edge passes zero upward, found by bisection.
+   * @type {(matrix: Matrix, start: Pair, end: Pair) => Least2} */
+  function leastOnEdge(matrix, start, end) {
+    const { basis, evaluate } = qboundEngine;
+    const along = start.map((value, k) => end[k] - value);
+    /** @type {(t: number) => Pair} */
+    const at = (t) => start.map((value, k) => value + t * along[k]);
+    /** @type {(q: number) => number[]} */
+    const rise = (q) => [0, -Math.sin(q), Math.cos(q)];
+    /** @type {(q: number) => number[]} */
+    const here = (q) => basis("revolute", q);
+    /** @type {(t: number) => number} */
+    const slope = (t) => {
+      const [p, q] = at(t);
+      return (
+        along[0] * evaluate(matrix, rise(p), here(q)) + along[1] * evaluate(matrix, here(p), rise(q))
+      );
+    };
+    const places = [start, end];
+    for (let i = 0; i < PIECES; i += 1) {
+      let [low, high] = [i / PIECES, (i + 1) / PIECES];
+      if (slope(low) > 0 || slope(high) <= 0) continue;
+      for (let step = 0; step < 50; step += 1) {
+        const middle = (low + high) / 2;
+        if (slope(middle) > 0) high = middle;
+        else low = middle;
+      }
+      places.push(at(low));
+    }
+    const heights = places.map(([p, q]) => evaluate(matrix, here(p), here(q)));
+    const value = Math.min(...heights);
+    return { value, q: places[heights.indexOf(value)] };
+  }
+
+  /** Every edge of the polygon at a scale: the least height of the tool above its limit, and where.
+   * @type {(matrix: Matrix, polygon: VertexPolygon, factor: number) => Least2[]} */
+  function edges(matrix, { vertices, centroid }, factor) {
+    const corners = qboundEngine.scaledPolygon(vertices, factor, centroid);
+    return corners.map((corner, i) => leastOnEdge(matrix, corner, corners[(i + 1) % corners.length]));
+  }
+
+  /* --- the figure ------------------------------------------------------------------------------- */
+
+  /** @type {FigureKind} */
+  function show(root, options, { robot }) {
+    if (!robot?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
+    const { addArm, clear, element, layer, make, number, pathText, picture, placeArm } = qboundEngine;
+    const { button, canvas, jointAxes, statusLine, valueRow, whenWidthChanges } = qboundParts;
+    const { polygon } = robot;
+    const { vertices, centroid, largest } = polygon;
+    const unit = robot.length_unit;
+    const floor = floorOf(robot);
+    const limit = robot.boundaries.find((wall) => wall.kind === "half-space" && wall.used);
+    const state = { scale: Number(options.scale ?? 0.95) };
+    const [joints, plane] = [
+      canvas("The polygon in the square of both joint angles, scaled about its centroid."),
+      canvas("The arm at the lowest point that the tool reaches on the polygon's edges."),
+    ];
+    const status = statusLine();
+    /** @type {ScalePictures} */
+    let drawn;
+
+    const row = valueRow(
+      { name: "Scale", spoken: "Scale of the polygon", low: LEAST, high: MOST, step: 0.001, digits: 4, unit: "" },
+      set,
+    );
+    const mark = element("span", {});
+    mark.style.left = `${(100 * (largest - LEAST)) / (MOST - LEAST)}%`;
+    root.append(
+      element("p", { className: "hint" }, "Move the scale: edges on which the tool goes below its limit light up."),
+      status.seen,
+      status.spoken,
+      row.row,
+      element("div", { className: "mark", ariaHidden: "true" }, mark),
+      element(
+        "p",
+        { className: "row" },
+        button("1, the six points", () => set(1)),
+        button(`${number(largest, 6)}, the largest safe scale`, () => set(largest)),
+        button("0.95, as in Figure 6", () => set(0.95)),
+      ),
+      element("div", { className: "panels" }, joints.figure, plane.figure),
+    );
+
+    /** @type {(scale: number) => void} */
+    function set(scale) {
+      state.scale = scale;
+      update();
+    }
+
+    function draw() {
+      drawn = { ...drawJoints(), ...drawPlane() };
+      update();
+    }
+
+    function drawJoints() {
+      const pad = 0.25;
+      const ranges = [0, 1].map((k) => {
+        const values = vertices.map((vertex) => vertex[k]);
+        return [Math.min(...values) - pad, Math.max(...values) + pad];
+      });
+      const fitted = picture(joints.svg, ranges, { left: 48, right: 12, top: 10, bottom: 36 }, true);
+      clear(fitted);
+      jointAxes(fitted, layer(fitted, "axes", false), 45);
+      const group = layer(fitted, "polygons");
+      const before = make("path", { class: "before", d: pathText(vertices.map(fitted.at), true) });
+      const inside = make("path", { class: "home" });
+      group.append(inside, before);
+      const lines = vertices.map(() => group.appendChild(make("path", { class: "arc" })));
+      const [x, y] = fitted.at(centroid);
+      group.append(make("path", { class: "centroid", d: `M${x - 6} ${y}h12M${x} ${y - 6}v12` }));
+      const numbers = vertices.map((_, i) =>
+        group.appendChild(make("text", { class: "vertex-name", "text-anchor": "middle" }, `${i + 1}`)),
+      );
+      const dot = group.appendChild(make("circle", { class: "handle", r: 7 }));
+      return { joints: fitted, inside, lines, numbers, dot };
+    }
+
+    function drawPlane() {
+      const reach = robot?.reach ?? 1;
+      const ranges = [
+        [-reach, reach],
+        [-0.06 * reach, 1.06 * reach],
+      ];
+      const fitted = picture(plane.svg, ranges, { left: 8, right: 8, top: 8, bottom: 8 }, true);
+      const whole = { ...fitted, box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height } };
+      clear(whole);
+      const group = layer(whole, "floor");
+      const height = limit?.kind === "half-space" ? limit.offset : 0;
+      const [, y] = fitted.at([0, height]);
+      const below = `M0 ${y}H${whole.width}V${whole.height}H0Z`;
+      group.append(
+        make("path", { class: "beyond", d: below }),
+        make("path", { class: "wall", d: `M0 ${y}H${whole.width}` }),
+        make("text", { class: "wall-name", x: 8, y: y + 15 }, `limit of the tool, ${number(height, 2)} ${unit}`),
+      );
+      const arm = addArm(/** @type {Robot} */ (robot), whole);
+      const gap = layer(whole, "depth").appendChild(make("path", { class: "depth" }));
+      return { plane: /** @type {PlanePicture} */ ({ ...whole, ...arm, group: make("g", {}) }), gap };
+    }
+
+    function update() {
+      row.set(state.scale);
+      if (!drawn || !robot) return;
+      const { scale } = state;
+      const found = edges(floor, polygon, scale);
+      const corners = qboundEngine.scaledPolygon(vertices, scale, centroid);
+      const places = corners.map(drawn.joints.at);
+      const next = (/** @type {number} */ i) => (i + 1) % corners.length;
+      const values = found.map((one) => one.value);
+      const worst = values.indexOf(Math.min(...values));
+      const { q, value } = found[worst];
+      drawn.inside.setAttribute("d", pathText(places, true));
+      for (const [i, line] of drawn.lines.entries()) {
+        line.setAttribute("d", pathText([places[i], places[next(i)]]));
+        line.classList.toggle("lit", values[i] < -1e-9);
+      }
+      const [gx, gy] = drawn.joints.at(centroid);
+      for (const [i, text] of drawn.numbers.entries()) {
+        const [x, y] = places[i];
+        const size = Math.hypot(gx - x, gy - y) || 1;
+        text.setAttribute("x", (x + (17 * (gx - x)) / size).toFixed(1));
+        text.setAttribute("y", (y + (17 * (gy - y)) / size + 4).toFixed(1));
+      }
+      const [x, y] = drawn.joints.at(q);
+      drawn.dot.setAttribute("cx", x.toFixed(2));
+      drawn.dot.setAttribute("cy", y.toFixed(2));
+      drawn.dot.classList.toggle("violated", value < -1e-9);
+      showArm(robot, q);
+      tell(values, worst);
+    }
+
+    /** @type {(robot: Robot, q: Pair) => void} */
+    function showArm(robot, q) {
+      const pose = qboundEngine.withPair(robot, robot.q, q);
+      const lit = { violated: new Set(), bold: new Set(), boundaries: new Set(), points: new Set() };
+      const shown = { q: pose, show: { workspace: false, polygon: false, sample: false, names: false } };
+      placeArm(robot, drawn.plane, /** @type {State} */ (/** @type {unknown} */ (shown)), lit);
+      const tool = qboundEngine.pointPlaces(robot, pose)[robot.tool];
+      const [x, y] = drawn.plane.at(qboundEngine.project(qboundEngine.viewAxes(robot, pose), tool));
+      const height = limit?.kind === "half-space" ? limit.offset : 0;
+      drawn.gap.setAttribute("d", pathText([[x, y], [x, drawn.plane.at([0, height])[1]]]));
+    }
+
+    /** @type {(values: number[], worst: number) => void} */
+    function tell(values, worst) {
+      const depth = -values[worst];
+      const edge = (/** @type {number} */ i) => `from ${i + 1} to ${((i + 1) % values.length) + 1}`;
+      const leaving = values.flatMap((value, i) => (value < -1e-9 ? [edge(i)] : []));
+      const many = leaving.length > 1 ? "edges" : "edge";
+      const text =
+        leaving.length > 0
+          ? `the tool goes up to ${number(depth, 3)} ${unit} below its limit, on the edge ${edge(worst)}. ` +
+            `Not safe: ${many} ${leaving.join(" and ")}.`
+          : `safe. The tool stays ${number(Math.abs(depth), 3)} ${unit} above its limit where it is lowest, on the edge ${edge(worst)}.`;
+      status.say(`Scale ${number(state.scale, 3)}: ${text}`, leaving.length > 0);
+    }
+
+    whenWidthChanges(joints.figure, draw);
+  }
+
+  qboundFigures.scale = Object.assign(show, { edges, floorOf });
+}
