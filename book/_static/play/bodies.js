@@ -95,14 +95,42 @@
     );
   }
 
+  /** The pose with one joint turned so that what it carries points to a place: the next joint, or
+      the tool.
+   * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
+  function turnedToward(robot, q, [joint, next], target) {
+    const { framesOf, pointPlaces, project, viewAxes } = qboundEngine;
+    /** The angle about the joint from what it carries to the target.
+     * @type {(pose: Pose) => number} */
+    const angle = (pose) => {
+      const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
+      const tool = pointPlaces(robot, pose)[robot.tool];
+      const [x, y] = project(axes, frames[joint + 1].place);
+      const [u, v] = project(axes, next === undefined ? tool : frames[next + 1].place);
+      const [a, b] = [u - x, v - y];
+      const [c, d] = [target[0] - x, target[1] - y];
+      return Math.atan2(a * d - b * c, a * c + b * d);
+    };
+    /** @type {(change: number) => Pose} */
+    const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
+    const rest = angle(q);
+    const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
+    return Math.abs(angle(one)) <= Math.abs(angle(other)) ? one : other;
+  }
+
   /* --- the figure ------------------------------------------------------------------------------- */
 
   /** @type {FigureKind} */
-  function show(root, options, { robot }) {
-    if (!robot) throw new Error("This figure needs a robot with bodies.");
-    const { addArm, clear, draggable, element, handle, layer, make, number, pathText } = qboundEngine;
-    const { isSafe, margins, picture, placeArm, planeBox, tightest, withPair } = qboundEngine;
-    const { button, canvas, jointAxes, statusLine, valueRow, whenWidthChanges } = qboundParts;
+  function show(root, options, { robot: given }) {
+    if (!given || given.bodies.length < 2)
+      throw new Error("This figure needs a robot with bodies.");
+    const { clear, draggable, element, framesOf, handle, layer, make, number, pathText } =
+      qboundEngine;
+    const { isSafe, margins, picture, planeBox, project, tightest, viewAxes, withPair } =
+      qboundEngine;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine, valueRow } =
+      qboundParts;
+    const robot = given;
     const unit = robot.length_unit;
     const [first, second] = robot.free;
     const state = { q: [...robot.q] };
@@ -116,13 +144,23 @@
 
     const rows = robot.free.map((j, k) =>
       valueRow(
-        { name: "q" + "₁₂"[k], spoken: `q${k + 1} in degrees`, low: -180, high: 180, step: 0.1, digits: 1, unit: "°" },
+        {
+          name: `q${"₁₂"[k]}`,
+          spoken: `q${k + 1} in degrees`,
+          low: -180,
+          high: 180,
+          step: 0.1,
+          digits: 1,
+          unit: "°",
+        },
         (value) => set(state.q.map((old, i) => (i === j ? (value * Math.PI) / 180 : old))),
       ),
     );
-    const buttons = robot.components.map(({ centroid }, i) =>
-      button(`Region ${i + 1}`, () => centroid && set(withPair(robot, state.q, centroid))),
-    );
+    /** @type {[string, () => void][]} */
+    const regions = robot.components.map(({ centroid }, i) => [
+      `Region ${i + 1}`,
+      () => centroid && set(withPair(robot, state.q, centroid)),
+    ]);
     const verdicts = { points: element("td", {}), bodies: element("td", {}) };
     const notes = { points: element("td", {}), bodies: element("td", {}) };
     const table = element("table", { className: "verdicts" });
@@ -130,7 +168,7 @@
       element(
         "tbody",
         {},
-        ...(/** @type {const} */ (["points", "bodies"])).map((who) =>
+        .../** @type {const} */ (["points", "bodies"]).map((who) =>
           element("tr", {}, element("th", { scope: "row" }, who), verdicts[who], notes[who]),
         ),
       ),
@@ -145,7 +183,7 @@
       table,
       element("div", { className: "panels" }, joints.figure, plane.figure),
       ...rows.map(({ row }) => row),
-      element("p", { className: "row" }, ...buttons),
+      buttons(...regions),
     );
 
     /** @type {(q: Pose) => void} */
@@ -155,29 +193,38 @@
     }
 
     function draw() {
-      if (!robot) return;
       const ranges = robot.views.map(({ low, high }) => [low, high]);
-      const square = picture(joints.svg, ranges, { left: 48, right: 12, top: 10, bottom: 36 }, true);
+      const square = picture(joints.svg, ranges, AROUND, true);
       clear(square);
-      jointAxes(square, layer(square, "axes", false), 90);
-      drawRegions(robot, square);
+      jointAxes(square, 90);
+      drawRegions(square);
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
-      const fitted = picture(plane.svg, planeBox(robot), { left: 8, right: 8, top: 8, bottom: 8 }, true);
-      const whole = { ...fitted, box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height } };
+      const fitted = picture(
+        plane.svg,
+        planeBox(robot),
+        { left: 8, right: 8, top: 8, bottom: 8 },
+        true,
+      );
+      const whole = {
+        ...fitted,
+        box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
+      };
       clear(whole);
       const [, ground] = whole.at([0, 0]);
       plane.svg.append(make("path", { class: "wall", d: `M0 ${ground}H${whole.width}` }));
-      const arm = addArm(robot, whole);
+      const arm = armParts(robot, whole);
       const overlap = layer(whole, "overlap").appendChild(make("path", { class: "overlap" }));
       const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(plane.svg, make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }));
-      const moved = /** @type {PlanePicture} */ ({ ...whole, ...arm, group: tool.group });
-      drawn = { joints: square, dot, plane: moved, overlap, elbow, tool };
+      const tool = handle(
+        plane.svg,
+        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
+      );
+      drawn = { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
       update();
     }
 
-    /** @type {(robot: Robot, square: Picture) => void} */
-    function drawRegions(robot, square) {
+    /** @type {(square: Picture) => void} */
+    function drawRegions(square) {
       const group = layer(square, "regions");
       for (const [i, { loops, home, centroid }] of robot.components.entries()) {
         const outlines = loops.map((loop) =>
@@ -186,12 +233,13 @@
         group.append(make("path", { class: home ? "home" : "away", d: outlines.join("") }));
         if (!centroid) continue;
         const [x, y] = square.at(centroid);
-        group.append(make("text", { class: "arc-name", x, y: y - 10, "text-anchor": "middle" }, `${i + 1}`));
+        group.append(
+          make("text", { class: "arc-name", x, y: y - 10, "text-anchor": "middle" }, `${i + 1}`),
+        );
       }
     }
 
     function update() {
-      if (!robot) return;
       for (const [k, row] of rows.entries()) row.set((state.q[robot.free[k]] * 180) / Math.PI);
       if (!drawn) return;
       const found = margins(robot, state.q);
@@ -200,32 +248,16 @@
       const over = pairs.filter(({ gap }) => gap < -TOUCHING);
       const safe = isSafe(found);
       const near = tightest(robot, found);
-      const violated = new Set(found.filter((one) => one.used && one.value < 0).map((one) => one.name));
-      const points = robot.boundaries
-        .filter((wall) => violated.has(wall.name))
-        .flatMap((wall) => wall.points);
-      const lit = { violated, bold: violated, boundaries: violated, points: new Set(points) };
-      const shown = { q: state.q, show: { workspace: false, polygon: false, sample: false, names: false } };
-      placeArm(robot, drawn.plane, /** @type {State} */ (/** @type {unknown} */ (shown)), lit);
+      const violated = found.filter((one) => one.used && one.value < 0).map((one) => one.name);
+      moveArm(robot, drawn.plane, state.q, violated);
       const shapes = over.map(({ shared }) => pathText(shared.map(drawn.plane.at), true));
       drawn.overlap.setAttribute("d", shapes.join(""));
-      move(drawn.dot, drawn.joints.at(robot.free.map((j) => state.q[j])));
-      move(drawn.elbow, placeOf(second + 1));
+      moveTo(drawn.dot.group, drawn.joints.at(robot.free.map((j) => state.q[j])));
+      const elbow = framesOf(robot, state.q)[second + 1].place;
+      moveTo(drawn.elbow.group, drawn.plane.at(project(viewAxes(robot, state.q), elbow)));
       for (const { mark } of [drawn.dot, drawn.tool, drawn.elbow])
         mark.classList.toggle("violated", over.length > 0 || !safe);
       tell(safe, near, over, worst);
-    }
-
-    /** @type {(frame: number) => Point} */
-    function placeOf(frame) {
-      const { framesOf, project, viewAxes } = qboundEngine;
-      const model = /** @type {Robot} */ (robot);
-      return drawn.plane.at(project(viewAxes(model, state.q), framesOf(model, state.q)[frame].place));
-    }
-
-    /** @type {(handle: Handle, point: Point) => void} */
-    function move({ group }, [x, y]) {
-      group.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
     }
 
     /** @type {(safe: boolean, near: Margin | null, over: BodyPair[], worst: BodyPair) => void} */
@@ -233,7 +265,9 @@
       const names = (/** @type {BodyPair} */ { frames }) =>
         frames.map((frame) => (frame === 0 ? "base" : `link ${frame}`)).join(" and ");
       const length = (/** @type {number} */ value) => `${number(Math.abs(value), 2)} ${unit}`;
-      const margin = near ? `${near.name}, ${length(near.value)} ${near.value < 0 ? "too near" : "to spare"}` : "";
+      const margin = near
+        ? `${near.name}, ${length(near.value)} ${near.value < 0 ? "too near" : "to spare"}`
+        : "";
       const words = {
         points: [safe ? "safe" : "not safe", margin],
         bodies: [
@@ -255,14 +289,22 @@
     draggable(joints.svg, (pixel) => set(withPair(robot, state.q, drawn.joints.from(pixel))));
     draggable(plane.svg, (pixel, held) => {
       const isElbow = held === drawn.elbow.room;
-      const joint = isElbow ? first : second;
-      turnToward(joint, isElbow ? placeOf(second + 1) : placeOf(-1), pixel);
+      set(
+        turnedToward(robot, state.q, isElbow ? [first, second] : [second], drawn.plane.from(pixel)),
+      );
     });
 
     const start = robot.components[Number(options.region ?? 2) - 1]?.centroid;
     if (start) set(withPair(robot, state.q, start));
-    whenWidthChanges(joints.figure, draw);
+    qboundParts.whenWidthChanges(joints.figure, draw);
   }
 
-  qboundFigures.bodies = Object.assign(show, { outlines, area, gap, shared, bodyPairs });
+  qboundFigures.bodies = Object.assign(show, {
+    outlines,
+    area,
+    gap,
+    shared,
+    bodyPairs,
+    turnedToward,
+  });
 }

@@ -55,7 +55,8 @@
   /** @type {FigureKind} */
   function show(root) {
     const { clear, draggable, element, handle, layer, make, pathText, picture } = qboundEngine;
-    const { button, canvas, degrees, statusLine, tick, valueRow, whenWidthChanges } = qboundParts;
+    const { buttons, canvas, degrees, moveTo, statusLine, tick, valueRow, whenWidthChanges } =
+      qboundParts;
     const state = { a: 0, b: 0, c: 0, q: 0, quadrant: false, struck: false };
     const { figure, svg } = canvas("The unit circle, cut by the line a x + b y = c.");
     const status = statusLine();
@@ -70,7 +71,7 @@
 
     function opening() {
       const [a, b, c] = OPENS;
-      set({ a, b, c, q: Math.PI / 2 });
+      set({ a, b, c, q: 2.6 });
     }
 
     /* Values */
@@ -85,12 +86,10 @@
       ),
     };
     const touch = (/** @type {number} */ side) => set({ c: side * Math.hypot(state.a, state.b) });
-    const buttons = element(
-      "p",
-      { className: "row" },
-      button("As it opens", opening),
-      button("c = d", () => touch(1)),
-      button("c = −d", () => touch(-1)),
+    const row = buttons(
+      ["As it opens", opening],
+      ["c = d", () => touch(1)],
+      ["c = −d", () => touch(-1)],
     );
     const ticks = [
       tick("Read the arctangent of b/a as atan2(b, a)", false, (quadrant) => set({ quadrant })),
@@ -98,7 +97,7 @@
     ];
     const cells = [0, 1, 2].map(() => [0, 1, 2].map(() => element("td", { className: "number" })));
     const table = intervalTable(cells);
-    const side = element("div", {}, ...Object.values(rows).map(({ row }) => row), buttons, ...ticks);
+    const side = element("div", {}, ...Object.values(rows).map(({ row }) => row), row, ...ticks);
     root.append(
       element(
         "p",
@@ -114,7 +113,15 @@
     /* Pictures */
     function draw() {
       const margin = { left: 4, right: 4, top: 4, bottom: 4 };
-      const fitted = picture(svg, [[-1.8, 1.8], [-1.8, 1.8]], margin, true);
+      const fitted = picture(
+        svg,
+        [
+          [-1.8, 1.8],
+          [-1.8, 1.8],
+        ],
+        margin,
+        true,
+      );
       clear(fitted);
       const group = layer(fitted, "circle");
       /** @type {(name: string) => SVGPathElement} */
@@ -135,14 +142,24 @@
         roots: [0, 1].map(() => group.appendChild(make("circle", { class: "root", r: 5 }))),
       };
       parts.circle.setAttribute("d", pathText(circle.map(fitted.at), true));
-      const cross = [[[-1.8, 0], [1.8, 0]], [[0, -1.8], [0, 1.8]]];
+      const cross = [
+        [
+          [-1.8, 0],
+          [1.8, 0],
+        ],
+        [
+          [0, -1.8],
+          [0, 1.8],
+        ],
+      ];
       parts.axes.setAttribute("d", cross.map((ends) => pathText(ends.map(fitted.at))).join(""));
-      const marks = {
-        vector: handle(svg, make("circle", { class: "handle", r: 7 })),
-        line: handle(svg, make("rect", { class: "handle", x: -6, y: -6, width: 12, height: 12 })),
-        point: handle(svg, make("circle", { class: "handle dot", r: 8 })),
-      };
-      drawn = { ...fitted, ...parts, marks };
+      const vector = handle(svg, make("path", { class: "handle", d: "M-8 6L0 -9L8 6Z" }));
+      const cut = handle(
+        svg,
+        make("rect", { class: "handle", x: -6, y: -6, width: 12, height: 12 }),
+      );
+      const point = handle(svg, make("circle", { class: "handle dot", r: 8 }));
+      drawn = { ...fitted, ...parts, vector, cut, point };
       update();
     }
 
@@ -176,26 +193,30 @@
         place(drawn.names[i], drawn.at([0.78 * Math.cos(ends[i]), 0.78 * Math.sin(ends[i])]));
       }
       place(drawn.names[2], at(d / ARROW + 0.14, 0.1));
-      place(drawn.names[3], drawn.at([0, uy < 0 ? 1.68 : -1.72]));
+      const lean = 90 - (theta * 180) / Math.PI; // of the line, so that its name is not upside down
+      const [lineX, lineY] = at(height - (uy < 0 ? -0.06 : 0.12), uy < 0 ? -0.1 : 0.1);
+      place(drawn.names[3], [lineX, lineY]);
+      const turned = lean - 180 * Math.round(lean / 180);
+      drawn.names[3].setAttribute("transform", `rotate(${turned} ${lineX} ${lineY})`);
       const inside = a * Math.cos(q) + b * Math.sin(q) >= c;
-      const { vector, line, point } = drawn.marks;
-      move(vector.group, at(d / ARROW, 0));
-      move(line.group, at(height, 0));
-      move(point.group, drawn.at([Math.cos(q), Math.sin(q)]));
-      point.mark.classList.toggle("violated", !inside);
+      moveTo(drawn.vector.group, at(d / ARROW, 0));
+      drawn.vector.mark.setAttribute("transform", `rotate(${90 - (theta * 180) / Math.PI})`);
+      moveTo(drawn.cut.group, at(height, 0));
+      moveTo(drawn.point.group, drawn.at([Math.cos(q), Math.sin(q)]));
+      drawn.point.mark.classList.toggle("violated", !inside);
       rows.a.set(a);
       rows.b.set(b);
       rows.c.set(c);
       rows.q.set((Math.atan2(Math.sin(q), Math.cos(q)) * 180) / Math.PI);
       const own = empty ? null : all ? [-Math.PI, Math.PI] : ends;
       for (const [i, one] of [own, proof, interval].entries()) fill(cells[i], one);
-      status.say(`${rootsText(found, c)} ${printedText(found, state, interval)}`, !inside);
+      status.say(`${rootsText(found, c)} ${printedText(found, interval)}`, !inside);
     }
 
     /** @type {(row: HTMLElement[], interval: Pair | null) => void} */
     function fill(row, interval) {
       const texts = interval
-        ? [degrees(interval[0]), degrees(interval[1]), degrees(interval[1] - interval[0])]
+        ? [interval[0], interval[1], interval[1] - interval[0]].map((angle) => degrees(angle, 2))
         : ["–", "–", "–"];
       for (const [i, text] of texts.entries()) row[i].textContent = text;
     }
@@ -204,11 +225,11 @@
       const [x, y] = drawn.from(pixel);
       const { a, b } = state;
       const d = Math.hypot(a, b);
-      if (held === drawn.marks.vector.room) {
+      if (held === drawn.vector.room) {
         const cut = (/** @type {number} */ value) =>
           Math.round(100 * Math.min(MOST, Math.max(-MOST, value))) / 100;
         set({ a: cut(ARROW * x), b: cut(ARROW * y) });
-      } else if (held === drawn.marks.line.room) {
+      } else if (held === drawn.cut.room) {
         if (d === 0) return;
         const c = Math.round(100 * (a * x + b * y)) / 100;
         const near = Math.abs(Math.abs(c) - d) < 0.03 * d; // the tangent cannot be hit by hand
@@ -223,28 +244,32 @@
     /** @type {(found: TheoremTwo, c: number) => string} */
     function rootsText({ d, theta, alpha, count, empty }, c) {
       if (count === -1) return "a = b = c = 0: every angle is a root.";
-      if (d === 0) return c > 0 ? "a = b = 0 < c: no angle is allowed." : "a = b = 0 > c: every angle is allowed.";
+      if (d === 0)
+        return c > 0
+          ? "a = b = 0 < c: no angle is allowed."
+          : "a = b = 0 > c: every angle is allowed.";
       if (empty) return "c > d: no root, and no angle is allowed.";
       if (count === 0) return "c < −d: no root, and every angle is allowed.";
-      const low = degrees(theta - alpha);
+      const low = degrees(theta - alpha, 2);
       if (count === 1)
         return c > 0
-          ? `c = d: the line touches, with one double root, ${degrees(theta)}, the only angle allowed.`
-          : `c = −d: the line touches, with one double root, ${degrees(theta + Math.PI)}; every angle is allowed.`;
-      return `Two roots: ${low} and ${degrees(theta + alpha)}; allowed are the ${degrees(2 * alpha)} between them.`;
+          ? `c = d: the line touches, with one double root, ${degrees(theta, 2)}, the only angle allowed.`
+          : `c = −d: the line touches, with one double root, ${degrees(theta + Math.PI, 2)}; every angle is allowed.`;
+      return `Two roots: ${low} and ${degrees(theta + alpha, 2)}; allowed are the ${degrees(2 * alpha, 2)} between them.`;
     }
 
-    /** @type {(found: TheoremTwo, options: { a: number, quadrant: boolean }, interval: Pair | null) => string} */
-    function printedText({ d, theta, alpha, count }, { a, quadrant }, interval) {
+    /** @type {(found: TheoremTwo, interval: Pair | null) => string} */
+    function printedText({ theta, alpha, count }, interval) {
       if (count < 1) return "Eq. (31) has no value here.";
       if (!interval) return "For a = 0 the quotient b/a of eq. (31) does not exist.";
       const length = interval[1] - interval[0];
       const wrong = Math.abs(Math.sin((interval[1] - theta - alpha) / 2)) > 1e-9;
       if (length >= TURN - 1e-9) {
         const roots = wrong ? " Since a < 0, its ends are not even roots." : "";
-        return `Eq. (31) allows ${degrees(length)}, a full turn or more: it excludes no angle.${roots}`;
+        return `Eq. (31) allows ${degrees(length, 2)}, a full turn or more: it excludes no angle.${roots}`;
       }
-      if (wrong) return "Eq. (31) is now shorter than a turn, but since a < 0 it lies on the wrong side.";
+      if (wrong)
+        return "Eq. (31) is now shorter than a turn, but since a < 0 it lies on the wrong side.";
       return "Eq. (31) is now the arc itself.";
     }
   }
@@ -261,16 +286,18 @@
       element("th", { scope: "col", className: i ? "number" : "" }, text),
     );
     const body = names.map(([name, text], i) => {
-      const key = make("svg", { width: 22, height: 10, viewBox: "0 0 22 10", "aria-hidden": "true" });
+      const key = make("svg", {
+        width: 22,
+        height: 10,
+        viewBox: "0 0 22 10",
+        "aria-hidden": "true",
+      });
       key.append(make("path", { class: name, d: "M0 5H22" }));
       const title = element("th", { scope: "row" }, key, text);
       return element("tr", {}, title, ...cells[i]);
     });
     const table = element("table", { className: "intervals" });
-    table.append(
-      element("thead", {}, element("tr", {}, ...head)),
-      element("tbody", {}, ...body),
-    );
+    table.append(element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body));
     return table;
   }
 
@@ -278,11 +305,6 @@
   function place(shape, [x, y], prefix = "") {
     shape.setAttribute(`${prefix}x`, x.toFixed(2));
     shape.setAttribute(`${prefix}y`, y.toFixed(2));
-  }
-
-  /** @type {(group: SVGElement, point: Point) => void} */
-  function move(group, [x, y]) {
-    group.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
   }
 
   qboundFigures.circle = Object.assign(show, { theorem, printed, OPENS });

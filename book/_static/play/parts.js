@@ -1,7 +1,7 @@
 "use strict";
 /* What the figures that one moves in a chapter share: values to set, words that say what holds. */
 {
-  const { element, make, number, pathText } = qboundEngine;
+  const { addArm, element, layer, make, newPrefix, number, pathText, placeArm } = qboundEngine;
 
   /** A value with its name, a slider and a field.
    * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
@@ -48,8 +48,18 @@
     return made;
   }
 
+  /** Buttons side by side, with what they do.
+   * @type {(...all: [string, () => void][]) => HTMLParagraphElement} */
+  function buttons(...all) {
+    return element(
+      "p",
+      { className: "buttons" },
+      ...all.map(([text, press]) => button(text, press)),
+    );
+  }
+
   /** What holds now: seen at once, spoken when the hand has come to rest.
-   * @type {() => { seen: HTMLElement, spoken: HTMLElement, say: (text: string, bad: boolean) => void }} */
+   * @type {() => StatusLine} */
   function statusLine() {
     const seen = element("p", { className: "status" });
     const spoken = element("p", { className: "unseen", role: "status" });
@@ -72,8 +82,8 @@
    * @type {(label: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
   function canvas(label) {
     const svg = make("svg", { role: "img", "aria-label": label });
-    svg.id = `${qboundEngine.newPrefix()}picture`;
-    return { figure: element("figure", {}, svg), svg };
+    svg.id = `${newPrefix()}picture`;
+    return { figure: element("div", { className: "picture" }, svg), svg };
   }
 
   /** Call at once, and whenever the element has a new width.
@@ -94,9 +104,13 @@
     return `${number((angle * 180) / Math.PI, digits)}°`;
   }
 
+  /** Room around a picture of two joint angles. */
+  const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
+
   /** Axes of two joint values in degrees.
-   * @type {(drawn: Picture, group: SVGGElement, step: number) => void} */
-  function jointAxes(drawn, group, step) {
+   * @type {(drawn: Picture, step: number) => void} */
+  function jointAxes(drawn, step) {
+    const group = layer(drawn, "axes", false);
     const { left, top, right, bottom } = drawn.box;
     const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
     for (const k of [0, 1]) {
@@ -104,21 +118,72 @@
       for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
         const value = (tickAt * Math.PI) / 180;
         const [x, y] = drawn.at(k === 0 ? [value, low[1]] : [low[0], value]);
-        const line = k === 0 ? [[x, top], [x, bottom]] : [[left, y], [right, y]];
+        const line =
+          k === 0
+            ? [
+                [x, top],
+                [x, bottom],
+              ]
+            : [
+                [left, y],
+                [right, y],
+              ];
         const at =
-          k === 0 ? { x, y: bottom + 15, "text-anchor": "middle" } : { x: left - 6, y: y + 4, "text-anchor": "end" };
+          k === 0
+            ? { x, y: bottom + 15, "text-anchor": "middle" }
+            : { x: left - 6, y: y + 4, "text-anchor": "end" };
         group.append(
           make("path", { class: "grid", d: pathText(line) }),
           make("text", at, `${tickAt}°`.replace("-", "−")),
         );
       }
     }
-    const middle = (left + right) / 2;
     group.append(
-      make("text", { x: middle, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
-      make("text", { x: 12, y: (top + bottom) / 2, "text-anchor": "middle" }, "q₂"),
+      make("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
+      make("text", { x: left - 52, y: (top + bottom) / 2 + 4, "text-anchor": "middle" }, "q₂"),
     );
   }
 
-  qboundParts = { valueRow, tick, button, statusLine, canvas, whenWidthChanges, degrees, jointAxes };
+  /** The arm's parts in a picture of its plane, to be moved by `moveArm`.
+   * @type {(robot: Robot, drawn: Picture) => PlanePicture} */
+  function armParts(robot, drawn) {
+    const none = make("path", {});
+    const rest = { group: make("g", {}), mark: none, room: make("circle", {}), walls: [] };
+    return { ...drawn, ...addArm(robot, drawn), ...rest, path: none, ghost: none };
+  }
+
+  /** Show the arm in a pose; the boundaries `lit` stand out with their points.
+   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>) => void} */
+  function moveArm(robot, drawn, q, lit = []) {
+    const names = new Set(lit);
+    const walls = robot.boundaries.filter((wall) => names.has(wall.name));
+    const points = new Set(walls.flatMap((wall) => wall.points));
+    const shown = { q, show: { names: false } };
+    placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
+      violated: names,
+      bold: names,
+      boundaries: names,
+      points,
+    });
+  }
+
+  /** @type {(element: SVGElement, point: Point) => void} */
+  function moveTo(element, [x, y]) {
+    element.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+  }
+
+  window.qboundParts = {
+    valueRow,
+    tick,
+    buttons,
+    statusLine,
+    canvas,
+    whenWidthChanges,
+    degrees,
+    AROUND,
+    jointAxes,
+    armParts,
+    moveArm,
+    moveTo,
+  };
 }

@@ -17,7 +17,7 @@
 
   /** Least value of a form on a straight edge and where: at an end, or where the slope along the
       edge passes zero upward, found by bisection.
-   * @type {(matrix: Matrix, start: Pair, end: Pair) => Least2} */
+   * @type {(matrix: Matrix, start: Pair, end: Pair) => Lowest} */
   function leastOnEdge(matrix, start, end) {
     const { basis, evaluate } = qboundEngine;
     const along = start.map((value, k) => end[k] - value);
@@ -31,7 +31,8 @@
     const slope = (t) => {
       const [p, q] = at(t);
       return (
-        along[0] * evaluate(matrix, rise(p), here(q)) + along[1] * evaluate(matrix, here(p), rise(q))
+        along[0] * evaluate(matrix, rise(p), here(q)) +
+        along[1] * evaluate(matrix, here(p), rise(q))
       );
     };
     const places = [start, end];
@@ -51,24 +52,31 @@
   }
 
   /** Every edge of the polygon at a scale: the least height of the tool above its limit, and where.
-   * @type {(matrix: Matrix, polygon: VertexPolygon, factor: number) => Least2[]} */
+   * @type {(matrix: Matrix, polygon: VertexPolygon, factor: number) => Lowest[]} */
   function edges(matrix, { vertices, centroid }, factor) {
     const corners = qboundEngine.scaledPolygon(vertices, factor, centroid);
-    return corners.map((corner, i) => leastOnEdge(matrix, corner, corners[(i + 1) % corners.length]));
+    return corners.map((corner, i) =>
+      leastOnEdge(matrix, corner, corners[(i + 1) % corners.length]),
+    );
   }
 
   /* --- the figure ------------------------------------------------------------------------------- */
 
   /** @type {FigureKind} */
-  function show(root, options, { robot }) {
-    if (!robot?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
-    const { addArm, clear, element, layer, make, number, pathText, picture, placeArm } = qboundEngine;
-    const { button, canvas, jointAxes, statusLine, valueRow, whenWidthChanges } = qboundParts;
-    const { polygon } = robot;
+  function show(root, options, { robot: given }) {
+    if (!given?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
+    const { clear, element, layer, make, number, pathText, picture } = qboundEngine;
+    const { pointPlaces, project, scaledPolygon, viewAxes, withPair } = qboundEngine;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine, valueRow } =
+      qboundParts;
+    const robot = given;
+    const { polygon } = given;
     const { vertices, centroid, largest } = polygon;
     const unit = robot.length_unit;
     const floor = floorOf(robot);
-    const limit = robot.boundaries.find((wall) => wall.kind === "half-space" && wall.used);
+    const [limit] = robot.boundaries.flatMap((wall) =>
+      wall.kind === "half-space" && wall.used ? [wall.offset] : [],
+    );
     const state = { scale: Number(options.scale ?? 0.95) };
     const [joints, plane] = [
       canvas("The polygon in the square of both joint angles, scaled about its centroid."),
@@ -79,23 +87,33 @@
     let drawn;
 
     const row = valueRow(
-      { name: "Scale", spoken: "Scale of the polygon", low: LEAST, high: MOST, step: 0.001, digits: 4, unit: "" },
+      {
+        name: "Scale",
+        spoken: "Scale of the polygon",
+        low: LEAST,
+        high: MOST,
+        step: 0.001,
+        digits: 4,
+        unit: "",
+      },
       set,
     );
     const mark = element("span", {});
     mark.style.left = `${(100 * (largest - LEAST)) / (MOST - LEAST)}%`;
     root.append(
-      element("p", { className: "hint" }, "Move the scale: edges on which the tool goes below its limit light up."),
+      element(
+        "p",
+        { className: "hint" },
+        "Move the scale: edges on which the tool goes below its limit light up.",
+      ),
       status.seen,
       status.spoken,
       row.row,
-      element("div", { className: "mark", ariaHidden: "true" }, mark),
-      element(
-        "p",
-        { className: "row" },
-        button("1, the six points", () => set(1)),
-        button(`${number(largest, 6)}, the largest safe scale`, () => set(largest)),
-        button("0.95, as in Figure 6", () => set(0.95)),
+      element("div", { className: "safe-mark", ariaHidden: "true" }, mark),
+      buttons(
+        ["1, the six points", () => set(1)],
+        [`${number(largest, 6)}, the largest safe scale`, () => set(largest)],
+        ["0.95, as in Figure 6", () => set(0.95)],
       ),
       element("div", { className: "panels" }, joints.figure, plane.figure),
     );
@@ -117,9 +135,9 @@
         const values = vertices.map((vertex) => vertex[k]);
         return [Math.min(...values) - pad, Math.max(...values) + pad];
       });
-      const fitted = picture(joints.svg, ranges, { left: 48, right: 12, top: 10, bottom: 36 }, true);
+      const fitted = picture(joints.svg, ranges, AROUND, true);
       clear(fitted);
-      jointAxes(fitted, layer(fitted, "axes", false), 45);
+      jointAxes(fitted, 45);
       const group = layer(fitted, "polygons");
       const before = make("path", { class: "before", d: pathText(vertices.map(fitted.at), true) });
       const inside = make("path", { class: "home" });
@@ -128,41 +146,62 @@
       const [x, y] = fitted.at(centroid);
       group.append(make("path", { class: "centroid", d: `M${x - 6} ${y}h12M${x} ${y - 6}v12` }));
       const numbers = vertices.map((_, i) =>
-        group.appendChild(make("text", { class: "vertex-name", "text-anchor": "middle" }, `${i + 1}`)),
+        group.appendChild(
+          make("text", { class: "vertex-name", "text-anchor": "middle" }, `${i + 1}`),
+        ),
       );
       const dot = group.appendChild(make("circle", { class: "handle", r: 7 }));
       return { joints: fitted, inside, lines, numbers, dot };
     }
 
+    /** The part of the plane that the arm takes where the tool is lowest, at any scale.
+     * @type {() => number[][]} */
+    function armBox() {
+      const scales = Array.from({ length: 12 }, (_, i) => LEAST + (i / 11) * (MOST - LEAST));
+      const places = scales.flatMap((scale) => {
+        const found = edges(floor, polygon, scale);
+        const { q } = found.reduce((one, other) => (other.value < one.value ? other : one));
+        const pose = withPair(robot, robot.q, q);
+        const frames = qboundEngine.framesOf(robot, pose).map((frame) => frame.place);
+        const all = [...frames, ...pointPlaces(robot, pose)];
+        return all.map((place) => project(viewAxes(robot, pose), place));
+      });
+      return [0, 1].map((k) => {
+        const values = places.map((place) => place[k]);
+        return [Math.min(...values) - 4, Math.max(...values) + 4];
+      });
+    }
+
     function drawPlane() {
-      const reach = robot?.reach ?? 1;
-      const ranges = [
-        [-reach, reach],
-        [-0.06 * reach, 1.06 * reach],
-      ];
-      const fitted = picture(plane.svg, ranges, { left: 8, right: 8, top: 8, bottom: 8 }, true);
-      const whole = { ...fitted, box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height } };
+      const fitted = picture(plane.svg, armBox(), { left: 8, right: 8, top: 8, bottom: 8 }, true);
+      const whole = {
+        ...fitted,
+        box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
+      };
       clear(whole);
       const group = layer(whole, "floor");
-      const height = limit?.kind === "half-space" ? limit.offset : 0;
-      const [, y] = fitted.at([0, height]);
+      const [, y] = fitted.at([0, limit]);
       const below = `M0 ${y}H${whole.width}V${whole.height}H0Z`;
       group.append(
         make("path", { class: "beyond", d: below }),
         make("path", { class: "wall", d: `M0 ${y}H${whole.width}` }),
-        make("text", { class: "wall-name", x: 8, y: y + 15 }, `limit of the tool, ${number(height, 2)} ${unit}`),
+        make(
+          "text",
+          { class: "wall-name", x: 8, y: y + 15 },
+          `limit of the tool, ${number(limit, 2)} ${unit}`,
+        ),
       );
-      const arm = addArm(/** @type {Robot} */ (robot), whole);
-      const gap = layer(whole, "depth").appendChild(make("path", { class: "depth" }));
-      return { plane: /** @type {PlanePicture} */ ({ ...whole, ...arm, group: make("g", {}) }), gap };
+      const arm = armParts(robot, whole);
+      const depth = layer(whole, "depth").appendChild(make("path", { class: "depth" }));
+      return { plane: arm, depth };
     }
 
     function update() {
       row.set(state.scale);
-      if (!drawn || !robot) return;
+      if (!drawn) return;
       const { scale } = state;
       const found = edges(floor, polygon, scale);
-      const corners = qboundEngine.scaledPolygon(vertices, scale, centroid);
+      const corners = scaledPolygon(vertices, scale, centroid);
       const places = corners.map(drawn.joints.at);
       const next = (/** @type {number} */ i) => (i + 1) % corners.length;
       const values = found.map((one) => one.value);
@@ -184,20 +223,16 @@
       drawn.dot.setAttribute("cx", x.toFixed(2));
       drawn.dot.setAttribute("cy", y.toFixed(2));
       drawn.dot.classList.toggle("violated", value < -1e-9);
-      showArm(robot, q);
+      showArm(q);
       tell(values, worst);
     }
 
-    /** @type {(robot: Robot, q: Pair) => void} */
-    function showArm(robot, q) {
-      const pose = qboundEngine.withPair(robot, robot.q, q);
-      const lit = { violated: new Set(), bold: new Set(), boundaries: new Set(), points: new Set() };
-      const shown = { q: pose, show: { workspace: false, polygon: false, sample: false, names: false } };
-      placeArm(robot, drawn.plane, /** @type {State} */ (/** @type {unknown} */ (shown)), lit);
-      const tool = qboundEngine.pointPlaces(robot, pose)[robot.tool];
-      const [x, y] = drawn.plane.at(qboundEngine.project(qboundEngine.viewAxes(robot, pose), tool));
-      const height = limit?.kind === "half-space" ? limit.offset : 0;
-      drawn.gap.setAttribute("d", pathText([[x, y], [x, drawn.plane.at([0, height])[1]]]));
+    /** @type {(q: Pair) => void} */
+    function showArm(q) {
+      const pose = withPair(robot, robot.q, q);
+      moveArm(robot, drawn.plane, pose);
+      const tool = project(viewAxes(robot, pose), pointPlaces(robot, pose)[robot.tool]);
+      drawn.depth.setAttribute("d", pathText([tool, [tool[0], limit]].map(drawn.plane.at)));
     }
 
     /** @type {(values: number[], worst: number) => void} */
@@ -214,7 +249,7 @@
       status.say(`Scale ${number(state.scale, 3)}: ${text}`, leaving.length > 0);
     }
 
-    whenWidthChanges(joints.figure, draw);
+    qboundParts.whenWidthChanges(joints.figure, draw);
   }
 
   qboundFigures.scale = Object.assign(show, { edges, floorOf });

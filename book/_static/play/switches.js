@@ -82,7 +82,7 @@
     return { middle: Math.atan2(b, a), alpha, cuts: Math.abs(ratio) <= 1 };
   }
 
-  /** @type {(bound: { boundary: string, component: number, k: number }) => string} */
+  /** @type {(bound: Component2 & { k: number }) => string} */
   function nameOf({ boundary, component, k }) {
     return `${boundary.slice(1)},${component},${k}`;
   }
@@ -179,11 +179,21 @@
       .join("");
   }
 
+  /** @type {(name: string, text: string) => HTMLLIElement[]} */
+  function lineKey(name, text) {
+    const { element, make } = qboundEngine;
+    const key = make("svg", { width: 22, height: 10, viewBox: "0 0 22 10", "aria-hidden": "true" });
+    key.append(make("path", { class: `bound ${name}`, d: "M0 5H22" }));
+    return [element("li", {}, key, text)];
+  }
+
   /** @type {FigureKind} */
-  function show(root, _options, { robot }) {
-    if (!robot) throw new Error("Figure 4 needs a robot.");
+  function show(root, _options, { robot: given }) {
+    if (!given) throw new Error("Figure 4 needs a robot.");
+    const robot = given;
     const { clear, element, layer, make, pathText, picture } = qboundEngine;
-    const { button, canvas, degrees, jointAxes, statusLine, whenWidthChanges } = qboundParts;
+    const { AROUND, buttons, canvas, degrees, jointAxes, statusLine, whenWidthChanges } =
+      qboundParts;
     const walls = curvedWalls(robot).map((wall) => ({ ...wall, rows: curveRows(wall.matrix) }));
     const names = [
       ...straightBounds(robot, "atan2").map(nameOf),
@@ -232,12 +242,17 @@
           "div",
           {},
           readings,
+          buttons(
+            ["As it opens", () => turnOn(names.filter((name) => !NOT_IN_USE.includes(name)))],
+            ["The six that bind", () => turnOn(CAPTION)],
+            ["None", () => turnOn([])],
+          ),
           element(
-            "p",
-            { className: "row" },
-            button("As it opens", () => turnOn(names.filter((name) => !NOT_IN_USE.includes(name)))),
-            button("The six that bind", () => turnOn(CAPTION)),
-            button("None", () => turnOn([])),
+            "ul",
+            { className: "legend" },
+            ...lineKey("binds", "ends the region, or a curve that cuts it"),
+            ...lineKey("on", "on, but another bound cuts before it"),
+            ...lineKey("off", "switched off"),
           ),
         ),
       ),
@@ -287,15 +302,13 @@
     }
 
     function redraw() {
-      const margin = { left: 48, right: 12, top: 10, bottom: 36 };
-      drawn = picture(svg, SQUARE, margin, true);
+      drawn = picture(svg, SQUARE, AROUND, true);
       clear(drawn);
-      const axes = layer(drawn, "axes", false);
-      const all = straightBounds(robot ?? never(), state.reading);
+      const all = straightBounds(robot, state.reading);
       const straight = all.filter((bound) => state.on.has(nameOf(bound)));
       const sides = box(straight, SQUARE);
       fillRegion(sides);
-      jointAxes(drawn, axes, 90);
+      jointAxes(drawn, 90);
       drawLines(all, sides);
       const [x, y] = drawn.at(home);
       const cross = { class: "cross", d: `M${x - 7} ${y}h14M${x} ${y - 7}v14` };
@@ -327,7 +340,12 @@
           inside = inside.appendChild(make("g", { "clip-path": `url(#${id})` }));
         }
       }
-      const corners = [[left, bottom], [right, bottom], [right, top], [left, top]];
+      const corners = [
+        [left, bottom],
+        [right, bottom],
+        [right, top],
+        [left, top],
+      ];
       inside.append(make("path", { class: "home", d: pathText(corners.map(drawn.at), true) }));
     }
 
@@ -364,7 +382,7 @@
           const at =
             joint === 0
               ? { x: x + (side ? 5 : -5), y: top + 16, "text-anchor": side ? "start" : "end" }
-              : { x: right - 4, y: side ? y - 6 : y + 14, "text-anchor": "end" };
+              : { x: right - 4, y: y - 6, "text-anchor": "end" };
           at.x = Math.min(right - 2, Math.max(left + 2, at.x));
           at.y = Math.min(bottom - 4, at.y);
           svg.append(make("text", { class: "arc-name", ...at }, written(by)));
@@ -378,26 +396,27 @@
         const kept = [1, 2].filter((k) => state.on.has(nameOf({ ...wall, k })));
         return kept.length > 0 ? [{ wall, kept }] : [];
       });
-      const violated = violatedBounds(straight, on.map(({ wall }) => wall), home).filter((name) =>
-        state.on.has(name),
-      );
+      const violated = violatedBounds(
+        straight,
+        on.map(({ wall }) => wall),
+        home,
+      ).filter((name) => state.on.has(name));
       const ranges = sides.map((pair, joint) => {
-        const [low, high] = pair.map(({ value, by }) => `${degrees(value, 2)}${by ? "" : " (edge of the square)"}`);
+        const [low, high] = pair.map(
+          ({ value, by }) => `${degrees(value, 2)}${by ? "" : " (edge of the square)"}`,
+        );
         return `q${"₁₂"[joint]} from ${low} to ${high}`;
       });
       const empty = sides.some(([low, high]) => low.value > high.value);
-      const left = empty ? "Nothing is left." : `Left: ${ranges.join(", ")}${on.length > 0 ? ", less what the curves cut off" : ""}.`;
+      const left = empty
+        ? "Nothing is left."
+        : `Left: ${ranges.join(", ")}${on.length > 0 ? ", less what the curves cut off" : ""}.`;
       const cut = violated.map(written).join(", ");
       const where = violated.length > 0 ? `Home is cut off by ${cut}.` : "Home is inside.";
       status.say(`${where} ${left}`, violated.length > 0 || empty);
     }
 
     whenWidthChanges(figure, redraw);
-  }
-
-  /** @type {() => never} */
-  function never() {
-    throw new Error("unreachable");
   }
 
   qboundFigures.switches = Object.assign(show, {
