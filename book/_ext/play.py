@@ -25,6 +25,7 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.util.typing import ExtensionMetadata
 
+from explorer_pages import paths_of
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import engine_script, engine_style
@@ -80,12 +81,13 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str | None]]:
     kind, key = hook.get("figure", ""), robot_key(hook)
     if kind != "explorer" and not (SCRIPTS / f"{kind}.js").is_file():
         raise ExtensionError(f"no figure kind {kind!r}: there is no book/_static/play/{kind}.js")
-    region = region_of(hook.get("robot", "minervabot-v2"), hook.get("rule", "clearance"))
-    yield f"play/robots/{key}.js", table_entry("qboundRobots", key, explorer_data(region))
+    name = hook.get("robot", "minervabot-v2")
+    region = region_of(name, hook.get("rule", "clearance"))
+    told = explorer_data(region, paths_of(name))
+    yield f"play/robots/{key}.js", table_entry("qboundRobots", key, told)
     if (HERE / "play_data" / f"{kind}.py").is_file():
         data = importlib.import_module(f"play_data.{kind}").data(region)
-        name = f"{kind}-{key}"
-        yield f"play/data/{name}.js", table_entry("qboundData", name, data)
+        yield f"play/data/{kind}-{key}.js", table_entry("qboundData", f"{kind}-{key}", data)
     if kind != "explorer":
         yield f"play/{kind}.js", None
 

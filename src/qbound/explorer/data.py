@@ -30,11 +30,10 @@ Data = dict[str, Any]
 
 SAMPLES: Final = 1500
 SEED: Final = 11
-SIX_POINT_WALKS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
-"""Right-hand and left-hand path of six points, as the book reads Figures 8 and 9."""
+Walks = Sequence[Sequence[int]]
 
 
-def explorer_data(region: Region) -> Data:
+def explorer_data(region: Region, walks: Walks = ()) -> Data:
     """Return what the explorer's page is told, as JSON (schema qbound/explorer/1).
 
     Parameters
@@ -42,6 +41,9 @@ def explorer_data(region: Region) -> Data:
     region : Region
         Of a robot. By the paper's rule a pair of points is respected where the points do not
         coincide; the windows of Table 6 come as limits.
+    walks : sequence of sequences of int, optional
+        Orders in which a traversal visits the vertices, by index, besides once round; one that
+        names a vertex that is not there is left out.
 
     Returns
     -------
@@ -81,7 +83,7 @@ def explorer_data(region: Region) -> Data:
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],
-        "polygon": _polygon(region),
+        "polygon": _polygon(region, walks),
         "workspace": workspace_content(region)["workspace"],
         "sample": _sample(views),
     }
@@ -211,7 +213,7 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     return {"boundary": arc.boundary, "branch": arc.branch, "points": points}
 
 
-def _polygon(region: Region) -> Data | None:
+def _polygon(region: Region, walks: Walks) -> Data | None:
     """Return the vertex polygon of the home component, its largest safe scale, its walks."""
     home = region.home
     if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
@@ -228,13 +230,13 @@ def _polygon(region: Region) -> Data | None:
         "centroid": centre.tolist(),
         "largest": largest.scale,
         "binds": None if largest.form < 0 else region.problem.names[largest.form],
-        "walks": _walks(len(vertices)),
+        "walks": _walks(len(vertices), walks),
     }
 
 
-def _walks(m: int) -> list[list[int]]:
-    """List orders in which to visit m vertices: once round (Figure 7), and Figures 8 and 9."""
-    return [[*range(m), 0], *map(list, SIX_POINT_WALKS if m == 6 else ())]
+def _walks(m: int, others: Walks) -> list[list[int]]:
+    """List orders in which to visit m vertices: once round (Figure 7), and those asked for."""
+    return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]
 
 
 def _sample(views: Sequence[Data]) -> list[list[float]]:

@@ -17,7 +17,7 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
-from qbound.explorer.data import Data, explorer_data
+from qbound.explorer.data import Data, Walks, explorer_data
 from qbound.files import write_whole
 from qbound.printable import printable
 from qbound.region import Region
@@ -37,19 +37,42 @@ SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")
 
 @dataclass(frozen=True)
 class Explorer:
-    """The explorer of one region: shown in a notebook, or saved as a page of its own."""
+    """The explorer of one region: shown in a notebook, or saved as a page of its own.
+
+    Attributes
+    ----------
+    name : str
+        Of the robot.
+    html : str
+        The page.
+    picture : str or None
+        The region as SVG, which stands in a notebook where no script runs.
+    """
 
     name: str
     html: str = field(repr=False)
+    picture: str | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         """Say whose page it is, and how large."""
         return f"Explorer({self.name!r}, {len(self.html.encode()) // 1000} kB of HTML)"
 
     def _repr_html_(self) -> str:
-        """Show the page in a frame that shares nothing with the notebook around it."""
-        title = f"Explorer of {printable(self.name)}: its joint space beside the arm"
-        return Template(_web("frame.html")).substitute(page=escape(self.html), title=escape(title))
+        """Show the page in a frame that shares nothing with the notebook around it.
+
+        Before the frame stands the picture, which goes when the frame comes. Where a notebook is
+        not trusted, or a site shows it without running anything, there is no frame: the picture
+        stays.
+        """
+        name = escape(printable(self.name))
+        frame = Template(_web("frame.html")).substitute(
+            page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
+        )
+        if self.picture is None:
+            return frame
+        content = b64encode(self.picture.encode()).decode()
+        picture = Template(_web("picture.html")).substitute(content=content, name=name)
+        return picture + frame
 
     def save(self, path: str | Path) -> None:
         """Write the page to a file, whole; any browser opens it without a network."""
@@ -79,10 +102,10 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region.robot.name, explorer_page(region))
+    return Explorer(region.robot.name, explorer_page(region), region._repr_svg_())
 
 
-def explorer_page(region: Region) -> str:
+def explorer_page(region: Region, walks: Walks = ()) -> str:
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
     It opens from the file system, asks nothing of a network (a content policy forbids it), and runs
@@ -92,6 +115,8 @@ def explorer_page(region: Region) -> str:
     ----------
     region : Region
         Of a robot.
+    walks : sequence of sequences of int, optional
+        Orders in which a traversal visits the vertices, by index, besides once round.
 
     Returns
     -------
@@ -103,7 +128,7 @@ def explorer_page(region: Region) -> str:
     ValueError
         If the region is of forms, not of a robot.
     """
-    data = _shown(explorer_data(region))
+    data = _shown(explorer_data(region, walks))
     name = escape(printable(region.robot.name))
     style, script = engine_style() + _web("page.css"), engine_script() + _web("start.js")
     return Template(_web("explorer.html")).substitute(

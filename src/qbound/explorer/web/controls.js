@@ -237,7 +237,14 @@ function listen() {
     refresh();
   });
   byId("copy").addEventListener("click", copyLink);
-  new ResizeObserver(redraw).observe(jointSvg.parentElement ?? root);
+  const stage = parts.get("stage") ?? root;
+  let width = stage.clientWidth;
+  const resized = () => {
+    if (stage.clientWidth === width) return;
+    width = stage.clientWidth;
+    redraw();
+  };
+  new ResizeObserver(resized).observe(stage);
 }
 
 function copyLink() {

@@ -42,12 +42,14 @@ function showLegends() {
       polygon && slice.exact,
     ),
     ...legend("dots", "random, safe", sample),
+    ...legend("dots away", "random, safe, cut off", sample && cutOff),
     ...legend("crosses", "random, not safe", sample),
   );
   byId("plane-legend").replaceChildren(
     ...legend("workspace", "one safe posture", workspace && slice.regular),
     ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
-    ...legend("beyond", "behind a wall", walls),
+    ...legend("ground", "ground", plane.svg.querySelector(".ground") !== null),
+    ...legend("beyond", "the side of a wall that is not safe", walls),
   );
 }
 
@@ -63,12 +65,12 @@ function refresh() {
     mark.classList.toggle("violated", lit.violated.size > 0);
   placeArm(robot, plane, state, lit);
   plane.room.toggleAttribute("hidden", !slice.regular);
+  showTask(isSafe(found));
   drawPaths();
   showStatus(found);
   showMargins(found, lit);
   showPose();
   showScale();
-  showTask();
   remember();
   root.dispatchEvent(new CustomEvent("qbound-pose"));
 }
@@ -80,9 +82,20 @@ function litParts(found) {
   const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
   const bold = new Set([...violated, ...(state.hover ? [state.hover] : [])]);
   const near = used.filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach);
+  const closest = tightest(robot, found)?.name ?? null;
   const boundaries = new Set([...bold, ...near.map((one) => one.name)]);
-  const walls = robot.boundaries.filter((wall) => bold.has(wall.name));
-  return { violated, bold, boundaries, points: new Set(walls.flatMap((wall) => wall.points)) };
+  if (closest !== null) boundaries.add(closest);
+  /** @type {(wanted: (name: string) => boolean) => Set<number>} */
+  const pointsOf = (wanted) =>
+    new Set(robot.boundaries.flatMap(({ name, points }) => (wanted(name) ? points : [])));
+  return {
+    violated,
+    bold,
+    closest,
+    boundaries,
+    points: pointsOf((name) => bold.has(name)),
+    named: pointsOf((name) => bold.has(name) || name === closest),
+  };
 }
 
 function drawPaths() {

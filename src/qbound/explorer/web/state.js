@@ -62,7 +62,6 @@ const state = {
   path: null,
   mirror: null,
   side: 0,
-  crossed: false,
   hover: options.lit ?? null,
 };
 
@@ -122,7 +121,8 @@ function largestDeterminant(map) {
 function judgeSample() {
   return robot.sample.map((pair) => {
     const q = withPair(robot, state.q, pair);
-    return { pair, safe: isSafe(margins(robot, q)), tool: toolAt(slice.map, pair) };
+    const home = slice.home === null || pieceAt(slice.cells, pair) === slice.home;
+    return { pair, safe: isSafe(margins(robot, q)), home, tool: toolAt(slice.map, pair) };
   });
 }
 
