@@ -206,8 +206,9 @@ def test_gaps_and_overlaps_of_bodies_are_those_of_shapely(name):
     robot, kind = case("bodies", name, "clearance")
     q = RNG.uniform(-np.pi, np.pi, (400, 2))
     found = kind("all.map((q) => kind.bodyPairs(robot, q))", all=q.tolist())
-    areas = kind("all.map((q) => kind.bodyPairs(robot, q).map((p) => kind.area(p.shared)))",
-                 all=q.tolist())
+    areas = kind(
+        "all.map((q) => kind.bodyPairs(robot, q).map((p) => kind.area(p.shared)))", all=q.tolist()
+    )
     theirs = bodies.gaps(robot, q)
     for i, pose in enumerate(q):
         placed = {b.frame: shapely.Polygon(bodies.outline(robot, b, pose)) for b in robot.bodies}

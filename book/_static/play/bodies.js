@@ -169,7 +169,13 @@
         "tbody",
         {},
         .../** @type {const} */ (["points", "bodies"]).map((who) =>
-          element("tr", {}, element("th", { scope: "row" }, who), verdicts[who], notes[who]),
+          element(
+            "tr",
+            {},
+            element("th", { scope: "row" }, who === "points" ? "Points" : "Bodies"),
+            verdicts[who],
+            notes[who],
+          ),
         ),
       ),
     );
@@ -260,21 +266,28 @@
       tell(safe, near, over, worst);
     }
 
+    /** @type {(name: string) => string} */
+    function withPoints(name) {
+      const indices = robot.boundaries.find((wall) => wall.name === name)?.points ?? [];
+      const words = indices.map((i) => robot.points[i].name).join(" and ");
+      return words ? `${name} (point${indices.length > 1 ? "s" : ""} ${words})` : name;
+    }
+
     /** @type {(safe: boolean, near: Margin | null, over: BodyPair[], worst: BodyPair) => void} */
     function tell(safe, near, over, worst) {
       const names = (/** @type {BodyPair} */ { frames }) =>
         frames.map((frame) => (frame === 0 ? "base" : `link ${frame}`)).join(" and ");
       const length = (/** @type {number} */ value) => `${number(Math.abs(value), 2)} ${unit}`;
       const margin = near
-        ? `${near.name}, ${length(near.value)} ${near.value < 0 ? "too near" : "to spare"}`
+        ? `${withPoints(near.name)}: ${length(near.value)} ${near.value < 0 ? "too near" : "to spare"}`
         : "";
       const words = {
         points: [safe ? "safe" : "not safe", margin],
         bodies: [
           over.length > 0 ? "overlap" : "apart",
           over.length > 0
-            ? `${names(worst)}, ${length(worst.gap)} deep`
-            : `${names(worst)}, ${length(worst.gap)} apart`,
+            ? `${names(worst)}: ${length(worst.gap)} deep`
+            : `${names(worst)}: ${length(worst.gap)} between them`,
         ],
       };
       for (const who of /** @type {const} */ (["points", "bodies"])) {

@@ -63,16 +63,18 @@
   function statusLine() {
     const seen = element("p", { className: "status" });
     const spoken = element("p", { className: "unseen", role: "status" });
-    let timer = 0;
+    let [timer, told] = [0, ""];
     return {
       seen,
       spoken,
       say(text, bad) {
         seen.textContent = text;
         seen.classList.toggle("violated", bad);
+        told ||= text; // what a figure opens with is read where it stands
         window.clearTimeout(timer);
         timer = window.setTimeout(() => {
-          if (spoken.textContent !== text) spoken.textContent = text;
+          if (text !== told) spoken.textContent = text;
+          told = text;
         }, 700);
       },
     };

@@ -104,7 +104,7 @@
       element(
         "p",
         { className: "hint" },
-        "Move the scale: edges on which the tool goes below its limit light up.",
+        "Move the scale. Edges on which the tool goes below its limit light up.",
       ),
       status.seen,
       status.spoken,
@@ -116,6 +116,12 @@
         ["0.95, as in Figure 6", () => set(0.95)],
       ),
       element("div", { className: "panels" }, joints.figure, plane.figure),
+      element(
+        "p",
+        { className: "hint" },
+        "The dot marks the pose in which the arm is drawn: of all on the polygon's edges the one with " +
+          "the tool lowest, found where its height along an edge has slope zero, to the last digit.",
+      ),
     );
 
     /** @type {(scale: number) => void} */
@@ -187,8 +193,8 @@
         make("path", { class: "wall", d: `M0 ${y}H${whole.width}` }),
         make(
           "text",
-          { class: "wall-name", x: 8, y: y + 15 },
-          `limit of the tool, ${number(limit, 2)} ${unit}`,
+          { class: "wall-name", x: whole.width - 8, y: whole.height - 10, "text-anchor": "end" },
+          `the tool must stay above ${number(limit, 2)} ${unit}`,
         ),
       );
       const arm = armParts(robot, whole);

@@ -7,7 +7,7 @@
     [-Math.PI, Math.PI],
   ];
   const NOT_IN_USE = ["5,1,1", "5,1,2", "6,1,1", "6,1,2"];
-  const CAPTION = ["1,3,1", "2,1,2", "3,3,1", "4,1,2", "7,3,1", "7,3,2"];
+  const SIX = ["1,3,1", "2,1,2", "3,3,1", "4,1,2", "7,3,1", "7,3,2"];
 
   /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
 
@@ -214,10 +214,10 @@
     const readings = element(
       "fieldset",
       { className: "readings" },
-      element("legend", {}, "Read the printed arctangent of b/a as"),
+      element("legend", {}, "The printed arctangent is"),
       ...readingChoice("arctan", "arctan(b/a)"),
       ...readingChoice("atan2", "atan2(b, a)"),
-      ...readingChoice("plus", "arctan(b/a), plus π where a < 0"),
+      ...readingChoice("plus", "arctan(b/a) + π where a < 0"),
     );
     const boxes = new Map(names.map((name) => [name, boundBox(name)]));
     const groups = robot.boundaries.map(({ name }) =>
@@ -243,25 +243,35 @@
           {},
           readings,
           buttons(
-            ["As it opens", () => turnOn(names.filter((name) => !NOT_IN_USE.includes(name)))],
-            ["The six that bind", () => turnOn(CAPTION)],
+            ["As it opens", open],
+            ["Only the six of the region", () => turnOn(SIX)],
             ["None", () => turnOn([])],
           ),
           element(
             "ul",
             { className: "legend" },
-            ...lineKey("binds", "ends the region, or a curve that cuts it"),
-            ...lineKey("on", "on, but another bound cuts before it"),
-            ...lineKey("off", "switched off"),
+            ...lineKey("binds", "on, and cuts the region or the square"),
+            ...lineKey("on", "on, but another cuts before it"),
+            ...lineKey("off", "off"),
           ),
         ),
       ),
       element("div", { className: "switches" }, ...groups),
+      element(
+        "p",
+        { className: "hint" },
+        "The bounds of B₅ to B₇ are the two roots of Theorem 2 along q₂, in every turn. For β₅,₁,₂ and " +
+          "β₆,₁,₂ Table 6 prints the upper root once more, a turn lower, which would exclude nothing.",
+      ),
     );
 
     /** @type {(reading: Reading, text: string) => (Node | string)[]} */
     function readingChoice(reading, text) {
-      const choice = element("input", { type: "radio", name: `${svg.id}-reading` });
+      const choice = element("input", {
+        type: "radio",
+        name: `${svg.id}-reading`,
+        value: reading,
+      });
       choice.checked = reading === "atan2";
       choice.addEventListener("change", () => {
         state.reading = reading;
@@ -294,6 +304,13 @@
       return { box, label, value };
     }
 
+    function open() {
+      state.reading = "atan2";
+      for (const choice of readings.querySelectorAll("input"))
+        choice.checked = choice.value === state.reading;
+      turnOn(names.filter((name) => !NOT_IN_USE.includes(name)));
+    }
+
     /** @type {(on: string[]) => void} */
     function turnOn(on) {
       state.on = new Set(on);
@@ -320,6 +337,12 @@
       }
       tell(straight, sides);
     }
+
+    for (const wall of walls)
+      for (const k of [1, 2]) {
+        const value = boxes.get(nameOf({ ...wall, k }))?.value;
+        if (value) value.textContent = k === 1 ? "q₂ ≤ upper root" : "q₂ ≥ lower root";
+      }
 
     /** What every bound that is on leaves, cut out exactly: the box, and in it one clip a bound.
      * @type {(sides: BoxSide[][]) => void} */
@@ -410,7 +433,7 @@
       const empty = sides.some(([low, high]) => low.value > high.value);
       const left = empty
         ? "Nothing is left."
-        : `Left: ${ranges.join(", ")}${on.length > 0 ? ", less what the curves cut off" : ""}.`;
+        : `What is left: ${ranges.join(", ")}${on.length > 0 ? ", less what the curves cut off" : ""}.`;
       const cut = violated.map(written).join(", ");
       const where = violated.length > 0 ? `Home is cut off by ${cut}.` : "Home is inside.";
       status.say(`${where} ${left}`, violated.length > 0 || empty);
