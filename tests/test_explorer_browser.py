@@ -14,7 +14,7 @@ from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
-from support.browser import in_every_family, refuse_remote, settle, wait_until
+from support.browser import drag, in_every_family, refuse_remote, settle, wait_until
 
 WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
 WIDTHS = {"wide screen": 1280, "phone": 390}
@@ -90,14 +90,6 @@ def on_screen(page, picture, values):
     x, y = page.evaluate("([name, v]) => explorer[name].at(v)", [picture, values])
     box = page.locator(f"#{picture}").bounding_box()
     return box["x"] + x, box["y"] + y
-
-
-def drag(page, start, end, steps=12):
-    page.mouse.move(*start)
-    page.mouse.down()
-    page.mouse.move(*end, steps=steps)
-    page.mouse.up()
-    settle(page)
 
 
 @pytest.mark.parametrize("name", ROBOTS)

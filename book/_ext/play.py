@@ -1,10 +1,13 @@
 """Figures that one can move: pages with a hook get the engine, their kinds' scripts, their data.
 
-A hook is ``<div class="play" data-figure="KIND" data-replaces="ID"></div>`` in a page's Markdown: nothing
-where no script runs. With one, ``_static/play/play.js`` draws a figure of that kind there; an image
-in the figure ``ID`` gives place to it, and comes back on paper. ``data-robot`` and ``data-rule``
-name a packaged robot and a rule of `qbound.find_region`; whatever else begins with ``data-`` is an
-option of the kind.
+A hook is a paragraph of its own in a page's Markdown, and nothing where no script runs::
+
+    <div class="play" data-figure="KIND" data-replaces="ID"></div>
+
+``_static/play/play.js`` draws a figure of that kind there. The image in the figure ``ID``, if the
+hook names one, gives place to it and comes back on paper. ``data-robot`` and ``data-rule`` name a
+packaged robot and a rule of `qbound.find_region`; whatever else begins with ``data-`` is an option
+of the kind.
 
 What a kind is told beyond its robot is the JSON that ``play_data/KIND.py`` returns, if there is
 such a module: ``def data(region: Region) -> object``.
@@ -21,11 +24,11 @@ from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from explorer_pages import paths_of
 from sphinx.application import Sphinx
-from sphinx.errors import ExtensionError
+from sphinx.util import logging
 from sphinx.util.typing import ExtensionMetadata
 
-from explorer_pages import paths_of
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import engine_script, engine_style
@@ -36,6 +39,8 @@ SCRIPTS = HERE.parent / "_static" / "play"
 
 WITHOUT_PARTS = {"explorer"}
 """Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
+
+LOGGER = logging.getLogger(__name__)
 
 Options = dict[str, str]
 
@@ -80,7 +85,8 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str | None]]:
     """Yield the scripts that a hook needs: address below ``_static``, text if it is made here."""
     kind, key = hook.get("figure", ""), robot_key(hook)
     if kind != "explorer" and not (SCRIPTS / f"{kind}.js").is_file():
-        raise ExtensionError(f"no figure kind {kind!r}: there is no book/_static/play/{kind}.js")
+        LOGGER.warning("no figure kind %r: there is no book/_static/play/%s.js", kind, kind)
+        return
     name = hook.get("robot", "minervabot-v2")
     region = region_of(name, hook.get("rule", "clearance"))
     told = explorer_data(region, paths_of(name))

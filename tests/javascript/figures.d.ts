@@ -33,7 +33,7 @@ interface Parts {
   valueRow(value: ValueRow, change: (value: number) => void): SetRow;
   tick(text: string, checked: boolean, change: (checked: boolean) => void): HTMLLabelElement;
   buttons(...all: [string, () => void][]): HTMLParagraphElement;
-  statusLine(): StatusLine;
+  statusLine(longest: string): StatusLine;
   canvas(label: string): { figure: HTMLElement; svg: SVGSVGElement };
   whenWidthChanges(watched: HTMLElement, draw: () => void): void;
   degrees(angle: number, digits?: number): string;

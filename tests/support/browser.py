@@ -132,6 +132,15 @@ def settle(page: Any) -> None:
     page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
 
 
+def drag(page: Any, start: tuple[float, float], end: tuple[float, float], steps: int = 12) -> None:
+    """Drag the mouse from a place to another, in steps, and wait until that is laid out."""
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=steps)
+    page.mouse.up()
+    settle(page)
+
+
 def wait_until(page: Any, expression: str, then: str = "") -> None:
     """Wait for a frame in which the page says so, and do something in that frame.
 

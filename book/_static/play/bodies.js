@@ -138,7 +138,7 @@
       canvas("The regions that the points leave, and the present pose in them."),
       canvas("The arm and the outlines of its bodies."),
     ];
-    const status = statusLine();
+    const status = statusLine("");
     /** @type {BodyPictures} */
     let drawn;
 

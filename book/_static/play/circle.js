@@ -8,6 +8,9 @@
   const ARROW = 16; // length of the vector (a, b) that is drawn as long as the radius
   const MOST = 20; // largest size of a coefficient that the sliders reach
 
+  const LONGEST =
+    "Two roots: −100.00° and 100.00°; allowed are the 200.00° between them. Eq. (31) allows 600.00°, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
+
   /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
 
   /** The arc where a cos q + b sin q >= c, as qbound.circle_arc and qbound.circle_roots find it.
@@ -59,7 +62,7 @@
       qboundParts;
     const state = { a: 0, b: 0, c: 0, q: 0, quadrant: false, struck: false };
     const { figure, svg } = canvas("The unit circle, cut by the line a x + b y = c.");
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     /** @type {CirclePicture} */
     let drawn;
 

@@ -12,11 +12,14 @@
     slide.ariaLabel = spoken;
     field.ariaLabel = `${spoken}, as a number`;
     let shown = "";
+    let typed = false; // what a reader types stays as it is typed
     for (const input of [slide, field]) {
       input.addEventListener("input", () => {
         const value = Number(input.value);
-        if (input.value !== "" && Number.isFinite(value))
-          change(Math.min(high, Math.max(low, value)));
+        if (input.value === "" || !Number.isFinite(value)) return;
+        typed = input === field;
+        change(Math.min(high, Math.max(low, value)));
+        typed = false;
       });
     }
     field.addEventListener("blur", () => {
@@ -28,7 +31,7 @@
       set(value) {
         shown = String(Number(value.toFixed(digits)));
         slide.value = String(value);
-        if (document.activeElement !== field) field.value = shown;
+        if (!typed) field.value = shown;
       },
     };
   }
@@ -58,23 +61,25 @@
     );
   }
 
-  /** What holds now: seen at once, spoken when the hand has come to rest.
-   * @type {() => StatusLine} */
-  function statusLine() {
-    const seen = element("p", { className: "status" });
+  /** What holds now: seen at once, spoken when the hand has come to rest. It is as high as the
+      longest text makes it, so that nothing moves under a hand that drags.
+   * @type {(longest: string) => StatusLine} */
+  function statusLine(longest) {
+    const [text, room] = [element("span", {}), element("span", { ariaHidden: "true" }, longest)];
+    const seen = element("p", { className: "status" }, text, room);
     const spoken = element("p", { className: "unseen", role: "status" });
     let [timer, told] = [0, ""];
     return {
       seen,
       spoken,
-      say(text, bad) {
-        seen.textContent = text;
+      say(words, bad) {
+        text.textContent = words;
         seen.classList.toggle("violated", bad);
-        told ||= text; // what a figure opens with is read where it stands
+        told ||= words; // what a figure opens with is read where it stands
         window.clearTimeout(timer);
         timer = window.setTimeout(() => {
-          if (text !== told) spoken.textContent = text;
-          told = text;
+          if (words !== told) spoken.textContent = words;
+          told = words;
         }, 700);
       },
     };
@@ -164,8 +169,10 @@
     placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
       violated: names,
       bold: names,
+      closest: null,
       boundaries: names,
       points,
+      named: points,
     });
   }
 

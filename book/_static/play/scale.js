@@ -2,8 +2,12 @@
 /* Figure 6: the polygon scaled about its centroid, and how far the tool goes below its limit. */
 {
   const PIECES = 24; // of an edge: on none of them does the slope of a floor change its sign twice
+  const TOUCHING = 1e-9; // of a length: an edge that goes less deep touches the limit
   const LEAST = 0.5; // scales of the slider
   const MOST = 1.05;
+
+  const LONGEST =
+    "Scale 1.000: the tool goes up to 10.000 cm below its limit, on the edge 3–4. Edges not safe: 1–2, 2–3, 3–4, 4–5, 5–6, 6–1.";
 
   /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
 
@@ -82,7 +86,7 @@
       canvas("The polygon in the square of both joint angles, scaled about its centroid."),
       canvas("The arm at the lowest point that the tool reaches on the polygon's edges."),
     ];
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     /** @type {ScalePictures} */
     let drawn;
 
@@ -216,7 +220,7 @@
       drawn.inside.setAttribute("d", pathText(places, true));
       for (const [i, line] of drawn.lines.entries()) {
         line.setAttribute("d", pathText([places[i], places[next(i)]]));
-        line.classList.toggle("lit", values[i] < -1e-9);
+        line.classList.toggle("lit", values[i] < -TOUCHING);
       }
       const [gx, gy] = drawn.joints.at(centroid);
       for (const [i, text] of drawn.numbers.entries()) {
@@ -228,7 +232,7 @@
       const [x, y] = drawn.joints.at(q);
       drawn.dot.setAttribute("cx", x.toFixed(2));
       drawn.dot.setAttribute("cy", y.toFixed(2));
-      drawn.dot.classList.toggle("violated", value < -1e-9);
+      drawn.dot.classList.toggle("violated", value < -TOUCHING);
       showArm(q);
       tell(values, worst);
     }
@@ -243,15 +247,15 @@
 
     /** @type {(values: number[], worst: number) => void} */
     function tell(values, worst) {
-      const depth = -values[worst];
-      const edge = (/** @type {number} */ i) => `from ${i + 1} to ${((i + 1) % values.length) + 1}`;
-      const leaving = values.flatMap((value, i) => (value < -1e-9 ? [edge(i)] : []));
-      const many = leaving.length > 1 ? "edges" : "edge";
+      const edge = (/** @type {number} */ i) => `${i + 1}–${((i + 1) % values.length) + 1}`;
+      const leaving = values.flatMap((value, i) => (value < -TOUCHING ? [edge(i)] : []));
+      const size = `${number(Math.abs(values[worst]), 3)} ${unit}`;
+      const many = leaving.length > 1 ? "Edges" : "Edge";
       const text =
         leaving.length > 0
-          ? `the tool goes up to ${number(depth, 3)} ${unit} below its limit, on the edge ${edge(worst)}. ` +
-            `Not safe: ${many} ${leaving.join(" and ")}.`
-          : `safe. The tool stays ${number(Math.abs(depth), 3)} ${unit} above its limit where it is lowest, on the edge ${edge(worst)}.`;
+          ? `the tool goes up to ${size} below its limit, on the edge ${edge(worst)}. ` +
+            `${many} not safe: ${leaving.join(", ")}.`
+          : `safe. The tool stays ${size} above its limit where it is lowest, on the edge ${edge(worst)}.`;
       status.say(`Scale ${number(state.scale, 3)}: ${text}`, leaving.length > 0);
     }
 

@@ -6,8 +6,10 @@
     [-Math.PI, Math.PI],
     [-Math.PI, Math.PI],
   ];
-  const NOT_IN_USE = ["5,1,1", "5,1,2", "6,1,1", "6,1,2"];
   const SIX = ["1,3,1", "2,1,2", "3,3,1", "4,1,2", "7,3,1", "7,3,2"];
+
+  const LONGEST =
+    "Home is cut off by β₁,₁,₁, β₂,₁,₁, β₃,₃,₂. What is left: q₁ from −180.00° (edge of the square) to 180.00° (edge of the square), q₂ from −180.00° (edge of the square) to 180.00° (edge of the square), less what the curves cut off.";
 
   /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
 
@@ -199,14 +201,17 @@
       ...straightBounds(robot, "atan2").map(nameOf),
       ...walls.flatMap((wall) => [1, 2].map((k) => nameOf({ ...wall, k }))),
     ];
+    /** @type {(name: string) => boolean} */
+    const isUsed = (name) =>
+      robot.boundaries.some((wall) => wall.used && wall.name === `B${name.split(",")[0]}`);
     const state = {
       reading: /** @type {Reading} */ ("atan2"),
-      on: new Set(names.filter((name) => !NOT_IN_USE.includes(name))),
+      on: new Set(names.filter(isUsed)),
       hover: "",
     };
     const home = robot.free.map((j) => robot.q[j]);
     const { figure, svg } = canvas("The square of both joint angles with the bounds of Table 6.");
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     /** @type {Picture} */
     let drawn;
 
@@ -231,7 +236,11 @@
       ),
     );
     root.append(
-      element("p", { className: "hint" }, "Switch bounds on and off, and choose a reading."),
+      element(
+        "p",
+        { className: "hint" },
+        "Switch bounds on and off, and choose a reading. Shaded is exactly what they leave.",
+      ),
       status.seen,
       status.spoken,
       element(
@@ -308,7 +317,7 @@
       state.reading = "atan2";
       for (const choice of readings.querySelectorAll("input"))
         choice.checked = choice.value === state.reading;
-      turnOn(names.filter((name) => !NOT_IN_USE.includes(name)));
+      turnOn(names.filter(isUsed));
     }
 
     /** @type {(on: string[]) => void} */
@@ -448,5 +457,6 @@
     violatedBounds,
     box,
     curveRows,
+    SIX,
   });
 }

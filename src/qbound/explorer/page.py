@@ -68,11 +68,11 @@ class Explorer:
         frame = Template(_web("frame.html")).substitute(
             page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
         )
-        if self.picture is None:
-            return frame
-        content = b64encode(self.picture.encode()).decode()
-        picture = Template(_web("picture.html")).substitute(content=content, name=name)
-        return picture + frame
+        picture = ""
+        if self.picture is not None:
+            content = b64encode(self.picture.encode()).decode()
+            picture = Template(_web("picture.html")).substitute(content=content, name=name)
+        return f"<div>\n{picture}{frame}</div>"
 
     def save(self, path: str | Path) -> None:
         """Write the page to a file, whole; any browser opens it without a network."""

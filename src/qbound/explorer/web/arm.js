@@ -285,6 +285,7 @@ function placePoint(robot, drawn, state, lit, i, [x, y]) {
   mark.classList.toggle("named", lit.named.has(i));
   name.classList.toggle("lit", lit.points.has(i));
   name.toggleAttribute("hidden", !state.show.names && !lit.named.has(i));
+  if (name.hasAttribute("hidden")) return;
   const left = i % 2 === 0; // two points of a pair in contact lie at one place
   name.setAttribute("text-anchor", left ? "end" : "start");
   placeAt(name, [x + (left ? -7 : 7), y + (left ? 13 : -6)]);

@@ -18,13 +18,14 @@ function hashOf() {
   return `#${pairs.join("&")}`;
 }
 
+/** Write the view into the address and the links, once the arm rests. */
 function remember() {
   if (!options.page) return;
-  const link = window.location.href.split("#")[0] + hashOf();
-  inputOf("link").value = link;
-  partOf("full-page", HTMLAnchorElement).href = link;
   window.clearTimeout(timers.remember);
   timers.remember = window.setTimeout(() => {
+    const link = window.location.href.split("#")[0] + hashOf();
+    inputOf("link").value = link;
+    partOf("full-page", HTMLAnchorElement).href = link;
     if (window.location.href !== link) window.history.replaceState(null, "", link);
   }, 250);
 }

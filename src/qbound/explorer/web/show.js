@@ -117,23 +117,24 @@ function showStatus(found) {
   const [verdict, reason] = statusText(found);
   byId("status").replaceChildren(element("strong", {}, verdict), reason);
   byId("status").classList.toggle("violated", !isSafe(found));
-  byId("posture").textContent = postureText();
-  partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
-  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
-  say(`${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`);
+  if (shows("pose")) {
+    byId("posture").textContent = postureText();
+    partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+  }
+  window.clearTimeout(timers.say);
+  timers.say = window.setTimeout(() => say(verdict, reason), 600);
 }
 
 /** Tell a screen reader, once the arm rests.
- * @type {(text: string) => void} */
-function say(text) {
-  window.clearTimeout(timers.say);
-  timers.say = window.setTimeout(() => {
-    byId("live").textContent = text;
-  }, 600);
+ * @type {(verdict: string, reason: string) => void} */
+function say(verdict, reason) {
+  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
+  byId("live").textContent = `${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`;
 }
 
 /** @type {(found: Margin[], lit: Lit) => void} */
 function showMargins(found, lit) {
+  if (!shows("margins")) return;
   const { rows } = partOf("margins", HTMLTableSectionElement);
   for (const [i, { name, value, unit }] of found.entries()) {
     rows[i].cells[2].textContent = valueText(value, unit);
@@ -142,6 +143,7 @@ function showMargins(found, lit) {
 }
 
 function showPose() {
+  if (!shows("pose")) return;
   for (const [j, { kind }] of robot.joints.entries()) {
     const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
     const value = String(Number((state.q[j] / unit).toFixed(digits)));
@@ -153,7 +155,7 @@ function showPose() {
 }
 
 function showScale() {
-  if (!robot.polygon) return;
+  if (!robot.polygon || !shows("scaling")) return;
   byId("scaling").hidden = !slice.exact;
   inputOf("scale").value = String(state.scale);
   byId("scale-value").textContent = number(state.scale, 4);
