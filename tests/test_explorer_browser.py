@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -197,7 +199,8 @@ def test_typing_a_value_moves_the_arm_and_the_screen_reader_hears_it(open_explor
     assert_allclose(degrees(page), [80, 0], atol=1e-9)
     assert "Not safe" in page.inner_text("#status")
     wait_until(page, "document.getElementById('live').textContent.includes('q1 80.0°')")
-    assert "B7 is violated by" in page.inner_text("#live")
+    assert "oint 3 is" in page.inner_text("#live")
+    assert "beyond B7" in page.inner_text("#live")
 
 
 def test_the_violated_boundary_is_lit_in_table_and_pictures(open_explorer):
@@ -284,8 +287,8 @@ def test_random_poses_are_shown_and_hidden(open_explorer):
     assert page.locator("#joints .sample").count() == 0
     page.check("#show-sample")
     marks = page.locator("#joints .sample .dots, #plane .sample .dots")
-    assert marks.count() == 2
-    drawn = page.evaluate("explorer.state.sample.filter((one) => one.safe).length")
+    assert marks.count() == 4
+    drawn = page.evaluate("explorer.state.sample.filter((one) => one.safe && one.home).length")
     assert marks.first.get_attribute("d").count("M") == drawn > 100
     page.uncheck("#show-sample")
     assert page.locator("#joints .sample").count() == 0
@@ -458,12 +461,97 @@ def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):
     assert page.evaluate("window.hit") is None
 
 
+def test_a_notebook_that_is_not_trusted_shows_the_picture(open_explorer, files, tmp_path):
+    output = explore(find_region(load_robot("pp-portal")))._repr_html_()
+    left = re.sub(r"<iframe.*</iframe>", "", output, flags=re.DOTALL)  # what a sanitizer leaves
+    files["untrusted"] = tmp_path / "untrusted.html"
+    files["untrusted"].write_text(f"<!doctype html>{left}", encoding="utf-8")
+    page = open_explorer("untrusted")
+    assert page.locator("iframe").count() == 0
+    assert page.evaluate("document.querySelector('img').naturalWidth") > 200
+
+
+def test_the_closest_boundary_is_named_and_shown(open_explorer):
+    page = open_explorer()
+    assert page.inner_text("#status") == (
+        "Safe. Closest: points 10 and 11 (B3) are 7.83 cm farther apart than they must be."
+    )
+    assert page.locator("#plane .point-name:not([hidden])").all_text_contents() == ["10", "11"]
+    assert page.locator("#plane .gap.closest:not([hidden])").count() == 1
+    page.fill("#value-0", "70")
+    assert "point 3 is" in page.inner_text("#status")
+    gap = page.locator("#plane .gap.closest:not([hidden])")
+    ends = [float(gap.get_attribute(name)) for name in ("x1", "x2", "y1", "y2")]
+    assert ends[0] == pytest.approx(ends[1])  # straight down to the wall
+    assert ends[2] < ends[3]
+
+
+def test_the_ground_is_drawn_and_nothing_is_tinted_as_behind_a_wall(open_explorer):
+    page = open_explorer()
+    ground, base = (
+        page.locator(part).first.evaluate(
+            "(e) => { const b = e.getBBox(); return [b.y, b.height]; }"
+        )
+        for part in ("#plane .ground", "#plane .body.fixed")
+    )
+    assert ground[0] == pytest.approx(sum(base), abs=0.5)
+    styles = page.locator("#plane .beyond").evaluate_all(
+        "(all) => all.map((e) => getComputedStyle(e).fill)"
+    )
+    assert styles == ["none"]
+
+
+def test_the_task_looks_at_the_side_where_the_arm_is_now(open_explorer):
+    page = open_explorer()
+    page.fill("#value-1", "-100")
+    assert "other side" in page.inner_text("#task-text")
+    page.fill("#value-1", "0")
+    assert "Bring the arm" in page.inner_text("#task-text")  # back again: nothing is remembered
+    page.fill("#value-0", "85")
+    assert "not safe" in page.inner_text("#task-text")
+
+
+def test_random_poses_in_regions_that_are_cut_off_are_grey(open_explorer):
+    page = open_explorer()
+    page.check("#show-sample")
+    counts = page.locator("#joints .sample path").evaluate_all(
+        "(all) => all.map((e) => [e.getAttribute('class'), e.getAttribute('d').match(/M/g).length])"
+    )
+    assert dict(counts).keys() == {"dots", "dots away", "crosses"}
+    assert all(count > 20 for _, count in counts)
+    colours = page.locator("#joints .sample .dots").evaluate_all(
+        "(all) => all.map((e) => getComputedStyle(e).stroke)"
+    )
+    assert len(set(colours)) == 2
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_axes_of_two_turns_are_labelled_apart(open_explorer, files, tmp_path, width):
+    robot = load_robot("minervabot-v2")
+    joints = tuple(replace(joint, limits=(-math.tau, math.tau)) for joint in robot.joints)
+    files["turns"] = tmp_path / "turns.html"
+    page = explorer_page(find_region(replace(robot, joints=joints)))
+    files["turns"].write_text(page, encoding="utf-8")
+    page = open_explorer("turns", viewport={"width": WIDTHS[width], "height": 850})
+    assert "−360" in page.locator("#joints .axes").text_content()
+    for family in in_every_family(page):
+        assert covered(page, "#joints .axes text") == [], family
+        assert beyond(page) == [], family
+
+
+def test_a_phone_reads_no_words_of_a_mouse_or_a_keyboard(phone):
+    words = phone.inner_text("body").lower()
+    assert re.findall(r"\b(left|right|arrow keys?)\b", words) == []
+
+
 def test_in_a_notebook_all_controls_work_and_no_link_is_offered(open_explorer, files, tmp_path):
     robot = load_robot("minervabot-v2")
     files["notebook"] = tmp_path / "notebook.html"
     output = explore(find_region(robot))._repr_html_()
-    files["notebook"].write_text(f"<!doctype html><p>{output}</p>", encoding="utf-8")
-    page = open_explorer("notebook").frame_locator("iframe")
+    files["notebook"].write_text(f"<!doctype html>{output}", encoding="utf-8")
+    whole = open_explorer("notebook")
+    wait_until(whole, "document.querySelector('img') === null")  # the frame has come in its place
+    page = whole.frame_locator("iframe")
     page.locator("#value-0").fill("80")
     assert "Not safe" in page.locator("#status").inner_text()
     page.locator("#play").click()

@@ -325,11 +325,11 @@ function gapEnds(wall, places) {
 function placeGap(line, wall, [a, b], lit) {
   const near = lit.boundaries.has(wall.name);
   line.toggleAttribute("hidden", !near);
-  if (!near) return;
   line.classList.toggle("closest", lit.closest === wall.name);
+  line.classList.toggle("lit", lit.violated.has(wall.name));
+  if (!near) return;
   for (const [key, value] of Object.entries({ x1: a[0], y1: a[1], x2: b[0], y2: b[1] }))
     line.setAttribute(key, String(value));
-  line.classList.toggle("lit", lit.violated.has(wall.name));
 }
 
 /** The arm without bodies at another pose: a line from base to tool.

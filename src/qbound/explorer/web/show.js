@@ -115,7 +115,7 @@ function drawPaths() {
 /** @type {(found: Margin[]) => void} */
 function showStatus(found) {
   const [verdict, reason] = statusText(found);
-  byId("status").replaceChildren(element("strong", {}, verdict), reason);
+  byId("status").replaceChildren(element("strong", {}, verdict), ` ${reason}`);
   byId("status").classList.toggle("violated", !isSafe(found));
   if (shows("pose")) {
     byId("posture").textContent = postureText();
