@@ -1,4 +1,4 @@
-"""Figures 7 to 11, the regions and the front page's arm, in a browser: what hands, keys, words do."""
+"""Figures 7 to 11, the regions and the front page's arm, in a browser: hands, keys, words."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ KEEP = (
 )
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>A figure</title>
 <meta name="viewport" content="width=device-width">
-<style>:root {{ color-scheme: {theme} }} body {{ background: light-dark(#fff, #12181b); margin: 8px }}
+<style>:root {{ color-scheme: {theme} }}
+body {{ background: light-dark(#fff, #12181b); margin: 8px }}
 {style}</style><main><h1>A figure</h1>
 <div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
 <script>{script}</script>"""
@@ -128,8 +129,9 @@ def drag(page, start, end, steps=12):
 @pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
 def test_a_figure_is_accessible_and_fits(open_figure, name, theme, width):
     page = open_figure(name, theme, width)
-    lost = page.evaluate("""() => [...document.querySelectorAll(".play *")].filter((e) =>
-      e.getBoundingClientRect().right > innerWidth + 1 && !e.closest("svg")).map((e) => e.outerHTML)""")
+    lost = page.evaluate("""() => [...document.querySelectorAll(".play *")]
+      .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest("svg"))
+      .map((e) => e.outerHTML)""")
     assert lost == []
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert [v["id"] for v in Axe().run(page).response["violations"]] == []

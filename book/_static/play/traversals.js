@@ -205,7 +205,7 @@
     const { alongPath, element, mount } = qboundEngine;
     const arm = mount(root, robot, { controls: [], show: { polygon: false }, q: robot.q });
     const [seconds, places] = [1.5 * secondsOf(robot, way.stops), stopsAt(robot, way.stops)];
-    const button = element("button", { type: "button" });
+    const button = element("button", { type: "button", textContent: "Play" });
     let put = arm.pair(); // where the path put the arm
     const walk = player(
       (done) => {
@@ -234,7 +234,6 @@
     drawWays(arm, [way], false);
     walk.go(0);
     if (walk.calm()) return;
-    button.textContent = "Play";
     new IntersectionObserver(([{ isIntersecting }]) => {
       if (isIntersecting && asked && !walk.runs()) walk.play(seconds, places, true);
       else if (!isIntersecting) walk.stop();
