@@ -40,7 +40,7 @@ class Kind:
         self.context.eval(ENGINE)
         for name in ("parts", kind):
             self.context.eval((PLAY / f"{name}.js").read_text("utf-8"))
-        data = json.dumps(explorer_data(region))
+        data = json.dumps(explorer_data(region, closed_form.PATHS))
         self.context.eval(f"const robot = {data}, kind = qboundFigures.{kind};")
 
     def __call__(self, expression, **values):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import engine_script, engine_style
@@ -42,7 +43,7 @@ def page_of(name, theme):
     """Write the page that the book's extension makes of one hook, in one file."""
     kind, rule, options = HOOKS[name]
     key = "minervabot-v2" + ("" if rule == "clearance" else f"-{rule}")
-    robots = {key: explorer_data(REGIONS[rule])}
+    robots = {key: explorer_data(REGIONS[rule], closed_form.PATHS)}
     files = [PLAY / f"{file}.js" for file in ("parts", kind, "play")]
     script = engine_script() + f"window.qboundRobots = {json.dumps(robots)};\n{KEEP}\n"
     script += "".join(file.read_text(encoding="utf-8") for file in files)

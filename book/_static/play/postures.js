@@ -38,6 +38,9 @@
 
   /* --- the figure ------------------------------------------------------------------------------- */
 
+  const LONGEST =
+    "The posture in full colour is not safe, B1 and B3 and B7 forbid it (q1 −100.0°, q2 −100.0°). The pale one is safe, in region 2, cut off from home (q1 −100.0°, q2 −100.0°).";
+
   /** @type {(robot: Robot, judged: Judged) => string} */
   function verdictText(robot, { safe, region, violated }) {
     if (!safe)
@@ -75,7 +78,7 @@
       show: { workspace: false, polygon: false, sample: true },
       q: withPair(robot, robot.q, firstMixed(robot)),
     });
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     /** @type {PlanePicture | null} */
     let second = null;
     /** @type {SVGCircleElement | null} */

@@ -102,6 +102,9 @@
 
   /* --- the figure -------------------------------------------------------------------------------- */
 
+  const LONGEST =
+    "B4 stops the arm: points 12 and 13 would be nearer than 0.25 cm. Behind it, 10.0° further on, lies region 5: as safe as region 1, and no way leads there.";
+
   /** @type {(robot: Robot, wall: Wall) => string} */
   function reasonOf(robot, wall) {
     const names = wall.points.map((i) => robot.points[i].name);
@@ -136,7 +139,7 @@
       show: { workspace: false, polygon: false },
       q: robot.q,
     });
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     let [at, mine] = [arm.pair(), false];
     /** @type {SVGPathElement[]} */
     let patches = [];

@@ -182,6 +182,9 @@
 
   /* --- the figure -------------------------------------------------------------------------------- */
 
+  const LONGEST =
+    "From point 1 to its mirror image. The tool is 55.15 cm from joint 1. Both links lie in one line: det J = 0.";
+
   /** @type {Record<string, string>} */
   const NAMES = {
     all: "All six points",
@@ -254,7 +257,7 @@
     /** @type {Trace[]} */
     let traces = [];
 
-    const status = statusLine();
+    const status = statusLine(LONGEST);
     const along = element("input", {
       type: "range",
       min: "0",
