@@ -45,6 +45,7 @@ extensions = [
     "book_pages",
     "ledger_links",
     "explorer_pages",
+    "front_page",
     "play",
     "recorded_numbers",
     "result_pages",

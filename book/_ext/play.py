@@ -37,8 +37,8 @@ from qbound.files import write_whole
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"
 
-WITH_PARTS = {"circle", "switches", "scale", "bodies"}
-"""Kinds that draw on ``parts.js``: rows of values, a line that says what holds."""
+WITHOUT_PARTS = {"explorer"}
+"""Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
 
 LOGGER = logging.getLogger(__name__)
 
@@ -116,7 +116,7 @@ def add_scripts(
     if not found:
         return
     files: dict[str, str | None] = {"play/engine.js": engine_script()}
-    if any(hook.get("figure") in WITH_PARTS for hook in found):
+    if any(hook.get("figure") not in WITHOUT_PARTS for hook in found):
         files["play/parts.js"] = None
     files |= {address: text for hook in found for address, text in scripts_of(hook)}
     files |= {"play/play.js": None}

@@ -24,7 +24,12 @@ interface StatusLine {
   say: (text: string, bad: boolean) => void;
 }
 
+type Press = [string, () => void]; // a button's words, and what it does
+
 interface Parts {
+  isSame(one: Pair, other: Pair): boolean;
+  turns(robot: Robot): Pair[];
+  regionAt(robot: Robot, pair: Pair): number | null;
   valueRow(value: ValueRow, change: (value: number) => void): SetRow;
   tick(text: string, checked: boolean, change: (checked: boolean) => void): HTMLLabelElement;
   buttons(...all: [string, () => void][]): HTMLParagraphElement;
@@ -147,4 +152,54 @@ interface BodyPictures {
   overlap: SVGPathElement;
   elbow: Handle;
   tool: Handle;
+}
+
+/* --- traversals ------------------------------------------------------------------------------- */
+
+interface Way {
+  name: string; // "all", "right", "left", "mirror"
+  labels: string[]; // of the stops
+  stops: Pair[];
+}
+
+interface Trace {
+  way: Way;
+  joints: SVGPathElement; // as far as it is done
+  plane: SVGPathElement;
+}
+
+interface Player {
+  calm: () => boolean;
+  runs: () => boolean;
+  stop: () => void;
+  go: (done: number) => void;
+  play: (seconds: number, places: number[], loops?: boolean) => void;
+}
+
+/* --- regions ---------------------------------------------------------------------------------- */
+
+interface Rule {
+  wall: Wall;
+  form: Matrix;
+}
+
+interface Slid {
+  at: Pair; // how far the arm came
+  by: Wall[]; // what barred the straight way; empty where nothing did
+  goal: Pair;
+}
+
+interface Behind {
+  pair: Pair; // the first safe pose beyond
+  width: number; // of what lies between, rad
+  region: number | null;
+}
+
+/* --- postures --------------------------------------------------------------------------------- */
+
+interface Judged {
+  pair: Pair;
+  safe: boolean;
+  region: number | null;
+  violated: string[];
 }

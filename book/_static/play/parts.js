@@ -181,7 +181,47 @@
     element.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
   }
 
+  /** Whole turns of the joints that wrap: none, and one back or on.
+   * @type {(robot: Robot) => Pair[]} */
+  function turns(robot) {
+    const [first, second] = robot.views.map(({ wraps }) =>
+      wraps ? [0, -2 * Math.PI, 2 * Math.PI] : [0],
+    );
+    return first.flatMap((a) => second.map((b) => [a, b]));
+  }
+
+  /** The number of the region in which a pose lies, from 1 as the library counts; null for none.
+   * @type {(robot: Robot, pair: Pair) => number | null} */
+  function regionAt(robot, pair) {
+    const all = turns(robot).map((by) => pair.map((value, k) => value + by[k]));
+    const i = robot.components.findIndex(({ loops }) => all.some((at) => isInside(loops, at)));
+    return i < 0 ? null : i + 1;
+  }
+
+  /** Whether a ray from a point crosses the outlines an odd number of times.
+   * @type {(loops: Component["loops"], point: Pair) => boolean} */
+  function isInside(loops, [x, y]) {
+    let odd = false;
+    for (const loop of loops) {
+      const points = loop.flatMap((arc) => arc.points);
+      for (const [i, [bx, by]] of points.entries()) {
+        const [ax, ay] = points.at(i - 1) ?? [bx, by];
+        if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) odd = !odd;
+      }
+    }
+    return odd;
+  }
+
+  /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
+   * @type {(one: Pair, other: Pair) => boolean} */
+  function isSame(one, other) {
+    return one.every((value, k) => Math.abs(value - other[k]) < 1e-9);
+  }
+
   window.qboundParts = {
+    isSame,
+    turns,
+    regionAt,
     valueRow,
     tick,
     buttons,
