@@ -25,7 +25,7 @@ from qbound.files import write_whole
 FILE = "_static/cards.js"
 
 # A longer table is shown by its first rows: a card is a glance.
-MOST_ROWS = 6
+MOST_ROWS = 4
 
 # Pages of the library's reference name functions, not things of the paper.
 NO_CARDS = ("_static/", "generated/", "api.html", "search.html")

@@ -45,10 +45,10 @@ class GlossaryLinks(SphinxPostTransform):
             return
         forms = sorted((form for word in homes for form in forms_of(word)), key=len, reverse=True)
         pattern = re.compile(rf"\b(?:{'|'.join(forms)})\b", re.IGNORECASE)
-        seen: dict[nodes.Node | None, set[str]] = {}
+        seen: dict[nodes.section, set[str]] = {}
         for text in list(self.document.findall(nodes.Text)):
             if is_prose(text):
-                section = parent_of(text, (nodes.section,))
+                section = section_of(text)
                 known = seen.setdefault(section, self.linked_in(section))
                 if parts := list(self.split(text, pattern, homes, known)):
                     text.parent.replace(text, parts)
@@ -61,12 +61,11 @@ class GlossaryLinks(SphinxPostTransform):
                 if word not in AMBIGUOUS:
                     yield word, home
 
-    def linked_in(self, section: nodes.Element | None) -> set[str]:
-        """Return the anchors of the words that an author has linked in a section."""
-        links = section.findall(nodes.reference) if section is not None else ()
-        return {
-            link["refuri"].partition("#")[2] for link in links if "#term-" in link.get("refuri", "")
-        }
+    def linked_in(self, section: nodes.section) -> set[str]:
+        """Return the anchors of the words that an author has linked in a section's own text."""
+        links = [link for link in section.findall(nodes.reference) if section_of(link) is section]
+        anchors = (link.get("refuri", "").partition("#")[2] for link in links)
+        return {anchor for anchor in anchors if anchor.startswith("term-")}
 
     def split(
         self,
@@ -113,6 +112,10 @@ def is_prose(text: nodes.Text) -> bool:
     paragraph = parent_of(text, (nodes.paragraph,))
     ours = paragraph is None or "in-ledger" in paragraph["classes"]
     return not ours and parent_of(text, NO_PROSE) is None
+
+
+def section_of(node: nodes.Node) -> Any:
+    return parent_of(node, (nodes.section,))
 
 
 def parent_of(node: nodes.Node | None, kinds: tuple[type[nodes.Element], ...]) -> Any:

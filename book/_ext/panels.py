@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from html import escape
 from itertools import pairwise
 from pathlib import Path
@@ -26,26 +26,21 @@ WIDEST_PANEL = 6.5 * 72
 
 SVG = "{http://www.w3.org/2000/svg}"
 PLACED = re.compile(r"translate\(([-\d.]+) ([-\d.]+)\)( rotate\(-90\))?(?: scale\(([\d.]+))?")
-NUMBER = re.compile(r"[ML] ([-\d.]+) [-\d.]+")
+POINT = re.compile(r"[ML] ([-\d.]+) ([-\d.]+)")
 
-# Beyond the last glyph's start its own width, in the units of a font of 100; about the widest.
-GLYPH = 80
-AROUND = 1  # points kept free beside a panel's letters
+# Of a glyph, in the units of a font of 100: about the widest, and how far one hangs below its line.
+WIDE, DEEP = 80, 25
+AROUND = 1  # points kept free between a panel's letters and the next panel's
+ABOVE = 8  # points kept free above and below a panel, for marks that stand out of its frame
 
 
-class Span(NamedTuple):
-    """What a part of a drawing takes from left to right, in points."""
+class Box(NamedTuple):
+    """What a part of a drawing takes, in points, from the top left corner."""
 
     left: float
+    top: float
     right: float
-
-
-class View(NamedTuple):
-    """A part of a picture: its left edge, width and height, in points."""
-
-    left: float
-    width: float
-    height: float
+    bottom: float
 
 
 class panel_image(nodes.image):
@@ -65,7 +60,7 @@ class WidePictures(SphinxPostTransform):
                 shown.replace_self(boxes(image, shown, panels_of(file)))
 
 
-def boxes(image: nodes.image, shown: nodes.Element, views: list[View]) -> list[nodes.Element]:
+def boxes(image: nodes.image, shown: nodes.Element, views: list[Box]) -> list[nodes.Element]:
     """Return the box of the whole picture and, with several views, the box of its panels."""
     whole = nodes.container(classes=["wide-figure"])
     whole += shown.deepcopy()
@@ -92,54 +87,61 @@ def root_of(file: Path) -> ElementTree.Element:
     return ElementTree.parse(file).getroot()
 
 
-def panels_of(file: Path) -> list[View]:
-    """Return the views that cut a drawing between its columns of axes; none where nothing cuts."""
+def panels_of(file: Path) -> list[Box]:
+    """Return the parts that lie between cuts through a drawing; none where no cut is free."""
     root = root_of(file)
     _, _, width, height = map(float, root.get("viewBox", "0 0 0 0").split())
     drawn = root.findall(f".//{SVG}g[@id='figure_1']/{SVG}g")
-    axes = [span_of_axes(g) for g in drawn if g.get("id", "").startswith("axes_")]
-    loose = [span(texts_in(g)) for g in drawn if g.get("id", "").startswith(("text_", "legend_"))]
-    columns = merged(axes)
-    if len(columns) < 2:
+    axes = [box_of(axes_of(g)) for g in drawn if g.get("id", "").startswith("axes_")]
+    loose = [box_of(texts_in(g)) for g in drawn if g.get("id", "").startswith(("text_", "legend_"))]
+    columns = columns_of(axes)
+    cuts = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
+    if not cuts or any(part.left < cut < part.right for part in [*columns, *loose] for cut in cuts):
         return []
-    between = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
-    if any(part.left < cut < part.right for part in [*columns, *loose] for cut in between):
-        return []
-    return [View(a, b - a, height) for a, b in pairwise([0.0, *between, width])]
+    edges = pairwise([0.0, *cuts, width])
+    return [
+        Box(left, max(0.0, column.top - ABOVE), right, min(height, column.bottom + ABOVE))
+        for (left, right), column in zip(edges, columns, strict=True)
+    ]
 
 
-def span_of_axes(group: ElementTree.Element) -> Span:
-    """Return what axes take: their frame, and the letters around it."""
+def axes_of(group: ElementTree.Element) -> Iterator[Box]:
+    """Yield the frame of axes and each text around it."""
     frame = group.find(f"{SVG}g/{SVG}path")
-    edges = [float(x) for x in NUMBER.findall(frame.get("d", ""))] if frame is not None else []
-    return span([*edges, *texts_in(group)])
+    corners = POINT.findall(frame.get("d", "")) if frame is not None else []
+    for x, y in corners:
+        yield Box(float(x), float(y), float(x), float(y))
+    yield from texts_in(group)
 
 
-def texts_in(group: ElementTree.Element) -> Iterator[float]:
-    """Yield the left and the right end of each text of a drawing."""
+def texts_in(group: ElementTree.Element) -> Iterator[Box]:
+    """Yield what each text of a drawing takes."""
     for text in group.iter(f"{SVG}g"):
         placed = PLACED.match(text.get("transform", ""))
         if placed is None or placed[4] is None:
             continue
-        x, scale = float(placed[1]), float(placed[4])
+        x, y, scale = (float(placed[i]) for i in (1, 2, 4))
         starts = [PLACED.match(use.get("transform", "")) for use in text.iter(f"{SVG}use")]
-        length = max((float(start[1]) for start in starts if start), default=0.0) + GLYPH
-        upright = placed[3] is not None
-        yield x - (scale * GLYPH if upright else 0) - AROUND
-        yield x + (0 if upright else scale * length) + AROUND
+        length = scale * (max((float(start[1]) for start in starts if start), default=0.0) + WIDE)
+        high, deep = scale * WIDE, scale * DEEP
+        if placed[3]:  # turned by a quarter: it runs upwards
+            yield Box(x - high - AROUND, y - length, x + deep + AROUND, y)
+        else:
+            yield Box(x - AROUND, y - high, x + length + AROUND, y + deep)
 
 
-def span(edges: Iterator[float] | list[float]) -> Span:
-    found = list(edges) or [0.0]
-    return Span(min(found), max(found))
+def box_of(parts: Iterable[Box]) -> Box:
+    """Return the box around all parts."""
+    lefts, tops, rights, bottoms = zip(*(list(parts) or [Box(0, 0, 0, 0)]), strict=True)
+    return Box(min(lefts), min(tops), max(rights), max(bottoms))
 
 
-def merged(spans: list[Span]) -> list[Span]:
-    """Return the columns: spans that overlap stand above one another."""
-    columns: list[Span] = []
-    for one in sorted(spans):
+def columns_of(axes: Iterable[Box]) -> list[Box]:
+    """Return the columns from left to right: axes that overlap stand above one another."""
+    columns: list[Box] = []
+    for one in sorted(axes):
         if columns and one.left < columns[-1].right:
-            columns[-1] = Span(columns[-1].left, max(columns[-1].right, one.right))
+            columns[-1] = box_of([columns[-1], one])
         else:
             columns.append(one)
     return columns
@@ -147,12 +149,13 @@ def merged(spans: list[Span]) -> list[Span]:
 
 def visit_panel_image(translator: Any, node: panel_image) -> None:
     """Write the picture's file with the view as the address's fragment."""
-    builder, view = translator.builder, node["view"]
+    builder, box = translator.builder, node["view"]
     file = posixpath.join(builder.imgpath, quote(builder.images[node["uri"]]))
-    part = f"{view.left:.1f},0,{view.width:.1f},{view.height:.1f}"
+    width, height = box.right - box.left, box.bottom - box.top
+    part = f"{box.left:.1f},{box.top:.1f},{width:.1f},{height:.1f}"
     translator.body.append(
         f'<img src="{file}#svgView(viewBox({part}))" alt="{escape(node["alt"])}"'
-        f' style="aspect-ratio: {view.width:.1f} / {view.height:.1f}">\n'
+        f' style="aspect-ratio: {width:.1f} / {height:.1f}">\n'
     )
     raise nodes.SkipNode
 

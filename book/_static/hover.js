@@ -126,28 +126,33 @@ async function show(link, tapped = false) {
 }
 
 function hide() {
-  clearTimeout(waiting);
+  stay();
   shownFor?.removeAttribute("aria-describedby");
   shownFor = null;
   card.hidden = true;
 }
 
+function stay() {
+  clearTimeout(waiting);
+  waiting = undefined;
+}
+
 /** @type {(what: () => void, after: number) => void} */
 function soon(what, after) {
-  clearTimeout(waiting);
+  stay();
   waiting = setTimeout(what, after);
 }
 
 document.addEventListener("pointerover", (event) => {
   if (event.pointerType === "touch") return;
   const link = linkAt(event.target);
-  if (event.target instanceof Element && card.contains(event.target)) clearTimeout(waiting);
-  else if (link && link === shownFor) clearTimeout(waiting);
+  if (event.target instanceof Element && card.contains(event.target)) stay();
+  else if (link && link === shownFor) stay();
   else if (link) {
     pointer = { kind: event.pointerType, x: event.clientX };
     soon(() => show(link), BEFORE_SHOWN);
   } else if (shownFor && !shownFor.matches(":focus-visible")) soon(hide, BEFORE_GONE);
-  else if (!shownFor) clearTimeout(waiting);
+  else if (!shownFor) stay();
 });
 
 document.addEventListener("focusin", ({ target }) => {
