@@ -364,7 +364,7 @@ def test_a_page_without_formulas_sets_that_of_a_card(page):
     assert page.evaluate("window.MathJax") is None
     link = f"<p><a href='{THEOREM_2}#equation-eq-31'>(31)</a></p>"
     page.evaluate(
-        "(link) => document.querySelector('h1').insertAdjacentHTML('afterend', link)", link
+        "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link
     )
     page.get_by_text("(31)").hover()
     page.locator(f"{CARD} svg").first.wait_for()
@@ -427,7 +427,7 @@ def test_a_link_without_a_card_leads_on_at_the_first_tap(phone):
     open_page(phone, THEOREM_2)
     link = "<p><a href='#exercises'>to the exercises</a></p>"
     phone.evaluate(
-        "(link) => document.querySelector('h1').insertAdjacentHTML('afterend', link)", link
+        "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link
     )
     phone.get_by_text("to the exercises").tap()
     phone.wait_for_url("**#exercises")
