@@ -326,8 +326,8 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
 
 
 def bound_label(label: str) -> str:
-    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext."""
-    return f"$\\{label}$"
+    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext; a limit's name as text."""
+    return f"$\\{label}$" if label.startswith("beta_") else as_text(label)
 
 
 def symbol(name: str) -> str:
