@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.closed_form import bound_curves, geometric_bounds, vertices
+from lizarraga2025.closed_form import bound_curves, geometric_bounds, refined, vertices
 from qbound import find_region, load_robot
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Boundary, Robot
@@ -482,6 +482,12 @@ def test_a_limit_that_binds_is_a_side_of_the_box_and_of_the_region() -> None:
 def test_a_limit_beyond_the_windows_changes_nothing() -> None:
     assert_array_equal(box(limited(-170, 60)).lower, box(MINERVA).lower)
     assert_array_equal(polygon_of(limited(-170, 60)), polygon_of(MINERVA))
+
+
+def test_a_limit_needs_no_points_on_its_side() -> None:
+    arm = limited(-100, 60)
+    assert len(refined(arm, 2, tangents=False)) == len(vertices(arm))
+    assert refined(arm, 3, tangents=True)[:, 1].min() == pytest.approx(box(arm).lower[1])
 
 
 def test_the_region_by_the_papers_rule_keeps_the_limits() -> None:
