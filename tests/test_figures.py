@@ -118,7 +118,7 @@ def test_half_spaces_with_one_line_are_named_one_above_the_other() -> None:
 def test_numbers_bear_a_minus_sign_and_names_keep_their_hyphen() -> None:
     rows = [("-1.5", "-30.2°", "(-45, 20)", "minervabot-v2", "found [150.0, -150.0]")]
     table = figures.table(["a", "b", "c", "d", "e"], rows).data
-    assert "| −1.5 | −30.2° | (−45, 20) | minervabot-v2 | found [150.0, -150.0] |" in table
+    assert "| −1.5 | −30.2° | (−45, 20) | minervabot-v2 | found [150.0, −150.0] |" in table
     boom = load_robot("rp-telescopic-boom")
     assert "lift = −35°, slide = 0.4 m" in texts_in(pose_picture(boom, boom.home))
 

@@ -129,6 +129,7 @@ NOT_PROSE = [
     r"(?s)\$\$.*?\$\$(?: *\(eq:[\w-]+\))?",  # displayed formulas: the paper's, or proved by a cell
     r"(?m)^:::.*$|^:label:.*$|^(?:# )?\d+\. ",  # directives, numbered items and titles
     r"`[^`]*`",  # code and the targets of roles
+    r"<div[^>]*>",  # places of the moving figures
     r"\]\([^)]*\)",  # targets of links
     r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # the ledger's ids, own numbers
 ]

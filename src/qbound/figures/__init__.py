@@ -362,21 +362,18 @@ def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
     """Return a table for a notebook's output, written in Markdown; cells may hold formulas.
 
-    A hyphen before the digits of a plain number, or of a pair of them in parentheses, becomes a
-    minus sign, and the bar of an absolute value stays in its cell.
+    A hyphen before digits becomes a minus sign, but not in formulas and code, and the bar of an
+    absolute value stays in its cell.
     """
     require("IPython")
     from IPython.display import Markdown
 
+    minus = re.compile(r"(`[^`]*`|\$[^$]*\$)|(?<!\w)-(?=\d)")
     plain = [[str(x).replace("|", r"\|") for x in row] for row in rows]
-    cells = [[minus_signs(x) if NUMBERS.match(x) else x for x in row] for row in plain]
+    cells = [[minus.sub(lambda m: m[1] or "\N{MINUS SIGN}", x) for x in row] for row in plain]
     lines = [header, ["---"] * len(header), *cells]
     text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
     return Markdown(text)  # type: ignore[no-untyped-call]
-
-
-NUMBERS: Final = re.compile(r"-[\d.]+\D{0,3}$|\([-\d., °]+\)$")
-"""Cells of a table that hold a number, with its unit or without, or several in parentheses."""
 
 
 def minus_signs(text: str) -> str:
@@ -391,8 +388,8 @@ def minus_signs(text: str) -> str:
 
 
 def bound_label(label: str) -> str:
-    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext."""
-    return f"$\\{label}$"
+    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext; a limit's name as text."""
+    return f"$\\{label}$" if label.startswith("beta_") else as_text(label)
 
 
 def symbol(name: str) -> str:
