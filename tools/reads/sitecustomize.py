@@ -21,7 +21,7 @@ import threading
 from importlib.util import source_from_cache
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-OWN = "qbound-"  # what the environment holds of this package: its commands and its version
+OWN = "/qbound-"  # of the environment: the commands of this package
 NEXT = ".next/"  # where the book is made: copies of the sources, which count as these
 CHAPTERS = "book/chapters"
 MADE = "made/"  # of NEXT: what a chapter writes
@@ -85,9 +85,10 @@ def below(path: str | bytes | os.PathLike) -> str | None:
         full = source_from_cache(full)
     if full != ROOT and not full.startswith(ROOT + os.sep):
         return None
-    if (full + os.sep).startswith(sys.prefix + os.sep) and f"{os.sep}{OWN}" not in full:
-        return None
     name = os.path.relpath(full, ROOT).replace(os.sep, "/").removeprefix(NEXT)
+    installed = (full + os.sep).startswith(sys.prefix + os.sep)
+    if installed and not (OWN in name and name.endswith("/entry_points.txt")):
+        return None
     return None if NO_SOURCE & set(name.split("/")) or name.startswith(MADE) else name
 
 
