@@ -311,15 +311,15 @@ def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
     """Return a table for a notebook's output, written in Markdown; cells may hold formulas.
 
-    A hyphen before the digits of a plain number becomes a minus sign, and the bar of an absolute
-    value stays in its cell.
+    A hyphen before digits becomes a minus sign, but not in formulas and code, and the bar of an
+    absolute value stays in its cell.
     """
     require("IPython")
     from IPython.display import Markdown
 
-    minus = re.compile(r"^-(?=[\d.]+\D{0,3}$)")
+    minus = re.compile(r"(`[^`]*`|\$[^$]*\$)|(?<!\w)-(?=\d)")
     plain = [[str(x).replace("|", r"\|") for x in row] for row in rows]
-    cells = [[minus.sub("\N{MINUS SIGN}", x) for x in row] for row in plain]
+    cells = [[minus.sub(lambda m: m[1] or "\N{MINUS SIGN}", x) for x in row] for row in plain]
     lines = [header, ["---"] * len(header), *cells]
     text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
     return Markdown(text)  # type: ignore[no-untyped-call]
