@@ -73,6 +73,9 @@ PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS ha
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 
+# What `run.py renumber` does to the chapters, in this order; lint asks that nothing is left to do.
+CHAPTER_TOOLS = ["renumber", "first_cells", "list_chapters"]
+
 PORT = 8000  # of the author's local page
 
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
@@ -135,7 +138,7 @@ def environment() -> dict[str, str]:
         "MPLCONFIGDIR": str(VENV / "matplotlib"),
         "OMP_NUM_THREADS": "1",  # sums of matrix products in one order, whatever the cores
         "OPENBLAS_NUM_THREADS": "1",
-        "PYTHONHASHSEED": "0",  # tests/test_hash_seeds.py executes the chapters under another
+        "PYTHONHASHSEED": "0",  # tests/test_run_twice.py executes the chapters under another
         "PYTHONNOUSERSITE": "1",
     }
 
@@ -485,7 +488,7 @@ def remake(changed: set[Path]) -> None:
     texts = {name for name in changed if name.suffix in {".md", ".ipynb"}}
     here = sorted(name for name in texts if (ROOT / name).exists())
     for name in here:
-        if name.parts[0] == "notebooks" and name.suffix == ".md":
+        if name.parts[0] == "notebooks" and name.suffix == ".md" and name.stem != "README":
             pair = [in_venv("jupytext"), "--quiet", "--to", "ipynb", ROOT / name]
             must(f"Pairing {name.name}", pair)
     make_book(update=set(here) == changed)
@@ -607,11 +610,14 @@ def lint() -> int:
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
-        "Numbers of chapters (run.py renumber)": [
-            in_venv("python"),
-            TOOLS / "renumber.py",
-            "--check",
-        ],
+        **{
+            f"Chapters (run.py renumber: {name})": [
+                in_venv("python"),
+                TOOLS / f"{name}.py",
+                "--check",
+            ]
+            for name in CHAPTER_TOOLS
+        },
         "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
@@ -667,7 +673,11 @@ def find_uv(scratch: Path) -> str | Path:
 
 def renumber() -> int:
     """Give the chapters the numbers of their order in book/index.md: files, titles, links."""
-    return subprocess.call([sys.executable, TOOLS / "renumber.py"], cwd=ROOT)
+    for name in CHAPTER_TOOLS:
+        status = subprocess.call([sys.executable, TOOLS / f"{name}.py"], cwd=ROOT)
+        if status != 0:
+            return status
+    return 0
 
 
 def metadata() -> int:

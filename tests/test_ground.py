@@ -433,7 +433,7 @@ def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -
     assert not any(folder.exists() for folder in made)
 
 
-# --- run.py: only what changed, and the old book until the new one is whole -------------------------
+# --- run.py: only what changed, and the old book until the new one is whole -----------------------
 
 
 @pytest.fixture
@@ -687,7 +687,7 @@ def test_where_text_alone_changed_the_other_pages_are_kept(
     (house / "book/index.md").write_text("# The book\n")
     done: list[object] = []
     monkeypatch.setattr(run, "must", lambda title, *_: done.append(title))
-    monkeypatch.setattr(run, "make_book", lambda update: done.append(update))
+    monkeypatch.setattr(run, "make_book", lambda **options: done.append(options["update"]))
     run.remake({Path(name) for name in changed})
     assert done == [*paired, update]
 

@@ -224,6 +224,7 @@ def packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(run, "prepare", lambda: None)
     monkeypatch.setattr(run, "book_is_fresh", lambda: True)
     monkeypatch.setattr(run, "must", wheel)
+    monkeypatch.setattr(run, "browsers", list)
     assert run.pack() == 0
     return dist
 
