@@ -74,7 +74,7 @@ PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS ha
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 
 # What `run.py renumber` does to the chapters, in this order; lint asks that nothing is left to do.
-CHAPTER_TOOLS = ["renumber", "first_cells", "list_chapters"]
+CHAPTER_TOOLS = ["renumber", "references", "first_cells", "list_chapters"]
 
 PORT = 8000  # of the author's local page
 
@@ -592,14 +592,10 @@ def print_book(browser: str) -> None:
 def lab() -> int:
     """Open the notebooks in JupyterLab: copies of your own in workbook/, which git ignores."""
     prepare()
-    WORKBOOK.mkdir(exist_ok=True)
-    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
-    for notebook in notebooks:
-        if not (WORKBOOK / notebook.name).exists():
-            shutil.copy(notebook, WORKBOOK)
+    must("Copying the notebooks", [in_venv("python"), TOOLS / "workbook.py", WORKBOOK])
     say(f"Your copies: {WORKBOOK} (delete one, and the next start brings it anew)")
     command = [in_venv("python"), "-m", "jupyter", "lab", "--notebook-dir", WORKBOOK]
-    return subprocess.call(command, cwd=WORKBOOK, env=environment())
+    return subprocess.call(command, cwd=ROOT, env=environment())
 
 
 def lint() -> int:

@@ -280,7 +280,10 @@ def test_an_area_on_a_grid_is_within_its_error() -> None:
 # --- robots ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("chapter", sorted((ROOT / "notebooks").glob("[0-9]*.md")), ids=lambda f: f.stem)
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda f: f.stem)
 def test_a_chapter_names_the_robots_that_it_loads(chapter: Path) -> None:
     tree = ast.parse(code(chapter))
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
