@@ -45,7 +45,7 @@ BUILD = ROOT / "book" / "_build"
 GENERATED = ROOT / "book" / "generated"
 FRONT_PAGE = BUILD / "html" / "index.html"
 BOOK_STAMP = BUILD / "made-from"
-PDF = BUILD / "html" / "qbound.pdf"
+PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
 NEXT = ROOT / ".next"  # the book is made here, and takes the place of the old one when it is whole
 WHOLE = "whole"  # a file of NEXT: all is made
@@ -239,18 +239,22 @@ def pip(venv: Path, command: str = "install") -> Command:
 # --- the book -------------------------------------------------------------------------------------
 
 
-def make_book(update: bool = False) -> None:
+def make_book(update: bool = False, printed: Path | None = None) -> None:
     """Execute the chapters that changed, build the pages, and only then replace the old book.
 
     All is made in NEXT, from copies of the sources. The pages are built anew; with `update` only
-    those whose own text changed, which is enough for an author who writes.
+    those whose own text changed, which is enough for an author who writes. A PDF of an older book
+    goes, unless it is handed on as `printed`.
     """
     take_over()
     made_from = fingerprint(ROOT)
     copy_sources()
     if update and BUILD.exists() and GENERATED.exists():
-        shutil.copytree(BUILD, in_next(BUILD))
+        skipped = shutil.ignore_patterns("pdf", PDF.name)
+        shutil.copytree(BUILD, in_next(BUILD), ignore=skipped)
         shutil.copytree(GENERATED, in_next(GENERATED))
+    if printed is not None:
+        shutil.copy(printed, in_next(PDF))
     make_chapters()
     build_pages()
     if fingerprint(ROOT) != made_from:
@@ -561,7 +565,7 @@ def watch() -> None:
 
 
 def pdf() -> int:
-    """Print the whole book to one PDF, beside its pages."""
+    """Print the whole book to one PDF, which its front page then offers."""
     browser = find_browser()
     prepare()
     if not book_is_fresh():
@@ -572,7 +576,7 @@ def pdf() -> int:
 
 
 def print_book(browser: str) -> None:
-    """Print aside; only a PDF that is whole takes the place of an older one."""
+    """Print aside; a PDF that is whole comes into the book, with pages that offer it."""
     scratch = BUILD / "pdf"
     remove(scratch)
     command = sphinx("singlehtml", ROOT / "book", scratch)
@@ -585,8 +589,7 @@ def print_book(browser: str) -> None:
     must("Printing", printing, quiet=True)
     if not draft.exists():  # a browser may fail and say that all is well
         raise Failed("The browser has printed nothing.")
-    draft.replace(PDF)
-    remove(scratch)
+    make_book(update=True, printed=draft)
 
 
 def lab() -> int:

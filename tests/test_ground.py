@@ -55,7 +55,7 @@ def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
         "GENERATED": book / "generated",
         "FRONT_PAGE": book / "_build/html/index.html",
         "BOOK_STAMP": book / "_build/made-from",
-        "PDF": book / "_build/html/qbound.pdf",
+        "PDF": book / "_build/qbound.pdf",
         "RESULTS": tmp_path / "results",
         "NEXT": tmp_path / ".next",
         "WORKBOOK": tmp_path / "workbook",
@@ -722,11 +722,14 @@ def test_any_browser_of_the_family_prints(run: ModuleType, monkeypatch: pytest.M
 @pytest.fixture
 def printer(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, bytes]:
     """A browser that prints what the dictionary holds, onto an old PDF; without it, nothing."""
-    run.PDF.parent.mkdir(parents=True)
+    fake_steps(run, monkeypatch)
+    run.make_book()
     run.PDF.write_bytes(b"of last week")
     prints: dict[str, bytes] = {}
+    build = run.must
 
-    def must(title: str, command: list[object], quiet: bool = False) -> None:
+    def must(title: str, command: list[object], quiet: bool = False, **settings: object) -> None:
+        build(title, command, quiet, **settings)
         if title == "Printing" and "pdf" in prints:
             [option] = [str(w) for w in command if str(w).startswith("--print-to-pdf=")]
             draft = Path(option.partition("=")[2])
@@ -738,15 +741,18 @@ def printer(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> di
     monkeypatch.setattr(run, "must", must)
     monkeypatch.setattr(run, "prepare", lambda: None)
     monkeypatch.setattr(run, "browsers", lambda: ["chromium"])
-    monkeypatch.setattr(run, "book_is_fresh", lambda: True)
     return prints
 
 
-def test_a_pdf_stands_beside_the_pages(run: ModuleType, printer: dict[str, bytes]) -> None:
+def test_a_pdf_belongs_to_its_book(run: ModuleType, printer: dict[str, bytes]) -> None:
+    """The pages are built once more, with it; the next book begins without one."""
     printer["pdf"] = b"of today"
     assert run.main(["pdf"]) == 0
     assert run.PDF.read_bytes() == b"of today"
-    assert [path.name for path in run.BUILD.iterdir()] == ["html"]
+    assert run.book_is_fresh()
+    assert not (run.BUILD / "pdf").exists()
+    run.make_book(update=True)
+    assert not run.PDF.exists()
 
 
 def test_a_browser_that_prints_nothing_is_a_failure(

@@ -94,7 +94,7 @@ def test_no_word_of_a_stranger_is_put_into_a_command(job: str) -> None:
 
 @pytest.mark.parametrize("job", sorted(set(JOBS) - {ELSEWHERE}))
 def test_what_is_installed_is_installed_first_and_the_rest_has_no_network(job: str) -> None:
-    makes = re.compile(r"run\.py (book|test|pack)|pytest")
+    makes = re.compile(r"run\.py (book|test|pdf|pack)|pytest")
     for command in commands(job):
         assert command.startswith(".ci/offline ") == bool(makes.search(command)), command
 

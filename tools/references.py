@@ -124,12 +124,15 @@ def with_numbers(text: str, known: dict[str, str]) -> str:
 
 
 def in_notebook(text: str, known: dict[str, str]) -> str:
-    """Return a notebook with the references of its texts written."""
+    """Return a notebook with the references of its texts and captions written."""
     notebook = json.loads(text)
     for cell in notebook["cells"]:
         if cell["cell_type"] == "markdown":
             source = with_numbers("".join(cell["source"]), known)
             cell["source"] = source.splitlines(keepends=True)
+        figure = cell["metadata"].get("mystnb", {}).get("figure", {})
+        if "caption" in figure:
+            figure["caption"] = with_numbers(figure["caption"], known)
     return json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
 
 

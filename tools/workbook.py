@@ -71,7 +71,7 @@ def caption(cell: str, figure: dict[str, str], known: dict[str, str]) -> dict[st
     label = figure.get("name", "")
     words = references.WORDS.get(label.partition(":")[0], "")
     title = f"**{words.format(known[label])}.** " if label in known else ""
-    text = f"{title}{figure['caption']}"
+    text = title + readable(figure["caption"], known)
     return {
         "cell_type": "markdown",
         "id": f"{cell}-caption",
