@@ -8,7 +8,7 @@
     python3 run.py pdf      print the book to one PDF (needs Chromium)
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
-    python3 run.py renumber number the chapters in the order of book/index.md, links included
+    python3 run.py renumber write numbers, references, first cells and the list of the chapters
     python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
     python3 run.py licences list the licence of everything that is installed in .venv
     python3 run.py pack     make the files of a release in dist/, with their checksums
@@ -671,7 +671,7 @@ def find_uv(scratch: Path) -> str | Path:
 
 
 def renumber() -> int:
-    """Give the chapters the numbers of their order in book/index.md: files, titles, links."""
+    """Write what chapters have in common: numbers, references, first cells, their list."""
     for name in CHAPTER_TOOLS:
         status = subprocess.call([sys.executable, TOOLS / f"{name}.py"], cwd=ROOT)
         if status != 0:

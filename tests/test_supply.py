@@ -87,6 +87,14 @@ def test_no_checkout_leaves_its_token_behind(job: str) -> None:
 
 
 @pytest.mark.parametrize("job", sorted(JOBS))
+def test_every_job_starts_empty(job: str) -> None:
+    """So every chapter is executed there: what an earlier run has left is taken nowhere."""
+    for step in JOBS[job]["steps"]:
+        words = " ".join([step.get("uses", ""), *map(str, step.get("with", {}))])
+        assert "cache" not in words
+
+
+@pytest.mark.parametrize("job", sorted(JOBS))
 def test_no_word_of_a_stranger_is_put_into_a_command(job: str) -> None:
     """A branch may be called `$(rm -rf .)`: names come in as variables."""
     assert not [command for command in commands(job) if "${{" in command]
