@@ -20,7 +20,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 
 ROOT = Path(__file__).resolve().parent.parent
-CHAPTERS = sorted((ROOT / "notebooks").glob("*.md"))
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 LEDGER = ROOT / "results" / "claims.json"  # compared in test_claims.py
 RESULTS = sorted(path for path in (ROOT / "results").glob("*.json") if path != LEDGER)
 

@@ -141,33 +141,29 @@ class Results:
         self.entries.append(entry | {"error": bound})
         return value
 
-    def save(self, folder: str | Path | None = None) -> Path:
+    def save(self, folder: str | Path | None = None) -> Path | None:
         """Write ``<chapter>.json``, complete or not at all, and return its path.
 
-        The folder is `folder`, else the environment's QBOUND_RESULTS, else ``results`` beside the
-        nearest pyproject.toml at or above the working directory, else ``results`` in it.
+        The folder is `folder`, else the environment's QBOUND_RESULTS, which the build of the book
+        sets. Without either nothing is written, and a line says so: whoever tries things in a
+        chapter changes no recorded result.
         """
         head = {"schema": SCHEMA, "version": __version__, "robots": self.robots}
         content = head | {"chapter": self.chapter, "results": self.entries}
         return write_json(self.chapter, content, folder)
 
 
-def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path:
-    """Write ``<name>.json``, complete or not at all, into the folder that `Results.save` names."""
-    target = _folder(folder) / f"{name}.json"
+def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path | None:
+    """Write ``<name>.json``, complete or not at all, where and if `Results.save` does."""
+    chosen = folder or os.environ.get("QBOUND_RESULTS")
+    if not chosen:
+        print(f"{name}.json is not written: results are recorded when the book is made.")
+        return None
+    target = Path(chosen) / f"{name}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
     write_whole(target, text.encode())
     return target
-
-
-def _folder(folder: str | Path | None) -> Path:
-    chosen = folder or os.environ.get("QBOUND_RESULTS")
-    if chosen:
-        return Path(chosen)
-    here = Path.cwd()
-    roots = (place for place in (here, *here.parents) if (place / "pyproject.toml").exists())
-    return next(roots, here) / "results"
 
 
 def _sha256(text: str) -> str:
