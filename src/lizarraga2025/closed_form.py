@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +25,9 @@ from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, window
 from qbound.tolerances import ON_BOUNDARY
 
 Floats = NDArray[np.float64]
+
+PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
+"""Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""
 
 
 @dataclass(frozen=True, eq=False)
