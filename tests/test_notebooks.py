@@ -135,7 +135,7 @@ NOT_PROSE = [
 # What a number may name instead of count: Figure 4, eqs. (11), (12), points 6 and 8, point 1 to 2.
 NAMED = (
     r"(?:Figures?|Tables?|Theorems?|Sections?|eqs?\.|[Pp]oints?|[Jj]oints?|[Ll]inks?|[Rr]ows?|[Rr]ules?|"
-    r"[Cc]hapters?|[Ss]teps?|functions?|[Ff]rom|CC BY)\s+"
+    r"[Cc]hapters?|[Ss]teps?|[Ee]xercises?|functions?|[Ff]rom|CC BY)\s+"
 )
 NUMBERS = r"\(?\d+(?:\.\d+)?\)?(?:(?:,\s+|\s+(?:and|or|to|with)\s+|\s*-\s*)\(?\d+(?!\.\d|\d)\)?)*"
 REFERENCES = [NAMED + NUMBERS, r"\(\d+\)(?:-\(\d+\))?", r"\b\d(?:-\d){2,}\b"]
