@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from base64 import b64decode
 from functools import cache
 from html.parser import HTMLParser
 from importlib import resources
@@ -20,7 +21,7 @@ from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
 from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ARITHMETIC, SCRIPTS, explore, explorer_page
+from qbound.explorer.page import ARITHMETIC, SCRIPTS, Explorer, explore, explorer_page
 from qbound.measures.scaling import least_along_edges
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
@@ -294,6 +295,13 @@ def test_the_smallest_clearance_of_a_scaled_polygon_is_that_of_its_edges(factor)
     assert (found["value"] >= 0) == (factor <= hexagon["largest"])
 
 
+def test_other_orders_of_the_vertices_are_told_where_there_are_such_vertices():
+    region = find_region(load_robot("minervabot-v2"))
+    assert explorer_data(region)["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0]]
+    told = explorer_data(region, [(5, 0, 1), (6, 0)])
+    assert told["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0], [5, 0, 1]]
+
+
 def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
     data = explorer_data(find_region(robot, rule="paper"))
@@ -443,14 +451,24 @@ class Frame(HTMLParser):
         self.attributes |= dict(attributes)
 
 
-def test_a_notebook_shows_the_page_in_a_frame_of_its_own():
+def test_a_notebook_shows_the_picture_and_the_page_in_a_frame_of_its_own():
     _, _, region, _ = case("RR")
     shown = explore(region)
     frame = Frame()
     frame.feed(shown._repr_html_())
-    assert frame.tags == ["iframe"]
+    assert frame.tags == ["div", "img", "iframe"]
     assert frame.attributes["srcdoc"] == shown.html == explorer_page(region)
     assert frame.attributes["sandbox"] == "allow-scripts"
+    picture = b64decode(frame.attributes["src"].removeprefix("data:image/svg+xml;base64,"))
+    assert b"<svg" in picture
+    assert "joints" in frame.attributes["alt"]
+
+
+def test_without_a_picture_the_frame_stands_alone():
+    shown = Explorer("arm", "<p>page</p>")
+    frame = Frame()
+    frame.feed(shown._repr_html_())
+    assert frame.tags == ["div", "iframe"]
 
 
 def test_an_explorer_is_named_in_one_short_line():

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,21 +16,29 @@ from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
-from support.browser import in_every_family, refuse_remote, settle, wait_until
+from support.browser import drag, in_every_family, refuse_remote, settle, wait_until
 
-WALLS = {"many walls": lambda: (load_robot("two-joint-arm-with-walls"), {})}
+WALLS = {
+    "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
+    "portal": lambda: (load_robot("pp-portal"), {}),
+}
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
+TOOL = "qboundEngine.toolAt(explorer.slice.map, explorer.pair())"
+SIDE = "Math.sign(qboundEngine.determinant(explorer.slice.map, explorer.pair()))"
 RECORD = """() => {
   window.seen = [];
-  const move = setPair;
-  setPair = (pair) => { seen.push(pair); move(pair); };
+  explorer.root.addEventListener("qbound-pose", () => {
+    const [pair, last] = [explorer.pair(), seen.at(-1)];
+    if (String(pair) !== String(last)) seen.push(pair);
+  });
 }"""
 LISTEN = """() => {
   window.heard = new Set();
-  const note = () => heard.add(byId("task-text").textContent);
-  new MutationObserver(note).observe(byId("task-text"), { childList: true });
+  const text = explorer.part("task-text");
+  const note = () => heard.add(text.textContent);
+  new MutationObserver(note).observe(text, { childList: true });
 }"""
 
 
@@ -68,7 +78,7 @@ def open_explorer(browser, files):
 
 
 def pose(page):
-    return page.evaluate("state.q")
+    return page.evaluate("explorer.state.q")
 
 
 def degrees(page):
@@ -82,17 +92,9 @@ def centre(page, selector):
 
 def on_screen(page, picture, values):
     """Return where values of a picture ("joints" or "plane") lie on the screen."""
-    x, y = page.evaluate("([name, v]) => window.eval(name).at(v)", [picture, values])
+    x, y = page.evaluate("([name, v]) => explorer[name].at(v)", [picture, values])
     box = page.locator(f"#{picture}").bounding_box()
     return box["x"] + x, box["y"] + y
-
-
-def drag(page, start, end, steps=12):
-    page.mouse.move(*start)
-    page.mouse.down()
-    page.mouse.move(*end, steps=steps)
-    page.mouse.up()
-    settle(page)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -111,32 +113,36 @@ def test_every_kind_of_robot_opens(open_explorer, name, width):
 def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
     page = open_explorer("out of the plane")
     assert "leaves the plane" in page.inner_text("#posture")
+    assert "obliquely" in page.inner_text("#plane-title")
+    shadow = page.locator("#plane .shadow").first.get_attribute("d")
+    assert page.locator("#plane .wall[d^=M]").count() == 1  # the scale bar: no wall is a line here
     assert not page.locator("#plane .reach-me").is_visible()
     before = pose(page)
     page.click("#plane", position={"x": 60, "y": 60})
     assert pose(page) == before
     page.click("#joints", position={"x": 160, "y": 160})
     assert pose(page) != before
+    assert page.locator("#plane .shadow").first.get_attribute("d") != shadow
     page.check("#show-sample")
     assert page.is_disabled("#flip")
 
 
 def test_dragging_the_dot_moves_the_arm(open_explorer):
     page = open_explorer()
-    tool = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    tool = page.evaluate(TOOL)
     target = np.radians([-60, -90]).tolist()
     drag(page, centre(page, "#joints .handle"), on_screen(page, "joints", target))
     assert_allclose(degrees(page), [-60, -90], atol=1)
-    assert page.evaluate("toolAt(slice.map, pairOf(state.q))") != tool
+    assert page.evaluate(TOOL) != tool
     assert page.input_value("#value-0") == str(round(degrees(page)[0], 1))
 
 
 def test_dragging_the_tool_keeps_the_posture_and_the_tool_under_the_hand(open_explorer):
     page = open_explorer()
-    side = page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))")
+    side = page.evaluate(SIDE)
     drag(page, centre(page, "#plane .handle"), on_screen(page, "plane", [10.0, 66.0]), 30)
-    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), [10, 66], atol=0.5)
-    assert page.evaluate("Math.sign(determinant(slice.map, pairOf(state.q)))") == side
+    assert_allclose(page.evaluate(TOOL), [10, 66], atol=0.5)
+    assert page.evaluate(SIDE) == side
 
 
 def test_a_tool_dragged_out_of_reach_stretches_the_arm_and_says_so(open_explorer):
@@ -185,11 +191,11 @@ def test_arrow_keys_move_joints_and_tool(open_explorer):
     for key in ["ArrowRight", "ArrowRight", "Shift+ArrowDown", "ArrowUp"]:
         page.keyboard.press(key)
     assert_allclose(degrees(page), [2, -9], atol=1e-9)
-    before = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))"))
+    before = np.array(page.evaluate(TOOL))
     page.focus("#plane")
     page.keyboard.press("ArrowUp")
-    step = np.array(page.evaluate("toolAt(slice.map, pairOf(state.q))")) - before
-    assert_allclose(step, [0, page.evaluate("robot.reach * 0.01")], atol=1e-9)
+    step = np.array(page.evaluate(TOOL)) - before
+    assert_allclose(step, [0, page.evaluate("explorer.robot.reach * 0.01")], atol=1e-9)
     page.keyboard.press("h")
     assert_allclose(pose(page), 0, atol=1e-12)
 
@@ -200,7 +206,8 @@ def test_typing_a_value_moves_the_arm_and_the_screen_reader_hears_it(open_explor
     assert_allclose(degrees(page), [80, 0], atol=1e-9)
     assert "Not safe" in page.inner_text("#status")
     wait_until(page, "document.getElementById('live').textContent.includes('q1 80.0°')")
-    assert "B7 is violated by" in page.inner_text("#live")
+    assert "oint 3 is" in page.inner_text("#live")
+    assert "beyond B7" in page.inner_text("#live")
 
 
 def test_the_violated_boundary_is_lit_in_table_and_pictures(open_explorer):
@@ -217,14 +224,14 @@ def test_the_violated_boundary_is_lit_in_table_and_pictures(open_explorer):
 
 def test_switching_the_posture_passes_the_singular_curve_and_keeps_the_place(open_explorer):
     page = open_explorer()
-    place = page.evaluate("toolAt(slice.map, pairOf(state.q))")
+    place = page.evaluate(TOOL)
     page.evaluate(RECORD)
     page.click("#flip")
-    wait_until(page, "!isPlaying() && Math.abs(state.q[1]) > 1")
+    wait_until(page, "!explorer.isPlaying() && Math.abs(explorer.state.q[1]) > 1")
     line = math.radians(-59.9993)
     seen = np.array(page.evaluate("window.seen"))[:, 1]
     assert seen.min() < line < seen.max()
-    assert_allclose(page.evaluate("toolAt(slice.map, pairOf(state.q))"), place, atol=1e-6)
+    assert_allclose(page.evaluate(TOOL), place, atol=1e-6)
     assert "Posture A" in page.inner_text("#posture")
 
 
@@ -235,8 +242,8 @@ def test_the_mirrored_pose_is_across_the_singular_curve_and_the_page_says_why(op
     # A frame moves the arm 100 ms on at most; at half speed that is less than the line is thick.
     page.select_option("#speed", "0.5")
     page.click("#task-go")
-    wait_until(page, "byId('task-text').textContent.startsWith('There.')")
-    wait_until(page, "!isPlaying()")
+    wait_until(page, "explorer.part('task-text').textContent.startsWith('There.')")
+    wait_until(page, "!explorer.isPlaying()")
     assert_allclose(degrees(page), [-60, -120], atol=2e-3)
     words = page.evaluate("[...window.heard]")
     assert any(text.startswith("Now both links lie in one line") for text in words)
@@ -260,14 +267,14 @@ def test_a_traversal_plays_pauses_and_goes_on(open_explorer):
     page.select_option("#speed", "2")
     start = pose(page)
     page.click("#play")
-    wait_until(page, "state.progress > 0.05", then="byId('play').click()")
+    wait_until(page, "explorer.state.progress > 0.05", then="explorer.part('play').click()")
     here = pose(page)
     settle(page)
     assert pose(page) == here != start
     assert page.inner_text("#play") == "Play"
     page.click("#play")
-    wait_until(page, "!isPlaying() && state.progress === 1")
-    corners = page.evaluate("walkStops()")
+    wait_until(page, "!explorer.isPlaying() && explorer.state.progress === 1")
+    corners = page.evaluate("explorer.walkStops()")
     assert_allclose(pose(page), corners[-1], atol=1e-9)
     assert "Safe" in page.inner_text("#status")
 
@@ -277,8 +284,8 @@ def test_reduced_motion_jumps_from_vertex_to_vertex(open_explorer):
     page.evaluate(RECORD)
     page.select_option("#speed", "2")
     page.click("#play")
-    wait_until(page, "!isPlaying() && state.progress === 1")
-    corners = page.evaluate("walkStops()")
+    wait_until(page, "!explorer.isPlaying() && explorer.state.progress === 1")
+    corners = page.evaluate("explorer.walkStops()")
     assert_allclose(page.evaluate("window.seen"), corners[1:], atol=1e-9)
 
 
@@ -287,8 +294,8 @@ def test_random_poses_are_shown_and_hidden(open_explorer):
     assert page.locator("#joints .sample").count() == 0
     page.check("#show-sample")
     marks = page.locator("#joints .sample .dots, #plane .sample .dots")
-    assert marks.count() == 2
-    drawn = page.evaluate("state.sample.filter((one) => one.safe).length")
+    assert marks.count() == 4
+    drawn = page.evaluate("explorer.state.sample.filter((one) => one.safe && one.home).length")
     assert marks.first.get_attribute("d").count("M") == drawn > 100
     page.uncheck("#show-sample")
     assert page.locator("#joints .sample").count() == 0
@@ -300,7 +307,7 @@ def test_a_link_restores_the_view(open_explorer):
     page.fill("#value-1", "-30.5")
     page.check("#show-names")
     page.uncheck("#show-workspace")
-    page.evaluate("setScale(0.8)")
+    page.evaluate("explorer.setScale(0.8)")
     wait_until(page, "location.hash.includes('scale=0.8&')")
     link = page.input_value("#link")
     assert link == page.url
@@ -308,7 +315,7 @@ def test_a_link_restores_the_view(open_explorer):
     assert_allclose(degrees(again), [-40, -30.5], atol=1e-3)
     assert again.is_checked("#show-names")
     assert not again.is_checked("#show-workspace")
-    assert again.evaluate("state.scale") == 0.8
+    assert again.evaluate("explorer.state.scale") == 0.8
 
 
 @pytest.mark.parametrize(
@@ -318,16 +325,16 @@ def test_a_link_restores_the_view(open_explorer):
 def test_a_broken_link_opens_the_home_pose(open_explorer, fragment):
     page = open_explorer(fragment=fragment)
     assert pose(page) == [0, 0]
-    assert 0 < page.evaluate("state.scale") < 1
-    assert page.evaluate("state.walk") == 0
+    assert 0 < page.evaluate("explorer.state.scale") < 1
+    assert page.evaluate("explorer.state.walk") == 0
 
 
 def test_a_held_joints_slider_shows_another_slice(open_explorer):
     page = open_explorer("3R, third held")
-    exact = page.evaluate("slice.exact")
+    exact = page.evaluate("explorer.slice.exact")
     before = page.locator("#joints .home").get_attribute("d")
     page.fill("#value-2", "-100")
-    assert (exact, page.evaluate("slice.exact")) == (True, False)
+    assert (exact, page.evaluate("explorer.slice.exact")) == (True, False)
     assert page.locator("#joints .home").get_attribute("d") != before
     assert page.locator("#joints .arc").count() > 0
 
@@ -397,7 +404,7 @@ def test_words_in_the_pictures_stand_out_from_their_ground(open_explorer, theme)
     assert min(ratios) >= 4.5
 
 
-@pytest.mark.parametrize("name", ["paper", "many walls"])
+@pytest.mark.parametrize("name", ["paper", *WALLS])
 @pytest.mark.parametrize("width", WIDTHS)
 def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer, width, name):
     page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850})
@@ -461,12 +468,97 @@ def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):
     assert page.evaluate("window.hit") is None
 
 
+def test_a_notebook_that_is_not_trusted_shows_the_picture(open_explorer, files, tmp_path):
+    output = explore(find_region(load_robot("pp-portal")))._repr_html_()
+    left = re.sub(r"<iframe.*</iframe>", "", output, flags=re.DOTALL)  # what a sanitizer leaves
+    files["untrusted"] = tmp_path / "untrusted.html"
+    files["untrusted"].write_text(f"<!doctype html>{left}", encoding="utf-8")
+    page = open_explorer("untrusted")
+    assert page.locator("iframe").count() == 0
+    assert page.evaluate("document.querySelector('img').naturalWidth") > 200
+
+
+def test_the_closest_boundary_is_named_and_shown(open_explorer):
+    page = open_explorer()
+    assert page.inner_text("#status") == (
+        "Safe. Closest: points 10 and 11 (B3) are 7.83 cm farther apart than they must be."
+    )
+    assert page.locator("#plane .point-name:not([hidden])").all_text_contents() == ["10", "11"]
+    assert page.locator("#plane .gap.closest:not([hidden])").count() == 1
+    page.fill("#value-0", "40")
+    assert "point 3 is" in page.inner_text("#status")
+    gap = page.locator("#plane .gap.closest:not([hidden])")
+    ends = [float(gap.get_attribute(name)) for name in ("x1", "x2", "y1", "y2")]
+    assert ends[0] == pytest.approx(ends[1])  # straight down to the wall
+    assert ends[2] < ends[3]
+
+
+def test_the_ground_is_drawn_and_nothing_is_tinted_as_behind_a_wall(open_explorer):
+    page = open_explorer()
+    ground, base = (
+        page.locator(part).first.evaluate(
+            "(e) => { const b = e.getBBox(); return [b.y, b.height]; }"
+        )
+        for part in ("#plane .ground", "#plane .body.fixed")
+    )
+    assert ground[0] == pytest.approx(sum(base), abs=0.5)
+    styles = page.locator("#plane .beyond").evaluate_all(
+        "(all) => all.map((e) => getComputedStyle(e).fill)"
+    )
+    assert styles == ["none"]
+
+
+def test_the_task_looks_at_the_side_where_the_arm_is_now(open_explorer):
+    page = open_explorer()
+    page.fill("#value-1", "-100")
+    assert "other side" in page.inner_text("#task-text")
+    page.fill("#value-1", "0")
+    assert "Bring the arm" in page.inner_text("#task-text")  # back again: nothing is remembered
+    page.fill("#value-0", "85")
+    assert "not safe" in page.inner_text("#task-text")
+
+
+def test_random_poses_in_regions_that_are_cut_off_are_grey(open_explorer):
+    page = open_explorer()
+    page.check("#show-sample")
+    counts = page.locator("#joints .sample path").evaluate_all(
+        "(all) => all.map((e) => [e.getAttribute('class'), e.getAttribute('d').match(/M/g).length])"
+    )
+    assert dict(counts).keys() == {"dots", "dots away", "crosses"}
+    assert all(count > 20 for _, count in counts)
+    colours = page.locator("#joints .sample .dots").evaluate_all(
+        "(all) => all.map((e) => getComputedStyle(e).stroke)"
+    )
+    assert len(set(colours)) == 2
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_axes_of_two_turns_are_labelled_apart(open_explorer, files, tmp_path, width):
+    robot = load_robot("minervabot-v2")
+    joints = tuple(replace(joint, limits=(-math.tau, math.tau)) for joint in robot.joints)
+    files["turns"] = tmp_path / "turns.html"
+    page = explorer_page(find_region(replace(robot, joints=joints)))
+    files["turns"].write_text(page, encoding="utf-8")
+    page = open_explorer("turns", viewport={"width": WIDTHS[width], "height": 850})
+    assert "−360" in page.locator("#joints .axes").text_content()
+    for family in in_every_family(page):
+        assert covered(page, "#joints .axes text") == [], family
+        assert beyond(page) == [], family
+
+
+def test_a_phone_reads_no_words_of_a_mouse_or_a_keyboard(phone):
+    words = phone.inner_text("body").lower()
+    assert re.findall(r"\b(left|right|arrow keys?)\b", words) == []
+
+
 def test_in_a_notebook_all_controls_work_and_no_link_is_offered(open_explorer, files, tmp_path):
     robot = load_robot("minervabot-v2")
     files["notebook"] = tmp_path / "notebook.html"
     output = explore(find_region(robot))._repr_html_()
-    files["notebook"].write_text(f"<!doctype html><p>{output}</p>", encoding="utf-8")
-    page = open_explorer("notebook").frame_locator("iframe")
+    files["notebook"].write_text(f"<!doctype html>{output}", encoding="utf-8")
+    whole = open_explorer("notebook")
+    wait_until(whole, "document.querySelector('img') === null")  # the frame has come in its place
+    page = whole.frame_locator("iframe")
     page.locator("#value-0").fill("80")
     assert "Not safe" in page.locator("#status").inner_text()
     page.locator("#play").click()

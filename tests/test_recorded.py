@@ -23,11 +23,11 @@ from scipy.spatial import cKDTree
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.evidence.joint_region import scaled
-from lizarraga2025.evidence.rounding import grid_error
 from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.latex import escaped
+from lizarraga2025.results import grid_error
 from qbound import load_robot
 from qbound.cli import main
 from qbound.model.robotfile import robot_text

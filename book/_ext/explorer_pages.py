@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.explorer.page import explorer_page
 
@@ -19,6 +20,11 @@ FOLDER = "_static/explorer"
 
 # Before the frame has told its height: enough for both pictures, so that little moves.
 FIRST_HEIGHT = 760
+
+
+def paths_of(robot: str) -> tuple[tuple[int, ...], ...]:
+    """Return the paths of Figures 8 and 9, for the robot of the paper in any of its versions."""
+    return closed_form.PATHS if robot.startswith("minervabot") else ()
 
 
 class Explorer(SphinxDirective):
@@ -31,7 +37,7 @@ class Explorer(SphinxDirective):
         robot = load_robot(name)
         file = Path(self.env.app.outdir, FOLDER, f"{name}.html")
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(explorer_page(find_region(robot)), encoding="utf-8")
+        file.write_text(explorer_page(find_region(robot), paths_of(name)), encoding="utf-8")
         here = Path(self.env.app.outdir, self.env.docname).parent
         address = Path(os.path.relpath(file, here)).as_posix()
         title = escape(f"Explorer of {robot.name}: its joint space beside the arm")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,9 @@ from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, window
 from qbound.tolerances import ON_BOUNDARY
 
 Floats = NDArray[np.float64]
+
+PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
+"""Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +120,7 @@ def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
     for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
         result.append(one.q)
         (bound,) = set(one.bounds) & set(other.bounds)
-        if isinstance(robot.boundary(bound.boundary), HalfSpace):
+        if _is_half_space(robot, bound):
             curve = _curve_between(robot, bound, one.q, other.q, n)
             normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
             result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
@@ -129,6 +133,11 @@ def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: in
     lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
     q2 = np.unwrap(upper if bound.k == UPPER else lower)
     return np.stack([q1, q2 + start[1] - q2[0]], -1)
+
+
+def _is_half_space(robot: Robot, bound: Bound) -> bool:
+    """Tell whether a bound is a half-space's; a joint limit has no component."""
+    return bool(bound.component) and isinstance(robot.boundary(bound.boundary), HalfSpace)
 
 
 def _edges(region: Box) -> Iterator[tuple[Floats, Floats, Bound, Bound]]:

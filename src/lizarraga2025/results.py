@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qbound import __version__
 from qbound.files import write_whole
@@ -50,7 +51,7 @@ RATIO: Final = rounding(1)
 def area_error(*areas: float) -> float:
     """Bound the error of the engine's areas: 1e-12 of their sum.
 
-    Chapter 13 proves the areas of both rules; the engine is within this bound of them.
+    The chapter "Certainty" proves the areas of both rules; the engine is within this bound of them.
     """
     return 1e-12 * float(np.sum(np.abs(areas)))
 
@@ -58,6 +59,23 @@ def area_error(*areas: float) -> float:
 def last_place(*numbers: str) -> float:
     """Return a unit of the last decimal place of numbers that are written out."""
     return float(max(10.0 ** -len(number.partition(".")[2]) for number in numbers))
+
+
+def grid_error(inside: NDArray[np.bool_], cell: float) -> float:
+    """Bound the error of an area that was counted on a grid of one turn of both joints.
+
+    A cell whose neighbours answer alike is taken for what its middle says; the others may be in or
+    out. What is smaller than a cell and missed by every middle is not seen.
+
+    Parameters
+    ----------
+    inside : ndarray of bool, shape (n, n)
+        The answer at the middle of each cell.
+    cell : float
+        Area of a cell.
+    """
+    beside = [inside != np.roll(inside, step, axis) for axis in (0, 1) for step in (1, -1)]
+    return float(cell * np.any(beside, axis=0).sum())
 
 
 class Results:

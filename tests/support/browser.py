@@ -66,7 +66,7 @@ WEAR = """(family) => {
   const { style } = document.documentElement;
   const faces = ["--book-serif", "--book-sans", "font-family"];
   for (const name of faces) style.setProperty(name, family);
-  window.redraw?.(); // an explorer's pictures are drawn for the letters that it finds
+  window.explorer?.redraw(); // an explorer's pictures are drawn for the letters that it finds
 }"""
 
 
@@ -130,6 +130,15 @@ def refuse_remote(page: Any, requests: list[str]) -> None:
 def settle(page: Any) -> None:
     """Wait for two frames: by then a new width is laid out."""
     page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
+
+
+def drag(page: Any, start: tuple[float, float], end: tuple[float, float], steps: int = 12) -> None:
+    """Drag the mouse from a place to another, in steps, and wait until that is laid out."""
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=steps)
+    page.mouse.up()
+    settle(page)
 
 
 def wait_until(page: Any, expression: str, then: str = "") -> None:

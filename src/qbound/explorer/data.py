@@ -30,11 +30,16 @@ Data = dict[str, Any]
 
 SAMPLES: Final = 1500
 SEED: Final = 11
-SIX_POINT_WALKS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
-"""Right-hand and left-hand path of six points, as the book reads Figures 8 and 9."""
+OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.44])
+"""Towards who looks at an arm that keeps to no plane: from the front, a little from above."""
+
+IN_PLANE: Final = 1e-6
+"""An axis that leans less than this, in rad, is drawn as if it did not."""
+
+Walks = Sequence[Sequence[int]]
 
 
-def explorer_data(region: Region) -> Data:
+def explorer_data(region: Region, walks: Walks = ()) -> Data:
     """Return what the explorer's page is told, as JSON (schema qbound/explorer/1).
 
     Parameters
@@ -42,6 +47,9 @@ def explorer_data(region: Region) -> Data:
     region : Region
         Of a robot. By the paper's rule a pair of points is respected where the points do not
         coincide; the windows of Table 6 come as limits.
+    walks : sequence of sequences of int, optional
+        Orders in which a traversal visits the vertices, by index, besides once round; one that
+        names a vertex that is not there is left out.
 
     Returns
     -------
@@ -81,7 +89,7 @@ def explorer_data(region: Region) -> Data:
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],
-        "polygon": _polygon(region),
+        "polygon": _polygon(region, walks),
         "workspace": workspace_content(region)["workspace"],
         "sample": _sample(views),
     }
@@ -134,15 +142,20 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     """Choose the plane to draw: across the turning axis, upright, x to the right.
 
-    It is fixed in the frame that carries the first free joint.
+    It is fixed in the frame that carries the first free joint. Where both joints move the arm out
+    of every plane, it is seen obliquely from above.
     """
     frames = robot.frames(q)
     one, other = robot.joints[first], robot.joints[second]
     carrier = frames.rotation(robot.base, one.parent)
     turn = carrier.T @ frames.rotation(robot.base, other.parent)
     axes = [one.mount @ one.axis, turn @ other.mount @ other.axis]
-    n = _across(axes, [one.kind, other.kind])
+    kinds = [one.kind, other.kind]
+    n = _across(axes, kinds)
     up = carrier.T @ np.array([0.0, 0.0, 1.0])
+    oblique = not _keeps_to_plane(n, axes, kinds)
+    if oblique:
+        n = carrier.T @ OBLIQUE
     v = up - (up @ n) * n
     if np.linalg.norm(v) <= 1e-6:
         v = carrier.T @ np.array([0.0, 1.0, 0.0])
@@ -151,7 +164,15 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     u = np.cross(v, n)
     if (carrier @ u) @ np.array([1.0, 1e-3, 0.0]) < 0:
         u = -u
-    return {"frame": first, "u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
+    view = {"u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
+    return {"frame": first, **view, "oblique": oblique}
+
+
+def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> bool:
+    """Tell whether both joints move along the plane: turns about its normal, slides across it."""
+    wanted = [1.0 if kind == "revolute" else 0.0 for kind in kinds]
+    leans = [abs(abs(n @ a) - w) for a, w in zip(axes, wanted, strict=True)]
+    return bool(max(leans) < IN_PLANE)
 
 
 def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:
@@ -211,7 +232,7 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     return {"boundary": arc.boundary, "branch": arc.branch, "points": points}
 
 
-def _polygon(region: Region) -> Data | None:
+def _polygon(region: Region, walks: Walks) -> Data | None:
     """Return the vertex polygon of the home component, its largest safe scale, its walks."""
     home = region.home
     if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
@@ -228,13 +249,13 @@ def _polygon(region: Region) -> Data | None:
         "centroid": centre.tolist(),
         "largest": largest.scale,
         "binds": None if largest.form < 0 else region.problem.names[largest.form],
-        "walks": _walks(len(vertices)),
+        "walks": _walks(len(vertices), walks),
     }
 
 
-def _walks(m: int) -> list[list[int]]:
-    """List orders in which to visit m vertices: once round (Figure 7), and Figures 8 and 9."""
-    return [[*range(m), 0], *map(list, SIX_POINT_WALKS if m == 6 else ())]
+def _walks(m: int, others: Walks) -> list[list[int]]:
+    """List orders in which to visit m vertices: once round (Figure 7), and those asked for."""
+    return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]
 
 
 def _sample(views: Sequence[Data]) -> list[list[float]]:

@@ -7,6 +7,7 @@ data of one region.
 from __future__ import annotations
 
 import json
+import re
 from base64 import b64encode
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -16,7 +17,7 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
-from qbound.explorer.data import Data, explorer_data
+from qbound.explorer.data import Data, Walks, explorer_data
 from qbound.files import write_whole
 from qbound.printable import printable
 from qbound.region import Region
@@ -24,26 +25,54 @@ from qbound.region import Region
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
 """What repeats the library's computations and knows no page."""
 
-PICTURES: Final = ("drawing.js", "joint_space.js", "arm.js")
-PAGE: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
-SCRIPTS: Final = (*ARITHMETIC, *PICTURES, *PAGE)
+PICTURES: Final = ("drawing.js", "hands.js", "joint_space.js", "arm.js", "parts.js")
+ENGINE: Final = (*ARITHMETIC, *PICTURES, "engine.js")
+"""What every figure of a page shares."""
+
+EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
+"""What each explorer has for itself: its state, and what shows it."""
+
+SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")
 
 
 @dataclass(frozen=True)
 class Explorer:
-    """The explorer of one region: shown in a notebook, or saved as a page of its own."""
+    """The explorer of one region: shown in a notebook, or saved as a page of its own.
+
+    Attributes
+    ----------
+    name : str
+        Of the robot.
+    html : str
+        The page.
+    picture : str or None
+        The region as SVG, which stands in a notebook where no script runs.
+    """
 
     name: str
     html: str = field(repr=False)
+    picture: str | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         """Say whose page it is, and how large."""
         return f"Explorer({self.name!r}, {len(self.html.encode()) // 1000} kB of HTML)"
 
     def _repr_html_(self) -> str:
-        """Show the page in a frame that shares nothing with the notebook around it."""
-        title = f"Explorer of {printable(self.name)}: its joint space beside the arm"
-        return Template(_web("frame.html")).substitute(page=escape(self.html), title=escape(title))
+        """Show the page in a frame that shares nothing with the notebook around it.
+
+        Before the frame stands the picture, which goes when the frame comes. Where a notebook is
+        not trusted, or a site shows it without running anything, there is no frame: the picture
+        stays.
+        """
+        name = escape(printable(self.name))
+        frame = Template(_web("frame.html")).substitute(
+            page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
+        )
+        picture = ""
+        if self.picture is not None:
+            content = b64encode(self.picture.encode()).decode()
+            picture = Template(_web("picture.html")).substitute(content=content, name=name)
+        return f"<div>\n{picture}{frame}</div>"
 
     def save(self, path: str | Path) -> None:
         """Write the page to a file, whole; any browser opens it without a network."""
@@ -73,10 +102,10 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region.robot.name, explorer_page(region))
+    return Explorer(region.robot.name, explorer_page(region), region._repr_svg_())
 
 
-def explorer_page(region: Region) -> str:
+def explorer_page(region: Region, walks: Walks = ()) -> str:
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
     It opens from the file system, asks nothing of a network (a content policy forbids it), and runs
@@ -86,6 +115,8 @@ def explorer_page(region: Region) -> str:
     ----------
     region : Region
         Of a robot.
+    walks : sequence of sequences of int, optional
+        Orders in which a traversal visits the vertices, by index, besides once round.
 
     Returns
     -------
@@ -97,9 +128,9 @@ def explorer_page(region: Region) -> str:
     ValueError
         If the region is of forms, not of a robot.
     """
-    data = _shown(explorer_data(region))
+    data = _shown(explorer_data(region, walks))
     name = escape(printable(region.robot.name))
-    style, script = _web("explorer.css"), "".join(map(_web, SCRIPTS))
+    style, script = engine_style() + _web("page.css"), engine_script() + _web("start.js")
     return Template(_web("explorer.html")).substitute(
         title=f"{name}: safe poses",
         name=name,
@@ -110,6 +141,30 @@ def explorer_page(region: Region) -> str:
         script=script,
         summary=_summary(data),
     )
+
+
+def engine_script() -> str:
+    """Return the engine: one classic script that defines `qboundEngine` and draws nothing yet.
+
+    Its function ``mount(root, robot, options)`` holds the scripts in `EXPLORER`, so that their
+    names belong to one explorer, and a page may have several.
+    """
+    shared, own = ("".join(map(_web, names)) for names in (ENGINE, EXPLORER))
+    markup = _embedded(_web("parts.html"))
+    mount = f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
+    return _shorter(f"(() => {{\n{shared}const MARKUP = {markup};\n{mount}}})();\n")
+
+
+def engine_style() -> str:
+    """Return the style of an explorer: every rule stands below the class ``qbound``."""
+    return _web("explorer.css")
+
+
+def _shorter(script: str) -> str:
+    """Leave out comments that begin a line, and indentation."""
+    code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
+    lines = (line.strip() for line in code.splitlines())
+    return "".join(f"{line}\n" for line in lines if line and not line.startswith("//"))
 
 
 def _web(name: str) -> str:
@@ -125,7 +180,7 @@ def _shown(data: Any) -> Any:
     return printable(data) if isinstance(data, str) else data
 
 
-def _embedded(data: Data) -> str:
+def _embedded(data: Any) -> str:
     """Write JSON that no HTML parser can take for markup, whatever a name contains."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

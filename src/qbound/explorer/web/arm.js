@@ -56,15 +56,17 @@ function withPair(robot, q, pair) {
   return pose;
 }
 
-/** @type {(robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
-function drawPlane(robot, state, slice, box) {
-  const svg = partOf("plane", SVGSVGElement);
+/** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
+function drawPlane(svg, robot, state, slice, box) {
   const fitted = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
   const drawn = {
     ...fitted,
     box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
   };
   clear(drawn);
+  const axes = viewAxes(robot, state.q);
+  if (robot.plane.oblique) drawFloor(robot, drawn, axes);
+  else drawGround(robot, drawn, axes);
   drawScaleBar(robot, drawn);
   if (state.show.workspace && slice.regular) drawWorkspace(drawn, slice);
   const walls = drawWalls(robot, drawn, state);
@@ -100,7 +102,52 @@ function drawWorkspace(drawn, slice) {
   }
 }
 
-/** Walls of the plane: the line, and a tint of what lies beyond it.
+/** The ground, where the base has a body to stand on it and the picture is upright.
+ * @type {(robot: Robot, drawn: Picture, axes: Place[]) => void} */
+function drawGround(robot, drawn, axes) {
+  const feet = robot.bodies.flatMap(({ frame, outline }) => (frame === 0 ? outline : []));
+  if (feet.length === 0 || axes[1][2] < 0.99) return;
+  const level = Math.min(...feet.map((foot) => project(axes, foot)[1]));
+  const y = drawn.at([0, level])[1];
+  const d = `M0 ${y}H${drawn.width}V${drawn.height}H0Z`;
+  const line = make("path", { class: "ground-line", d: `M0 ${y}H${drawn.width}` });
+  layer(drawn, "below").append(make("path", { class: "ground", d }), line);
+}
+
+/** The height of the floor: below the base, the arm's first frame.
+ * @type {(robot: Robot) => number} */
+function floorLevel(robot) {
+  const feet = robot.bodies.flatMap(({ frame, outline }) => (frame === 0 ? outline : []));
+  return Math.min(0, ...feet.map((foot) => foot[2]));
+}
+
+/** Two circles on the floor, which show how it lies where the arm is seen obliquely.
+ * @type {(robot: Robot, drawn: Picture, axes: Place[]) => void} */
+function drawFloor(robot, drawn, axes) {
+  const level = floorLevel(robot);
+  const [x, y] = robot.joints[0].origin;
+  const rings = [0.5, 1].map((share) =>
+    Array.from({ length: 60 }, (_, k) => {
+      const [c, s] = turnedBy((k * TURN) / 60);
+      const at = [x + share * robot.reach * c, y + share * robot.reach * s, level];
+      return drawn.at(project(axes, at));
+    }),
+  );
+  const d = rings.map((ring) => pathText(ring, true)).join("");
+  layer(drawn, "below").append(make("path", { class: "floor", d }));
+}
+
+/** The arm's shadow straight below it, and the plumb line of the tool.
+ * @type {(robot: Robot, q: Pose, at: (place: Place) => Point) => string} */
+function shadowText(robot, q, at) {
+  const level = floorLevel(robot);
+  const tool = pointPlaces(robot, q)[robot.tool];
+  const spine = [...framesOf(robot, q).map((frame) => frame.place), tool];
+  const below = spine.map(([x, y]) => at([x, y, level]));
+  return pathText(below) + pathText([at(tool), below[below.length - 1]]);
+}
+
+/** Walls of the plane: a line, with strokes on the side that is not safe for the points it concerns.
  * @type {(robot: Robot, drawn: Picture, state: State) => SVGPathElement[]} */
 function drawWalls(robot, drawn, state) {
   const group = layer(drawn, "walls");
@@ -112,43 +159,83 @@ function drawWalls(robot, drawn, state) {
   ].map(drawn.from);
   const places = pointPlaces(robot, state.q);
   const axes = viewAxes(robot, state.q);
-  /** @type {SVGTextElement[]} */
-  const names = [];
+  /** @type {Map<string, { walls: Wall[], ends: Point[] }>} */
+  const labels = new Map();
+  /** @type {Point[][]} */
+  const hatched = [];
   const lines = robot.boundaries.flatMap((wall) => {
-    if (wall.kind === "pair") return [];
+    if (wall.kind === "pair" || robot.plane.oblique) return [];
     const normal = project(axes, wall.normal);
     const offset = wall.offset - dot(axes[2], wall.normal) * dot(axes[2], places[wall.points[0]]);
     /** @type {Side} */
     const side = ([x, y]) => normal[0] * x + normal[1] * y - offset;
-    const beyond = pathText(clipBelow(corners, side).map(drawn.at), true);
-    if (wall.used) group.append(make("path", { class: "beyond", d: beyond }));
     const ends = lineThrough(corners, side).map(drawn.at);
-    const line = make("path", { class: wall.used ? "wall" : "wall unused", d: pathText(ends) });
+    if (wall.used && ends.length === 2 && !hatched.some((other) => isBeside(ends, other))) {
+      hatched.push(ends);
+      group.append(make("path", { class: "beyond", d: strokesBelow(ends, normal) }));
+    }
+    const d = pathText(ends);
+    const line = make("path", { class: wall.used ? "wall" : "wall unused", d });
     line.dataset.boundary = wall.name;
     group.append(line);
-    if (ends.length === 2) names.push(group.appendChild(wallLabel(wall, ends, drawn)));
+    if (ends.length === 2) {
+      const there = labels.get(d) ?? { walls: [], ends };
+      labels.set(d, { walls: [...there.walls, wall], ends });
+    }
     return line;
   });
+  const names = [...labels.values()].map(({ walls, ends }) =>
+    group.appendChild(wallLabel(wallText(robot, walls), ends, drawn)),
+  );
   thin(names, drawn.width);
   return lines;
 }
 
+/** Whether the strokes of one line would run into those of another.
+ * @type {(ends: Point[], others: Point[]) => boolean} */
+function isBeside(ends, others) {
+  return ends.every((end, k) => Math.hypot(...minus(end, others[k])) < 14);
+}
+
+/** Short strokes along a line on the screen, on the side from which `normal` points away.
+ * @type {(ends: Point[], normal: Point) => string} */
+function strokesBelow([a, b], normal) {
+  const size = Math.hypot(...minus(b, a));
+  const along = minus(b, a).map((value) => value / size);
+  const away = [-normal[0], normal[1]].map((value) => value / Math.hypot(...normal));
+  const lean = along[0] + along[1] < 0 ? -1 : 1;
+  const count = Math.floor(size / 10);
+  const stroke = plus(
+    away.map((value) => 8 * value),
+    along.map((value) => -6 * lean * value),
+  );
+  return Array.from({ length: count + 1 }, (_, k) => {
+    const from = plus(
+      a,
+      along.map((value) => 10 * k * value),
+    );
+    return pathText([from, plus(from, stroke)]);
+  }).join("");
+}
+
+/** What a line stands for: the end that all names share, or a name and the point it concerns.
+ * @type {(robot: Robot, walls: Wall[]) => string} */
+function wallText(robot, walls) {
+  const [first, ...others] = walls.map(({ name }) => name);
+  const end = first.split(", ").at(-1) ?? first;
+  if (others.length > 0) return others.every((name) => name.endsWith(end)) ? end : first;
+  const [i] = walls[0].points;
+  const point = i === robot.tool ? "tool" : `point ${robot.points[i].name}`;
+  return end === first ? `${first} (${point})` : first;
+}
+
 /** Write a wall's name where its line leaves the picture on the right, or at the top.
- * @type {(wall: Wall, ends: Point[], drawn: Picture) => SVGTextElement} */
-function wallLabel(wall, ends, drawn) {
+ * @type {(name: string, ends: Point[], drawn: Picture) => SVGTextElement} */
+function wallLabel(name, ends, drawn) {
   const [a, b] = ends;
   const [x, y] = a[0] - a[1] >= b[0] - b[1] ? a : b;
   const at = { x: Math.min(drawn.width - 8, x - 6), y: Math.max(16, y - 6), "text-anchor": "end" };
-  return make("text", { class: "wall-name", ...at }, wall.name);
-}
-
-/** The part of a polygon where `side` is not positive (Sutherland and Hodgman).
- * @type {(corners: Point[], side: Side) => Point[]} */
-function clipBelow(corners, side) {
-  return corners.flatMap((a, i) => [
-    ...(side(a) <= 0 ? [a] : []),
-    ...crossing(a, corners[(i + 1) % corners.length], side),
-  ]);
+  return make("text", { class: "wall-name", ...at }, name);
 }
 
 /** @type {(corners: Point[], side: Side) => Point[]} */
@@ -170,9 +257,14 @@ function crossing(a, b, side) {
  * @type {(robot: Robot, drawn: Picture) => ArmParts} */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
-  const links = robot.bodies.map((body) => `var(--links-${body.frame % 5})`);
   const parts = {
-    bodies: links.map((fill) => make("polygon", { class: "body", fill })),
+    shadow: robot.plane.oblique ? [make("path", { class: "shadow" })] : [],
+    bodies: robot.bodies.map(({ frame }) =>
+      make("polygon", {
+        class: frame === 0 ? "body fixed" : "body",
+        fill: `var(--links-${frame % 5})`,
+      }),
+    ),
     spine: make("path", { class: "spine" }),
     axles: robot.joints.map(() => make("circle", { class: "axle", r: 5 })),
     gaps: robot.boundaries.map(() => make("line", { class: "gap", hidden: "" })),
@@ -198,9 +290,19 @@ function placeArm(robot, drawn, state, lit) {
   const places = robot.points.map((point) => at(placeIn(found[point.frame], point.at)));
   const spine = [...found.map((frame) => at(frame.place)), places[robot.tool]];
   drawn.spine.setAttribute("d", pathText(spine));
+  for (const path of drawn.shadow) path.setAttribute("d", shadowText(robot, state.q, at));
   for (const [j, axle] of drawn.axles.entries()) placeAt(axle, spine[j + 1], "c");
-  for (const [i, place] of places.entries()) placePoint(robot, drawn, state, lit, i, place);
-  for (const [i, wall] of robot.boundaries.entries()) placeGap(drawn.gaps[i], wall, places, lit);
+  const away = awayFromOther(robot, places, lit);
+  for (const [i, place] of places.entries()) {
+    placePoint(robot, drawn, state, lit, i, place);
+    const beside = away.get(i);
+    if (beside) placeNameBeside(drawn.names[i], place, beside);
+  }
+  const inSpace = pointPlaces(robot, state.q);
+  for (const [i, wall] of robot.boundaries.entries()) {
+    const ends = gapEnds(wall, inSpace).map(at);
+    placeGap(drawn.gaps[i], wall, ends, lit);
+  }
   drawn.group.setAttribute("transform", `translate(${places[robot.tool].join(" ")})`);
 }
 
@@ -217,23 +319,54 @@ function placePoint(robot, drawn, state, lit, i, [x, y]) {
   placeAt(mark, [x, y], "c");
   mark.setAttribute("r", String(point.radius > 0 ? size : 3));
   mark.classList.toggle("lit", lit.points.has(i));
+  mark.classList.toggle("named", lit.named.has(i));
   name.classList.toggle("lit", lit.points.has(i));
-  name.toggleAttribute("hidden", !state.show.names && !lit.points.has(i));
+  name.toggleAttribute("hidden", !state.show.names && !lit.named.has(i));
+  if (name.hasAttribute("hidden")) return;
   const left = i % 2 === 0; // two points of a pair in contact lie at one place
   name.setAttribute("text-anchor", left ? "end" : "start");
   placeAt(name, [x + (left ? -7 : 7), y + (left ? 13 : -6)]);
 }
 
-/** A dashed line between the points of a pair that stands out.
- * @type {(line: SVGLineElement, wall: Wall, places: Point[], lit: Lit) => void} */
-function placeGap(line, wall, places, lit) {
-  const near = wall.kind === "pair" && lit.boundaries.has(wall.name);
+/** For both points of the closest pair, where its name has room: away from the other one.
+ * @type {(robot: Robot, places: Point[], lit: Lit) => Map<number, Point>} */
+function awayFromOther(robot, places, lit) {
+  const pair = robot.boundaries.find(({ name, kind }) => name === lit.closest && kind === "pair");
+  if (!pair) return new Map();
+  const [a, b] = pair.points;
+  const gap = minus(places[b], places[a]);
+  const size = Math.hypot(...gap) || 1;
+  return new Map([
+    [a, [-gap[0] / size, -gap[1] / size]],
+    [b, [gap[0] / size, gap[1] / size]],
+  ]);
+}
+
+/** @type {(name: SVGTextElement, place: Point, direction: Point) => void} */
+function placeNameBeside(name, [x, y], [dx, dy]) {
+  name.setAttribute("text-anchor", dx > 0.3 ? "start" : dx < -0.3 ? "end" : "middle");
+  placeAt(name, [x + 9 * dx, y + 12 * dy + 4]);
+}
+
+/** Both points of a pair; of a wall its point, and the place of the wall that is nearest to it.
+ * @type {(wall: Wall, places: Place[]) => Place[]} */
+function gapEnds(wall, places) {
+  if (wall.kind === "pair") return wall.points.map((i) => places[i]);
+  const at = places[wall.points[0]];
+  const margin = halfSpaceMargin(wall, places) / dot(wall.normal, wall.normal);
+  return [at, at.map((value, k) => value - margin * wall.normal[k])];
+}
+
+/** A dashed line from point to point, or from point to wall, of a boundary that stands out.
+ * @type {(line: SVGLineElement, wall: Wall, ends: Point[], lit: Lit) => void} */
+function placeGap(line, wall, [a, b], lit) {
+  const near = lit.boundaries.has(wall.name);
   line.toggleAttribute("hidden", !near);
+  line.classList.toggle("closest", lit.closest === wall.name);
+  line.classList.toggle("lit", lit.violated.has(wall.name));
   if (!near) return;
-  const [a, b] = wall.points.map((i) => places[i]);
   for (const [key, value] of Object.entries({ x1: a[0], y1: a[1], x2: b[0], y2: b[1] }))
     line.setAttribute(key, String(value));
-  line.classList.toggle("lit", lit.violated.has(wall.name));
 }
 
 /** The arm without bodies at another pose: a line from base to tool.

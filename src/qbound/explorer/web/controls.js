@@ -1,7 +1,5 @@
 /* What a reader holds: sliders, fields, buttons, handles, keys, a link. Then the page begins. */
 
-/** @type {Record<string, number[]>} */
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const MAX_SCALE = 1.05;
 
 /* --- a link that restores the state ------------------------------------------------------------ */
@@ -20,12 +18,14 @@ function hashOf() {
   return `#${pairs.join("&")}`;
 }
 
+/** Write the view into the address and the links, once the arm rests. */
 function remember() {
-  const link = window.location.href.split("#")[0] + hashOf();
-  inputOf("link").value = link;
-  partOf("full-page", HTMLAnchorElement).href = link;
+  if (!options.page) return;
   window.clearTimeout(timers.remember);
   timers.remember = window.setTimeout(() => {
+    const link = window.location.href.split("#")[0] + hashOf();
+    inputOf("link").value = link;
+    partOf("full-page", HTMLAnchorElement).href = link;
     if (window.location.href !== link) window.history.replaceState(null, "", link);
   }, 250);
 }
@@ -62,18 +62,6 @@ function largestScale() {
 
 /* --- controls ---------------------------------------------------------------------------------- */
 
-/** An element of the page.
- * @template {keyof HTMLElementTagNameMap} K
- * @param {K} name
- * @param {Partial<HTMLElementTagNameMap[K]>} properties
- * @param {...(Node | string)} children
- * @returns {HTMLElementTagNameMap[K]} */
-function element(name, properties, ...children) {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-}
-
 function buildPose() {
   byId("pose").replaceChildren(...robot.joints.map(poseRow));
 }
@@ -86,8 +74,8 @@ function poseRow(joint, j) {
   const [low, high] = rangeShown(joint, j).map((value) => value / factor);
   const [min, max] = [String(low), String(high)];
   const step = String(turn ? 0.1 : (high - low) / 1000);
-  const slide = element("input", { type: "range", id: `slide-${j}`, min, max, step });
-  const field = element("input", { type: "number", id: `value-${j}`, min, max, step: "any" });
+  const slide = newPart(`slide-${j}`, element("input", { type: "range", min, max, step }));
+  const field = newPart(`value-${j}`, element("input", { type: "number", min, max, step: "any" }));
   const name = joint.name + (robot.free.includes(j) ? "" : " (held)");
   slide.ariaLabel = name;
   field.ariaLabel = `${name}, ${turn ? "degrees" : robot.length_unit}`;
@@ -201,11 +189,8 @@ function buildShow() {
   };
   const names = shownNames().filter((name) => name !== "polygon" || robot.polygon);
   const boxes = names.map((name) => {
-    const box = element("input", {
-      type: "checkbox",
-      id: `show-${name}`,
-      checked: state.show[name],
-    });
+    const checked = state.show[name];
+    const box = newPart(`show-${name}`, element("input", { type: "checkbox", checked }));
     box.addEventListener("change", () => {
       state.show[name] = box.checked;
       redraw();
@@ -221,59 +206,6 @@ function goHome() {
 }
 
 /* --- hands and keys ---------------------------------------------------------------------------- */
-
-/** Where a pointer is, in a picture's own pixels.
- * @type {(svg: SVGSVGElement, event: MouseEvent) => Point} */
-function pixelOf(svg, event) {
-  const box = svg.getBoundingClientRect();
-  const view = svg.viewBox.baseVal;
-  return [
-    ((event.clientX - box.left) * view.width) / box.width,
-    ((event.clientY - box.top) * view.height) / box.height,
-  ];
-}
-
-/** Drag from a handle, or with a mouse from anywhere; a tap moves at once.
- * @type {(svg: SVGSVGElement, move: (pixel: Point) => void) => void} */
-function draggable(svg, move) {
-  /** @type {number | null} */
-  let held = null;
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
-    const { target, pointerType, pointerId } = event;
-    const onHandle = target instanceof Element && target.classList.contains("reach-me");
-    if (pointerType === "touch" && !onHandle) return;
-    held = pointerId;
-    svg.setPointerCapture(pointerId);
-    svg.focus({ preventScroll: true });
-    event.preventDefault();
-    if (!onHandle) move(pixelOf(svg, event));
-  });
-  svg.addEventListener("pointermove", (event) => {
-    if (event.pointerId === held) move(pixelOf(svg, event));
-  });
-  for (const name of ["pointerup", "pointercancel"]) {
-    svg.addEventListener(name, () => {
-      held = null;
-    });
-  }
-  svg.addEventListener("click", (event) => {
-    if (event instanceof PointerEvent && event.pointerType === "touch") move(pixelOf(svg, event));
-  });
-}
-
-/** @type {(svg: SVGSVGElement, step: (direction: number[], large: boolean) => void) => void} */
-function onKeys(svg, step) {
-  svg.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const key = event.key.toLowerCase();
-    if (ARROWS[event.key]) step(ARROWS[event.key], event.shiftKey);
-    else if (key === "h") goHome();
-    else if (key === "f") playFlip();
-    else return;
-    event.preventDefault();
-  });
-}
 
 /** @type {(direction: number[], large: boolean) => void} */
 function stepJoints(direction, large) {
@@ -292,11 +224,13 @@ function stepTool(direction, large) {
 }
 
 function listen() {
-  const [jointSvg, planeSvg] = [partOf("joints", SVGSVGElement), partOf("plane", SVGSVGElement)];
+  if (robot.plane.oblique) byId("plane-title").textContent = "Arm, seen obliquely from above";
+  const [jointSvg, planeSvg] = [svgOf("joints"), svgOf("plane")];
+  const keys = { h: goHome, f: playFlip };
   draggable(jointSvg, (pixel) => movePose(joints.from(pixel)));
   draggable(planeSvg, (pixel) => moveTool(plane.from(pixel)));
-  onKeys(jointSvg, stepJoints);
-  onKeys(planeSvg, stepTool);
+  onKeys(jointSvg, stepJoints, keys);
+  onKeys(planeSvg, stepTool, keys);
   byId("home").addEventListener("click", goHome);
   byId("flip").addEventListener("click", playFlip);
   byId("task-go").addEventListener("click", playTask);
@@ -305,12 +239,14 @@ function listen() {
     refresh();
   });
   byId("copy").addEventListener("click", copyLink);
-  window.addEventListener("hashchange", () => {
-    restore();
-    buildShow();
-    rebuild();
-  });
-  new ResizeObserver(redraw).observe(jointSvg.parentElement ?? document.body);
+  const stage = parts.get("stage") ?? root;
+  let width = stage.clientWidth;
+  const resized = () => {
+    if (stage.clientWidth === width) return;
+    width = stage.clientWidth;
+    redraw();
+  };
+  new ResizeObserver(resized).observe(stage);
 }
 
 function copyLink() {
@@ -318,28 +254,63 @@ function copyLink() {
   navigator.clipboard?.writeText(inputOf("link").value).catch(() => {});
 }
 
-/* --- inside another page ----------------------------------------------------------------------- */
+/* --- a page of its own ------------------------------------------------------------------------- */
 
-/** In a frame the page tells its height, and is told whether its surroundings are dark. One that
-    stands in its frame's `srcdoc` (a notebook's output) has no address, and no room elsewhere. */
-function embed() {
-  const root = document.documentElement;
+/** The address holds the view. In a frame the page tells its height, and is told whether its
+    surroundings are dark. One that stands in its frame's `srcdoc` (a notebook's output) has no
+    address, and no room elsewhere. */
+function ownPage() {
+  window.addEventListener("hashchange", () => {
+    restore();
+    buildShow();
+    rebuild();
+  });
+  const page = document.documentElement;
   const hasAddress = window.location.protocol !== "about:";
   byId("share").hidden = !hasAddress;
   if (window.parent === window || !hasAddress) return;
-  root.classList.add("embedded");
-  const tell = () => window.parent.postMessage({ explorerHeight: root.offsetHeight }, "*");
+  page.classList.add("embedded");
+  const tell = () => window.parent.postMessage({ explorerHeight: page.offsetHeight }, "*");
   new ResizeObserver(tell).observe(document.body);
   window.addEventListener("message", ({ data }) => {
-    if (["light", "dark"].includes(data?.theme)) root.style.colorScheme = data.theme;
+    if (["light", "dark"].includes(data?.theme)) page.style.colorScheme = data.theme;
   });
 }
 
-embed();
-restore();
+if (options.page) {
+  ownPage();
+  restore();
+}
 buildPose();
 buildMargins();
 buildScale();
 buildShow();
 rebuild();
 listen();
+
+/** What others may do with this explorer. @type {Explorer} */
+const explorer = {
+  root,
+  robot,
+  state,
+  get slice() {
+    return slice;
+  },
+  get joints() {
+    return joints;
+  },
+  get plane() {
+    return plane;
+  },
+  part: byId,
+  pair: () => pairOf(state.q),
+  move: movePose,
+  moveTool,
+  play,
+  stop: stopPlaying,
+  isPlaying,
+  walkStops,
+  setScale,
+  refresh,
+  redraw,
+};

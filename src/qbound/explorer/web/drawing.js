@@ -1,5 +1,6 @@
 /* What both pictures are made of: elements, scales, layers, names, a handle. */
 
+const STACKED = 560; // in explorer.css, too: the width below which pictures are stacked
 const SVG = "http://www.w3.org/2000/svg";
 
 /** An element of a picture.
@@ -24,22 +25,20 @@ function lineHeight(svg) {
   return height;
 }
 
-/** The part of the page that has an id, of the kind that the caller needs.
- * @template {Element} T
- * @param {string} id
- * @param {new () => T} kind
- * @returns {T} */
-function partOf(id, kind) {
-  const found = document.getElementById(id);
-  if (!(found instanceof kind)) throw new Error(`The page has no ${kind.name} "${id}".`);
-  return found;
+/** The width of a word as the picture writes it.
+ * @type {(svg: SVGSVGElement, text: string) => number} */
+function wordWidth(svg, text) {
+  const probe = svg.appendChild(make("text", {}, text));
+  const { width } = probe.getBBox();
+  probe.remove();
+  return width;
 }
 
 /** A picture with two scales: `at` leads from values to pixels, `from` back.
  * @type {(svg: SVGSVGElement, ranges: number[][], margin: Picture["box"], equal: boolean) => Picture} */
 function picture(svg, ranges, margin, equal) {
-  const width = Math.max(240, svg.parentElement?.clientWidth ?? 0);
-  const height = Math.round(Math.min(width, 560));
+  const width = Math.max(240, Math.round(svg.getBoundingClientRect().width));
+  const height = Math.round(Math.min(width, 560, largestHeight(svg)));
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.setAttribute("height", String(height));
   const [[x0, x1], [y0, y1]] = ranges;
@@ -56,6 +55,14 @@ function picture(svg, ranges, margin, equal) {
     at: ([x, y]) => [left + a * (x - x0), top + b * (y1 - y)],
     from: ([x, y]) => [x0 + (x - left) / a, y1 - (y - top) / b],
   };
+}
+
+/** Where pictures stand one below the other, two of them and a line of words fit the screen.
+ * @type {(svg: SVGSVGElement) => number} */
+function largestHeight(svg) {
+  const stage = svg.closest(".stage");
+  const stacked = stage !== null && stage.clientWidth <= STACKED;
+  return stacked ? Math.max(200, (window.innerHeight - 200) / 2) : Infinity;
 }
 
 /** @type {(points: Point[], closed?: boolean) => string} */
@@ -84,13 +91,13 @@ function clear(drawn) {
   drawn.svg.append(clip);
 }
 
-/** Random poses: round dots where safe, crosses where not.
+/** Random poses: round dots where safe (grey where cut off from home), crosses where not.
  * @type {(group: SVGGElement, sample: SamplePose[], place: (one: SamplePose) => Point) => void} */
 function drawMarks(group, sample, place) {
-  const d = { dots: "", crosses: "" };
+  const d = { dots: "", "dots away": "", crosses: "" };
   for (const one of sample) {
     const [x, y] = place(one).map((value) => Number(value.toFixed(1)));
-    if (one.safe) d.dots += `M${x} ${y}h0`;
+    if (one.safe) d[one.home ? "dots" : "dots away"] += `M${x} ${y}h0`;
     else d.crosses += `M${x - 2} ${y - 2}l4 4m0 -4l-4 4`;
   }
   for (const [name, text] of Object.entries(d))
@@ -129,4 +136,32 @@ function thin(names, width) {
 /** @type {(value: number, low: number, high: number) => number} */
 function between(value, low, high) {
   return Math.min(high, Math.max(low, value));
+}
+
+/** @type {(value: number, digits: number) => string} */
+function number(value, digits) {
+  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+  return text.replace("-", "−");
+}
+
+/** @type {Record<string, string>} */
+const LEGEND_SHAPES = {
+  singular: "M0 7H22",
+  polygon: "M1 12L11 2L21 12Z",
+  dots: "M5 7h0M15 7h0",
+  "dots away": "M5 7h0M15 7h0",
+  ground: "M0 3H22V14H0Z",
+  beyond: "M0 3H22M2 9l6 -6M8 9l6 -6M14 9l6 -6",
+  crosses: "M9 5l4 4m0 -4l-4 4",
+};
+
+/** One line of a legend, or none.
+ * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
+function legend(name, text, shows) {
+  if (!shows) return [];
+  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
+  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
+  for (const part of name === "workspace twice" ? [0, 1] : [0])
+    key.append(make("path", { class: name, d, "data-part": part }));
+  return [element("li", {}, key, text)];
 }

@@ -28,7 +28,7 @@ interface Robot {
   tool: number;
   tool_forms: Term[][];
   reach: number;
-  plane: { frame: number; u: Place; v: Place; n: Place };
+  plane: { frame: number; u: Place; v: Place; n: Place; oblique: boolean };
   views: View[];
   components: Component[];
   polygon: VertexPolygon | null;
@@ -215,6 +215,7 @@ interface Least {
 interface SamplePose {
   pair: Pair;
   safe: boolean;
+  home: boolean; // whether the home pose can be reached from it
   tool: Point;
 }
 
@@ -229,15 +230,16 @@ interface State {
   path: Pair[] | null; // stops of the path that is drawn
   mirror: Pair | null; // the pose that the task asks for
   side: number; // the sign of det J where the task began
-  crossed: boolean; // whether det J has changed its sign since
   hover: string | null; // a boundary pointed at in the table
 }
 
 interface Lit {
   violated: Set<string>;
-  bold: Set<string>;
-  boundaries: Set<string>;
-  points: Set<number>;
+  bold: Set<string>; // violated, or pointed at
+  closest: string | null;
+  boundaries: Set<string>; // those whose points are joined by a line
+  points: Set<number>; // of what is bold
+  named: Set<number>; // those, and the points of the closest boundary
 }
 
 interface Picture {
@@ -268,6 +270,7 @@ interface JointPicture extends Picture, Handle, PathLayers {
 }
 
 interface ArmParts {
+  shadow: SVGPathElement[]; // on the floor, of an arm that is seen obliquely
   bodies: SVGPolygonElement[];
   spine: SVGPathElement;
   axles: SVGCircleElement[];

@@ -1,8 +1,7 @@
 /* The picture of joint space. Like the arm's it is handed the state and changes nothing else. */
 
-/** @type {(robot: Robot, state: State, slice: Slice) => JointPicture} */
-function drawJointSpace(robot, state, slice) {
-  const svg = partOf("joints", SVGSVGElement);
+/** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice) => JointPicture} */
+function drawJointSpace(svg, robot, state, slice) {
   const ranges = robot.views.map((view) => [view.low, view.high]);
   const line = lineHeight(svg);
   const margin = { left: 46, right: 12, top: 12, bottom: 12 + 2 * line };
@@ -31,14 +30,19 @@ function drawJointAxes(robot, drawn, line) {
   robot.views.forEach((view, k) => {
     const joint = robot.joints[robot.free[k]];
     const turn = joint.kind === "revolute";
-    for (const value of ticks(view, turn)) {
+    const widest = Math.max(
+      ...[view.low, view.high].map((value) => wordWidth(drawn.svg, shown(joint, value))),
+    );
+    const most = k === 0 ? (right - left) / (widest + 8) : (bottom - top) / (line + 4);
+    for (const value of ticks(view, turn, most)) {
       const [x, y] = drawn.at(k === 0 ? [value, 0] : [0, value]);
       const ends =
         k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
       group.append(make("line", { class: "grid", ...ends }));
+      const middle = Math.min(x, drawn.width - 2 - widest / 2); // the last stays in the picture
       const place =
         k === 0
-          ? { x, y: rows[0], "text-anchor": "middle" }
+          ? { x: middle, y: rows[0], "text-anchor": "middle" }
           : { x: left - 6, y: y + 4, "text-anchor": "end" };
       group.append(make("text", place, shown(joint, value)));
     }
@@ -51,15 +55,17 @@ function drawJointAxes(robot, drawn, line) {
   });
 }
 
-/** Round values to label an axis with.
- * @type {(view: View, turn: boolean) => number[]} */
-function ticks(view, turn) {
+/** Round values to label an axis with, at most so many.
+ * @type {(view: View, turn: boolean, most: number) => number[]} */
+function ticks(view, turn, most) {
   const span = view.high - view.low;
   const unit = 10 ** Math.floor(Math.log10(span / 3));
-  const step =
+  const sizes =
     turn && span > 1
-      ? Math.PI / (span > 4 ? 3 : 6)
-      : [1, 2, 5].map((k) => k * unit).find((size) => span / size <= 8) || 10 * unit;
+      ? [30, 60, 90, 120, 180, 360].map((size) => (size * Math.PI) / 180)
+      : [1, 2, 5, 10, 20, 50].map((k) => k * unit);
+  const labels = Math.min(8, most);
+  const step = sizes.find((size) => span / size <= labels) ?? span;
   const found = [];
   for (let k = Math.ceil(view.low / step - 1e-9); k * step <= view.high + 1e-9; k += 1)
     found.push(k * step);

@@ -7,7 +7,7 @@ let waiting = 0; // with reduced motion the timer
 /* --- the task ---------------------------------------------------------------------------------- */
 
 function hasTask() {
-  return slice.regular && slice.arm.kind === "rr";
+  return shows("task") && slice.regular && slice.arm.kind === "rr";
 }
 
 /** Ask for the mirror image of the present pose.
@@ -16,39 +16,44 @@ function setMirror() {
   const now = pairOf(state.q);
   state.mirror = inView(mirroredPose(slice.arm, now));
   state.side = Math.sign(determinant(slice.map, now));
-  state.crossed = false;
   return state.mirror;
 }
 
-function showTask() {
+/** @type {(safe: boolean) => void} */
+function showTask(safe) {
   byId("task").hidden = !hasTask();
   if (!hasTask()) return;
   const mirror = state.mirror ?? setMirror();
   const now = pairOf(state.q);
   const det = determinant(slice.map, now);
   const singular = Math.abs(det) <= NEAR_SINGULAR * slice.largest;
-  if (Math.sign(det) !== state.side) state.crossed = true;
+  const across = Math.sign(det) !== state.side;
   for (const [i, line] of joints.singular.entries()) {
     const near = Math.abs(shortWay(1, now[1] - slice.lines[i])) <= 45 * DEGREE;
     line.classList.toggle("lit", singular && near);
   }
   const gap = Math.max(...now.map((value, k) => Math.abs(shortWay(k, mirror[k] - value))));
-  const text = taskText(singular, gap < 6 * DEGREE);
+  const text = taskText(safe, singular, across, across && gap < 6 * DEGREE);
   if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
 }
 
-/** @type {(singular: boolean, there: boolean) => string} */
-function taskText(singular, there) {
+/** What to do next: `across` is the side of the singular curve on which the mirror image lies.
+ * @type {(safe: boolean, singular: boolean, across: boolean, there: boolean) => string} */
+function taskText(safe, singular, across, there) {
+  if (!safe) {
+    const where = there ? "This is the mirror image, but it" : "This pose";
+    return `${where} is not safe. The way has to stay in the blue region.`;
+  }
   if (there) {
     return (
-      "There. On the way you crossed the dashed line, where the arm is stretched or folded. A " +
-      "mirrored pose bends the other way, it is the other posture; so every way to it crosses " +
+      "There. On the way you crossed the dashed line, where the arm is stretched or folded. The " +
+      "mirror image bends the other way: it is the other posture, and every way to it crosses " +
       "that line."
     );
   }
   if (singular)
     return "Now both links lie in one line: det J = 0. The arm can go on and bend to either side.";
-  if (state.crossed)
+  if (across)
     return "You are on the other side of the dashed line: the arm bends the other way. Go on to the dotted pose.";
   return "Bring the arm to its mirror image, the dotted arm. Can you get there without crossing the dashed line?";
 }
@@ -69,7 +74,7 @@ function walkStops() {
 function play(stops, from, each) {
   stopPlaying();
   const behavior = calm.matches ? "auto" : "smooth";
-  partOf("plane", SVGSVGElement).scrollIntoView({ block: "nearest", behavior });
+  svgOf("plane").scrollIntoView({ block: "nearest", behavior });
   state.path = stops;
   byId("play").setAttribute("aria-pressed", "true");
   byId("play").textContent = "Pause";
@@ -142,10 +147,33 @@ function showProgress() {
   refresh();
 }
 
-/** A straight way in joint space to the mirrored pose. */
+/** A safe way in joint space to the mirrored pose, if it is a simple one. */
 function playTask() {
-  if (isPlaying()) stopPlaying();
-  else if (state.mirror) play([inView(pairOf(state.q)), state.mirror], 0, () => {});
+  if (isPlaying()) {
+    stopPlaying();
+    return;
+  }
+  const way = wayToMirror();
+  if (way) play(way, 0, () => {});
+  else byId("task-text").textContent = "No simple way there is safe. Can you find one?";
+}
+
+/** Straight to the mirrored pose, or by way of the centroid of the home component.
+ * @type {() => Pair[] | null} */
+function wayToMirror() {
+  const { mirror } = state;
+  if (!mirror) return null;
+  const now = inView(pairOf(state.q));
+  const centroid = robot.components.find(({ home }) => home)?.centroid;
+  const ways = [[now, mirror], ...(centroid ? [[now, centroid, mirror]] : [])];
+  return ways.find(isSafeWay) ?? null;
+}
+
+/** Whether two hundred poses along a path are safe.
+ * @type {(stops: Pair[]) => boolean} */
+function isSafeWay(stops) {
+  const steps = Array.from({ length: 201 }, (_, i) => alongPath(robot, stops, i / 200));
+  return steps.every((pair) => isSafe(margins(robot, withPair(robot, state.q, pair))));
 }
 
 function playFlip() {

@@ -18,10 +18,11 @@ function rebuild() {
 /** Both pictures anew, from the slice there is. */
 function redraw() {
   state.sample = state.show.sample ? judgeSample() : [];
-  joints = drawJointSpace(robot, state, slice);
-  plane = drawPlane(robot, state, slice, reachable);
+  joints = drawJointSpace(svgOf("joints"), robot, state, slice);
+  plane = drawPlane(svgOf("plane"), robot, state, slice, reachable);
   showLegends();
   byId("area").textContent = areaText();
+  root.dispatchEvent(new CustomEvent("qbound-draw"));
   if (robot.polygon) inputOf("show-polygon").disabled = !slice.exact;
   refresh();
 }
@@ -41,32 +42,15 @@ function showLegends() {
       polygon && slice.exact,
     ),
     ...legend("dots", "random, safe", sample),
+    ...legend("dots away", "random, safe, cut off", sample && cutOff),
     ...legend("crosses", "random, not safe", sample),
   );
   byId("plane-legend").replaceChildren(
     ...legend("workspace", "one safe posture", workspace && slice.regular),
     ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
-    ...legend("beyond", "behind a wall", walls),
+    ...legend("ground", "ground", plane.svg.querySelector(".ground") !== null),
+    ...legend("beyond", "the side of a wall that is not safe", walls && !robot.plane.oblique),
   );
-}
-
-/** @type {Record<string, string>} */
-const LEGEND_SHAPES = {
-  singular: "M0 7H22",
-  polygon: "M1 12L11 2L21 12Z",
-  dots: "M5 7h0M15 7h0",
-  crosses: "M9 5l4 4m0 -4l-4 4",
-};
-
-/** One line of a legend, or none.
- * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
-function legend(name, text, shows) {
-  if (!shows) return [];
-  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
-  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
-  for (const part of name === "workspace twice" ? [0, 1] : [0])
-    key.append(make("path", { class: name, d, "data-part": part }));
-  return [element("li", {}, key, text)];
 }
 
 /** What moves with the pose. */
@@ -81,13 +65,14 @@ function refresh() {
     mark.classList.toggle("violated", lit.violated.size > 0);
   placeArm(robot, plane, state, lit);
   plane.room.toggleAttribute("hidden", !slice.regular);
+  showTask(isSafe(found));
   drawPaths();
   showStatus(found);
   showMargins(found, lit);
   showPose();
   showScale();
-  showTask();
   remember();
+  root.dispatchEvent(new CustomEvent("qbound-pose"));
 }
 
 /** The boundaries that stand out: violated ones, the one pointed at, and those that are near.
@@ -97,9 +82,20 @@ function litParts(found) {
   const violated = new Set(used.filter((one) => one.value < 0).map((one) => one.name));
   const bold = new Set([...violated, ...(state.hover ? [state.hover] : [])]);
   const near = used.filter((one) => one.unit === "length" && one.value < 0.04 * robot.reach);
+  const closest = tightest(robot, found)?.name ?? null;
   const boundaries = new Set([...bold, ...near.map((one) => one.name)]);
-  const walls = robot.boundaries.filter((wall) => bold.has(wall.name));
-  return { violated, bold, boundaries, points: new Set(walls.flatMap((wall) => wall.points)) };
+  if (closest !== null) boundaries.add(closest);
+  /** @type {(wanted: (name: string) => boolean) => Set<number>} */
+  const pointsOf = (wanted) =>
+    new Set(robot.boundaries.flatMap(({ name, points }) => (wanted(name) ? points : [])));
+  return {
+    violated,
+    bold,
+    closest,
+    boundaries,
+    points: pointsOf((name) => bold.has(name)),
+    named: pointsOf((name) => bold.has(name) || name === closest),
+  };
 }
 
 function drawPaths() {
@@ -119,25 +115,26 @@ function drawPaths() {
 /** @type {(found: Margin[]) => void} */
 function showStatus(found) {
   const [verdict, reason] = statusText(found);
-  byId("status").replaceChildren(element("strong", {}, verdict), reason);
+  byId("status").replaceChildren(element("strong", {}, verdict), ` ${reason}`);
   byId("status").classList.toggle("violated", !isSafe(found));
-  byId("posture").textContent = postureText();
-  partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
-  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
-  say(`${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`);
+  if (shows("pose")) {
+    byId("posture").textContent = postureText();
+    partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+  }
+  window.clearTimeout(timers.say);
+  timers.say = window.setTimeout(() => say(verdict, reason), 600);
 }
 
 /** Tell a screen reader, once the arm rests.
- * @type {(text: string) => void} */
-function say(text) {
-  window.clearTimeout(timers.say);
-  timers.say = window.setTimeout(() => {
-    byId("live").textContent = text;
-  }, 600);
+ * @type {(verdict: string, reason: string) => void} */
+function say(verdict, reason) {
+  const pose = robot.free.map((j) => `${robot.joints[j].name} ${jointText(j, state.q[j])}`);
+  byId("live").textContent = `${pose.join(", ")}. ${verdict} ${reason} ${postureText()}`;
 }
 
 /** @type {(found: Margin[], lit: Lit) => void} */
 function showMargins(found, lit) {
+  if (!shows("margins")) return;
   const { rows } = partOf("margins", HTMLTableSectionElement);
   for (const [i, { name, value, unit }] of found.entries()) {
     rows[i].cells[2].textContent = valueText(value, unit);
@@ -146,6 +143,7 @@ function showMargins(found, lit) {
 }
 
 function showPose() {
+  if (!shows("pose")) return;
   for (const [j, { kind }] of robot.joints.entries()) {
     const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
     const value = String(Number((state.q[j] / unit).toFixed(digits)));
@@ -157,7 +155,7 @@ function showPose() {
 }
 
 function showScale() {
-  if (!robot.polygon) return;
+  if (!robot.polygon || !shows("scaling")) return;
   byId("scaling").hidden = !slice.exact;
   inputOf("scale").value = String(state.scale);
   byId("scale-value").textContent = number(state.scale, 4);

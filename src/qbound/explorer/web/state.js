@@ -1,13 +1,44 @@
 /* The explorer's state, and what it means: the slice that the held joints leave, the poses in it.
    One way round: an action changes the state, `refresh` shows it. */
 
+const prefix = options.page ? "" : newPrefix();
+const parts = addParts(root, prefix, shows);
+
+/** Whether a section of the controls stands in the page.
+ * @type {(control: string) => boolean} */
+function shows(control) {
+  return options.page || (options.controls ?? ["legend"]).includes(control);
+}
+
+/** A part of this explorer, of the kind that the caller needs.
+ * @template {Element} T
+ * @param {string} id
+ * @param {new () => T} kind
+ * @returns {T} */
+function partOf(id, kind) {
+  const found = parts.get(id);
+  if (!(found instanceof kind)) throw new Error(`The explorer has no ${kind.name} "${id}".`);
+  return found;
+}
+
+/** Name an element, so that `partOf` finds it.
+ * @template {Element} T
+ * @param {string} id
+ * @param {T} made
+ * @returns {T} */
+function newPart(id, made) {
+  made.id = prefix + id;
+  parts.set(id, made);
+  return made;
+}
+
 /** @type {(id: string) => HTMLElement} */
 const byId = (id) => partOf(id, HTMLElement);
 /** @type {(id: string) => HTMLInputElement} */
 const inputOf = (id) => partOf(id, HTMLInputElement);
+/** @type {(id: string) => SVGSVGElement} */
+const svgOf = (id) => partOf(id, SVGSVGElement);
 
-/** @type {Robot} */
-const robot = JSON.parse(byId("robot-data").textContent);
 const DEGREE = Math.PI / 180;
 const COLUMNS = 240; // fibres of a slice: one every pixel and a half
 const NEAR_SINGULAR = 0.02; // of the largest |det J|: here the arm looks stretched
@@ -15,18 +46,23 @@ const reachable = planeBox(robot);
 
 /** @type {State} */
 const state = {
-  q: [...robot.q],
-  scale: robot.polygon ? robot.polygon.largest : 0,
+  q: [...(options.q ?? robot.q)],
+  scale: options.scale ?? (robot.polygon ? robot.polygon.largest : 0),
   walk: 0,
   progress: 0,
   speed: 1,
-  show: { workspace: true, polygon: Boolean(robot.polygon), sample: false, names: false },
+  show: {
+    workspace: true,
+    polygon: Boolean(robot.polygon),
+    sample: false,
+    names: false,
+    ...options.show,
+  },
   sample: [],
   path: null,
   mirror: null,
   side: 0,
-  crossed: false,
-  hover: null,
+  hover: options.lit ?? null,
 };
 
 /* --- what depends on the held joints ----------------------------------------------------------- */
@@ -85,7 +121,8 @@ function largestDeterminant(map) {
 function judgeSample() {
   return robot.sample.map((pair) => {
     const q = withPair(robot, state.q, pair);
-    return { pair, safe: isSafe(margins(robot, q)), tool: toolAt(slice.map, pair) };
+    const home = slice.home === null || pieceAt(slice.cells, pair) === slice.home;
+    return { pair, safe: isSafe(margins(robot, q)), home, tool: toolAt(slice.map, pair) };
   });
 }
 

@@ -1,11 +1,5 @@
 /* What the explorer says: numbers with units, the verdict on a pose, its posture. */
 
-/** @type {(value: number, digits: number) => string} */
-function number(value, digits) {
-  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
-  return text.replace("-", "−");
-}
-
 /** @type {(value: number) => string} */
 function lengthText(value) {
   return `${number(value, robot.reach < 10 ? 4 : 2)} ${robot.length_unit}`;
@@ -38,18 +32,37 @@ function betweenText(row) {
   return wall.used ? words : `${words}, not used`;
 }
 
+/** What keeps a margin, and how far it is from its boundary, or beyond it.
+ * @type {(margin: Margin, row: number) => string} */
+function marginText({ name, value, unit }, row) {
+  const size = valueText(Math.abs(value), unit);
+  const limit = robot.limits[row - robot.boundaries.length];
+  if (limit) {
+    const joint = robot.joints[limit.joint].name;
+    return `${joint} is ${size} ${value < 0 ? "beyond" : "from"} ${name}`;
+  }
+  const wall = robot.boundaries[row];
+  const [first, second] = wall.points.map((i) => robot.points[i].name);
+  if (wall.kind === "half-space")
+    return `point ${first} is ${size} ${value < 0 ? "beyond" : "from"} ${name}`;
+  const both = `points ${first} and ${second} (${name})`;
+  if (value < 0) return `${both} are ${size} too close`;
+  return `${both} are ${size} ${wall.required > 0 ? "farther apart than they must be" : "apart"}`;
+}
+
 /** Whether the pose is safe, and whether the home pose can be reached from it.
  * @type {(found: Margin[]) => string[]} */
 function statusText(found) {
+  /** @type {(one: Margin) => string} */
+  const words = (one) => marginText(one, found.indexOf(one));
   const bad = found.filter((one) => one.used && one.value < 0);
   if (bad.length > 0) {
-    const all = bad.map((one) => `${one.name} is violated by ${valueText(-one.value, one.unit)}`);
-    return ["Not safe.", `${all.join(", ")}.`];
+    const first = bad.slice(0, 2).map(words).join("; ");
+    const more = bad.length > 2 ? `; and ${bad.length - 2} more` : "";
+    return ["Not safe.", `${first[0].toUpperCase()}${first.slice(1)}${more}.`];
   }
   const close = tightest(robot, found);
-  const nearby = close
-    ? `Closest: ${close.name}, ${valueText(close.value, close.unit)} to spare.`
-    : "Nothing bounds this arm.";
+  const nearby = close ? `Closest: ${words(close)}.` : "Nothing bounds this arm.";
   const away = slice.home !== null && pieceAt(slice.cells, inView(pairOf(state.q))) !== slice.home;
   return [away ? "Safe, but cut off from home." : "Safe.", nearby];
 }

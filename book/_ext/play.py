@@ -1,0 +1,143 @@
+"""Figures that one can move: pages with a hook get the engine, their kinds' scripts, their data.
+
+A hook is a paragraph of its own in a page's Markdown, and nothing where no script runs::
+
+    <div class="play" data-figure="KIND" data-replaces="ID"></div>
+
+``_static/play/play.js`` draws a figure of that kind there. The image in the figure ``ID``, if the
+hook names one, gives place to it and comes back on paper. ``data-robot`` and ``data-rule`` name a
+packaged robot and a rule of `qbound.find_region`; whatever else begins with ``data-`` is an option
+of the kind.
+
+What a kind is told beyond its robot is the JSON that ``play_data/KIND.py`` returns, if there is
+such a module: ``def data(region: Region) -> object``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+from collections.abc import Iterator
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from explorer_pages import paths_of
+from sphinx.application import Sphinx
+from sphinx.util import logging
+from sphinx.util.typing import ExtensionMetadata
+
+from qbound import Region, find_region, load_robot
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import engine_script, engine_style
+from qbound.files import write_whole
+
+HERE = Path(__file__).resolve().parent
+SCRIPTS = HERE.parent / "_static" / "play"
+
+WITHOUT_PARTS = {"explorer"}
+"""Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
+
+LOGGER = logging.getLogger(__name__)
+
+Options = dict[str, str]
+
+
+class Hooks(HTMLParser):
+    """Collect the options of every hook in a piece of HTML."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[Options] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {name: value or "" for name, value in attrs}
+        if tag == "div" and given.get("class") == "play":
+            self.found.append(
+                {k.removeprefix("data-"): v for k, v in given.items() if k.startswith("data-")}
+            )
+
+
+def hooks(page: nodes.document | None) -> list[Options]:
+    """Return the options of a page's hooks, in the page's order."""
+    parser = Hooks()
+    for raw in page.findall(nodes.raw) if page else ():
+        if "html" in raw["format"].split():
+            parser.feed(raw.astext())
+    return parser.found
+
+
+def robot_key(hook: Options) -> str:
+    """Name a robot's region as the loader does: its file, and the rule unless it is the usual."""
+    rule = hook.get("rule", "clearance")
+    return hook.get("robot", "minervabot-v2") + ("" if rule == "clearance" else f"-{rule}")
+
+
+@cache
+def region_of(robot: str, rule: str) -> Region:
+    """Return the region that a hook names."""
+    return find_region(load_robot(robot), rule=rule)  # type: ignore[arg-type]
+
+
+def scripts_of(hook: Options) -> Iterator[tuple[str, str | None]]:
+    """Yield the scripts that a hook needs: address below ``_static``, text if it is made here."""
+    kind, key = hook.get("figure", ""), robot_key(hook)
+    if kind != "explorer" and not (SCRIPTS / f"{kind}.js").is_file():
+        LOGGER.warning("no figure kind %r: there is no book/_static/play/%s.js", kind, kind)
+        return
+    name = hook.get("robot", "minervabot-v2")
+    region = region_of(name, hook.get("rule", "clearance"))
+    told = explorer_data(region, paths_of(name))
+    yield f"play/robots/{key}.js", table_entry("qboundRobots", key, told)
+    if (HERE / "play_data" / f"{kind}.py").is_file():
+        data = importlib.import_module(f"play_data.{kind}").data(region)
+        yield f"play/data/{kind}-{key}.js", table_entry("qboundData", f"{kind}-{key}", data)
+    if kind != "explorer":
+        yield f"play/{kind}.js", None
+
+
+def table_entry(table: str, key: str, value: Any) -> str:
+    """Return a classic script that puts a value into one of the loader's tables."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    return f"window.{table} ??= {{}};\nwindow.{table}[{json.dumps(key)}] = {text};\n"
+
+
+def add_scripts(
+    app: Sphinx,
+    pagename: str,
+    templatename: str,
+    context: dict[str, Any],
+    doctree: nodes.document | None,
+) -> None:
+    """Give a page with hooks the engine, what each hook needs, and last the loader."""
+    found = hooks(doctree)
+    if not found:
+        return
+    files: dict[str, str | None] = {"play/engine.js": engine_script()}
+    if any(hook.get("figure") not in WITHOUT_PARTS for hook in found):
+        files["play/parts.js"] = None
+    files |= {address: text for hook in found for address, text in scripts_of(hook)}
+    files |= {"play/play.js": None}
+    for address, text in files.items():
+        if text is not None:
+            write_static(app, address, text)
+        app.add_js_file(address, loading_method="defer")
+    write_static(app, "play/engine.css", engine_style())
+    for address in ("play/engine.css", "play/play.css"):
+        app.add_css_file(address)
+
+
+def write_static(app: Sphinx, address: str, text: str) -> None:
+    """Write a file that pages load, unless it stands there."""
+    file = Path(app.outdir, "_static", address)
+    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(file, text.encode())
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register with Sphinx; pages of other builders than HTML keep their pictures."""
+    app.connect("html-page-context", add_scripts)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
