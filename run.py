@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """One command for everything: make the book, run the tests, lint, lock, clean.
 
-    python3 run.py book     execute the notebooks and build the book
+    python3 run.py book     execute the notebooks that changed and build the book
     python3 run.py test     run the tests (further arguments go to pytest)
     python3 run.py serve    show the book in a browser and follow what an author changes
+    python3 run.py lab      open the notebooks in JupyterLab, as copies of your own
     python3 run.py pdf      print the book to one PDF (needs Chromium)
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
-    python3 run.py renumber number the chapters in the order of book/index.md, links included
+    python3 run.py renumber write numbers, references, first cells and the list of the chapters
     python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
     python3 run.py licences list the licence of everything that is installed in .venv
     python3 run.py pack     make the files of a release in dist/, with their checksums
@@ -44,21 +45,36 @@ BUILD = ROOT / "book" / "_build"
 GENERATED = ROOT / "book" / "generated"
 FRONT_PAGE = BUILD / "html" / "index.html"
 BOOK_STAMP = BUILD / "made-from"
+PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
+RESULTS = ROOT / "results"
+NEXT = ROOT / ".next"  # the book is made here, and takes the place of the old one when it is whole
+WHOLE = "whole"  # a file of NEXT: all is made
+WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = VENV / "javascript" / "node_modules"
 
 # What the book is made from (a change of any of it makes the book stale), and what is no source.
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
+SOURCES += ["tools/reads"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
 DIST = ROOT / "dist"
 CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
+# What of the shell's environment may change a result, by the beginning of its name.
+COUNTS = ("PYTHON", "IPYTHON", "JUPYTER", "MPL", "NUMPY", "NPY", "OMP_", "OPENBLAS", "MKL")
+COUNTS += ("LANG", "LC_", "TZ")
+# Programs that a chapter's process may start without reading anything of ours.
+HARMLESS = {"fc-list", "uname"}
+
 SCRIPTS = ["src/qbound/explorer/web", "book/_static", "tests/test_book_browser.js"]
 PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
+
+# What `run.py renumber` does to the chapters, in this order; lint asks that nothing is left to do.
+CHAPTER_TOOLS = ["renumber", "references", "first_cells", "list_chapters"]
 
 PORT = 8000  # of the author's local page
 
@@ -85,14 +101,16 @@ def say(text: str) -> None:
     print(text, flush=True)
 
 
-def call(title: str, command: Command, quiet: bool = False) -> int:
+def call(title: str, command: Command, quiet: bool = False, **settings: object) -> int:
     """Run a step in the repository, say how long it took, and return its exit status.
 
     A quiet command gets a sign of life every 15 seconds; the others show their own progress.
+    Settings are added to its environment.
     """
     say(f"-- {title}")
     start = time.monotonic()
-    with subprocess.Popen(command, cwd=ROOT, env=environment()) as process:
+    more = {name: str(value) for name, value in settings.items()}
+    with subprocess.Popen(command, cwd=ROOT, env=environment() | more) as process:
         while process.poll() is None:
             try:
                 process.wait(timeout=15 if quiet else None)
@@ -103,23 +121,24 @@ def call(title: str, command: Command, quiet: bool = False) -> int:
     return process.returncode
 
 
-def must(title: str, command: Command, quiet: bool = False) -> None:
+def must(title: str, command: Command, quiet: bool = False, **settings: object) -> None:
     """Run a step that the next ones need."""
-    status = call(title, command, quiet)
+    status = call(title, command, quiet, **settings)
     if status != 0:
         raise Failed(f"Stopped at: {title}.", status)
 
 
 def environment() -> dict[str, str]:
     """Return the shell's environment, without what would mix in the user's code and settings."""
-    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    mixes_in = {"PYTHONPATH", "QBOUND_RESULTS"}
+    kept = {name: value for name, value in os.environ.items() if name not in mixes_in}
     return kept | {
         "IPYTHONDIR": str(VENV / "ipython"),
         "JUPYTER_PREFER_ENV_PATH": "1",
         "MPLCONFIGDIR": str(VENV / "matplotlib"),
         "OMP_NUM_THREADS": "1",  # sums of matrix products in one order, whatever the cores
         "OPENBLAS_NUM_THREADS": "1",
-        "PYTHONHASHSEED": "0",  # tests/test_hash_seeds.py executes the chapters under another
+        "PYTHONHASHSEED": "0",  # tests/test_run_twice.py executes the chapters under another
         "PYTHONNOUSERSITE": "1",
     }
 
@@ -220,43 +239,207 @@ def pip(venv: Path, command: str = "install") -> Command:
 # --- the book -------------------------------------------------------------------------------------
 
 
-def make_book() -> None:
-    """Execute the notebooks, once, and build the pages from the executed copies."""
+def make_book(update: bool = False, printed: Path | None = None) -> None:
+    """Execute the chapters that changed, build the pages, and only then replace the old book.
+
+    All is made in NEXT, from copies of the sources. The pages are built anew; with `update` only
+    those whose own text changed, which is enough for an author who writes. A PDF of an older book
+    goes, unless it is handed on as `printed`.
+    """
+    take_over()
     made_from = fingerprint(ROOT)
-    for made in [BUILD, GENERATED, CHAPTERS]:
-        remove(made)
-    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
-    if not notebooks:
-        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
-    execute(notebooks)
+    copy_sources()
+    if update and BUILD.exists() and GENERATED.exists():
+        skipped = shutil.ignore_patterns("pdf", PDF.name)
+        shutil.copytree(BUILD, in_next(BUILD), ignore=skipped)
+        shutil.copytree(GENERATED, in_next(GENERATED))
+    if printed is not None:
+        shutil.copy(printed, in_next(PDF))
+    make_chapters()
     build_pages()
     if fingerprint(ROOT) != made_from:
         raise Failed("The sources changed while the book was made: make it again.")
-    BOOK_STAMP.write_text(made_from)
+    in_next(BOOK_STAMP).write_text(stamped(made_from, in_next(RESULTS)))
+    (NEXT / WHOLE).touch()
+    take_over()
 
 
-def execute(notebooks: list[Path]) -> None:
-    """Execute copies of the notebooks."""
-    chapters = copy_notebooks(notebooks)
+def in_next(place: Path) -> Path:
+    """Return where a part of the book is made."""
+    return NEXT / place.relative_to(ROOT)
+
+
+def copy_sources() -> None:
+    """Start over in NEXT: what an interrupted build has left there is worth nothing."""
+    remove(NEXT)
+    for name in source_hashes(ROOT):
+        (NEXT / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, NEXT / name)
+    in_next(RESULTS).mkdir()
+
+
+def take_over() -> None:
+    """Put a book that is whole in the place of the old one.
+
+    A kill between two of these steps leaves the mark, and the next command goes on with them.
+    """
+    if not (NEXT / WHOLE).exists():
+        return
+    made = {file.name for file in in_next(RESULTS).iterdir()}
+    RESULTS.mkdir(exist_ok=True)
+    for name in sorted(made):
+        draft = RESULTS / f".{name}.part"
+        shutil.copy(in_next(RESULTS) / name, draft)
+        draft.replace(RESULTS / name)
+    for file in RESULTS.glob("*.json"):
+        if file.name not in made:
+            file.unlink()
+    for place in [CHAPTERS, GENERATED, BUILD]:
+        if in_next(place).exists():
+            old = NEXT / f"old-{place.name}"
+            remove(old)
+            if place.exists():
+                place.rename(old)
+            in_next(place).rename(place)
+    (NEXT / WHOLE).unlink()
+    remove(NEXT)
+
+
+def build_pages() -> None:
+    """Build the pages in NEXT."""
+    must(
+        "Building the pages",
+        sphinx("html", in_next(ROOT / "book"), in_next(BUILD)),
+        quiet=True,
+        QBOUND_RESULTS=in_next(RESULTS),
+    )
+
+
+def sphinx(builder: str, source: Path, target: Path) -> Command:
+    strict = ["-W", "-n", "--keep-going", "-q", "-b", builder]
+    doctrees = ["-d", target / f"doctrees-{builder}"]
+    return [in_venv("python"), "-m", "sphinx", *strict, *doctrees, source, target / builder]
+
+
+# --- the chapters ---------------------------------------------------------------------------------
+
+
+def make_chapters() -> None:
+    """Execute the chapters that changed, and take the others as they are, with their results."""
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    if not notebooks:
+        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
+    in_next(CHAPTERS).mkdir()
+    now = settings()
+    current = [notebook for notebook in notebooks if is_current(notebook.stem, now)]
+    for notebook in current:
+        keep(notebook.stem)
+    changed = [notebook for notebook in notebooks if notebook not in current]
+    if current:
+        say(f"-- {len(current)} of {len(notebooks)} notebooks, and what they read, are unchanged")
+    if changed:
+        execute(changed, now)
+
+
+def execute(notebooks: list[Path], now: dict[str, str]) -> None:
+    """Execute copies of the notebooks; the committed ones stay without outputs."""
+    for cache in list((ROOT / "src").rglob("__pycache__")):
+        remove(cache)  # a compiled module is found current by the time and size of its source alone
+    chapters = [Path(shutil.copy(notebook, in_next(CHAPTERS))) for notebook in notebooks]
     nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
     pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
-    must(f"Executing {len(chapters)} notebooks", [*pytest, *nbmake, *chapters])
+    ours = ["-c", ROOT / "pyproject.toml", "-p", "per_chapter"]
+    must(
+        f"Executing {len(chapters)} notebooks",
+        [*pytest, *ours, *nbmake, *chapters],
+        PYTHONPATH=TOOLS / "reads",
+        QBOUND_MADE=NEXT / "made",
+    )
     for chapter in chapters:
         if unrun_cells(chapter):
             raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
+        collect(chapter, now)
 
 
-def build_pages(builder: str = "html") -> None:
-    strict = ["-W", "-n", "--keep-going", "-q", "-b", builder]
-    doctrees = ["-d", BUILD / f"doctrees-{builder}"]
-    sphinx = [in_venv("python"), "-m", "sphinx", *strict, *doctrees, ROOT / "book"]
-    must("Building the pages", [*sphinx, BUILD / builder], quiet=True)
+def collect(chapter: Path, now: dict[str, str]) -> None:
+    """Take over a chapter's results, and write down all that the chapter was made from."""
+    own = NEXT / "made" / chapter.stem
+    results = {file.name: hash_of(file) for file in own.glob("*.json")}
+    for name in results:
+        if in_next(RESULTS / name).exists():
+            raise Failed(f"{chapter.name} writes {name}, as another chapter does.")
+        shutil.copy(own / name, in_next(RESULTS))
+    lines = (own / "reads").read_text(encoding="utf-8").splitlines()
+    reads = [json.loads(line) for line in lines]
+    programs = {name for kind, name, *_ in reads if kind == "program"}
+    files = {name: total for kind, name, *rest in reads if kind == "file" for total in rest}
+    folders = {name: total for kind, name, *rest in reads if kind == "folder" for total in rest}
+    if any(name.startswith(f"{RESULTS.name}/") for name in files):
+        raise Failed(f"{chapter.name} reads results, which other chapters write: they run at once.")
+    if programs - HARMLESS:  # they may have read anything
+        files |= {name.as_posix(): total for name, total in source_hashes(ROOT).items()}
+    files[f"notebooks/{chapter.name}"] = hash_of(ROOT / "notebooks" / chapter.name)
+    made = {"settings": now, "files": files, "folders": folders, "programs": sorted(programs)}
+    made |= {"copy": hash_of(chapter), "results": results}
+    content = json.dumps(made, indent=1, sort_keys=True)
+    in_next(record(chapter.stem)).write_text(content, encoding="utf-8", newline="\n")
 
 
-def copy_notebooks(notebooks: list[Path]) -> list[Path]:
-    """Copy notebooks to where they are executed; the committed ones stay without outputs."""
-    CHAPTERS.mkdir(parents=True, exist_ok=True)
-    return [Path(shutil.copy(notebook, CHAPTERS)) for notebook in notebooks]
+def record(stem: str) -> Path:
+    """Return the file that says what an executed chapter was made from."""
+    return CHAPTERS / f"{stem}.made-from.json"
+
+
+def is_current(stem: str, now: dict[str, str]) -> bool:
+    """Tell whether executing a chapter again would do the same again, and its work is here."""
+    try:
+        made = json.loads(record(stem).read_text(encoding="utf-8"))
+        results = {RESULTS / name: total for name, total in made["results"].items()}
+        files = {ROOT / name: total for name, total in made["files"].items()} | results
+        files[CHAPTERS / f"{stem}.ipynb"] = made["copy"]
+        same = all(hash_of(file) == total for file, total in files.items())
+        listed = all(names_in(ROOT / name) == total for name, total in made["folders"].items())
+        return made["settings"] == now and same and listed
+    except (OSError, ValueError, LookupError, AttributeError, TypeError):
+        return False  # there is no record, or it is none
+
+
+def keep(stem: str) -> None:
+    """Take a chapter that is current, with its results, into the next book."""
+    made = json.loads(record(stem).read_text(encoding="utf-8"))
+    for file in [record(stem), CHAPTERS / f"{stem}.ipynb"]:
+        shutil.copy2(file, in_next(CHAPTERS))
+    for name in made["results"]:
+        shutil.copy2(RESULTS / name, in_next(RESULTS))
+
+
+def hash_of(file: Path) -> str | None:
+    """Return the hash of a file, or None where there is no file."""
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else None
+
+
+def names_in(folder: Path) -> str | None:
+    """Return the hash of the names in a folder, as tools/reads notes it, or None without one."""
+    if not folder.is_dir():
+        return None
+    names = {path.name for path in folder.iterdir()} - {"__pycache__", ".ipynb_checkpoints", ".git"}
+    return digest(*sorted(names))
+
+
+def settings() -> dict[str, str]:
+    """Return what every chapter hangs on besides what it reads here."""
+    question = "import sys, platform; print(sys.version, sys.platform, platform.machine())"
+    python = subprocess.check_output([in_venv("python"), "-c", question], cwd=ROOT, text=True)
+    places = [VENV / "Lib" / "site-packages", *VENV.glob("lib/python*/site-packages")]
+    found = {path.name for place in places for path in place.glob("*.dist-info")}
+    counts = {k: v for k, v in environment().items() if k.upper().startswith(COUNTS)}
+    return {
+        "python": python.strip(),
+        "lock": digest(LOCK.read_text(encoding="utf-8")),
+        "packages": digest(*sorted(found)),
+        "environment": digest(*(f"{name}={counts[name]}" for name in sorted(counts))),
+        "how": hash_of(TOOLS / "reads" / "sitecustomize.py") or "",
+    }
 
 
 def unrun_cells(notebook: Path) -> list[int]:
@@ -290,34 +473,41 @@ def is_product(name: Path) -> bool:
 
 
 def book_is_fresh() -> bool:
+    take_over()
     made = FRONT_PAGE.exists() and BOOK_STAMP.exists()
-    return made and BOOK_STAMP.read_text() == fingerprint(ROOT)
+    return made and BOOK_STAMP.read_text() == stamped(fingerprint(ROOT), RESULTS)
+
+
+def stamped(made_from: str, results: Path) -> str:
+    """Return what the stamp says of a book: its sources, and the results that belong to it."""
+    files = sorted(results.glob("*.json"))
+    return digest(made_from, *(f"{file.name} {hash_of(file)}" for file in files))
 
 
 # --- the author's loop and the PDF ----------------------------------------------------------------
 
 
 def remake(changed: set[Path]) -> None:
-    """Make again what hangs on the changed sources: pages, these notebooks, or everything."""
-    if any(name.parts[0] not in {"book", "notebooks"} for name in changed):
-        make_book()
-        return
-    texts = [ROOT / name for name in sorted(changed) if name.parts[0] == "notebooks"]
-    stems = sorted({text.stem for text in texts if text.suffix in {".md", ".ipynb"}})
-    for text in (text for text in texts if text.suffix == ".md" and text.exists()):
-        must(f"Pairing {text.name}", [in_venv("jupytext"), "--quiet", "--to", "ipynb", text])
-    notebooks = [ROOT / "notebooks" / f"{stem}.ipynb" for stem in stems]
-    if notebooks:
-        execute([notebook for notebook in notebooks if notebook.exists()])
-    build_pages()
+    """Make again what hangs on the changed sources; where text alone changed, few pages."""
+    texts = {name for name in changed if name.suffix in {".md", ".ipynb"}}
+    here = sorted(name for name in texts if (ROOT / name).exists())
+    for name in here:
+        if name.parts[0] == "notebooks" and name.suffix == ".md" and name.stem != "README":
+            pair = [in_venv("jupytext"), "--quiet", "--to", "ipynb", ROOT / name]
+            must(f"Pairing {name.name}", pair)
+    make_book(update=set(here) == changed)
+
+
+def browsers() -> list[str]:
+    """Return the browsers of the family that prints PDFs."""
+    names = ["chromium", "chromium-browser", "google-chrome", "chrome", "msedge"]
+    return [path for path in map(shutil.which, names) if path]
 
 
 def find_browser() -> str:
-    names = ["chromium", "chromium-browser", "google-chrome", "chrome", "msedge"]
-    found = [path for path in map(shutil.which, names) if path]
-    if not found:
+    if not browsers():
         raise Failed("The PDF is printed by Chromium, and there is none: install it first.")
-    return found[0]
+    return browsers()[0]
 
 
 # --- the commands ---------------------------------------------------------------------------------
@@ -375,23 +565,40 @@ def watch() -> None:
 
 
 def pdf() -> int:
-    """Print the whole book to one PDF, beside its pages."""
+    """Print the whole book to one PDF, which its front page then offers."""
     browser = find_browser()
     prepare()
     if not book_is_fresh():
         make_book()
-    build_pages("singlehtml")
-    target, page = BUILD / "qbound.pdf", BUILD / "singlehtml" / "index.html"
-    target.unlink(missing_ok=True)
+    print_book(browser)
+    say(f"The PDF: {PDF.as_uri()}")
+    return 0
+
+
+def print_book(browser: str) -> None:
+    """Print aside; a PDF that is whole comes into the book, with pages that offer it."""
+    scratch = BUILD / "pdf"
+    remove(scratch)
+    command = sphinx("singlehtml", ROOT / "book", scratch)
+    must("Building the book as one page", command, quiet=True)
+    draft, page = scratch / PDF.name, scratch / "singlehtml" / "index.html"
     options = ["--headless", "--disable-gpu", "--no-pdf-header-footer"]
     options += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # as in CI
     patience = ["--virtual-time-budget=600000", "--generate-pdf-document-outline"]
-    command = [browser, *options, *patience, f"--print-to-pdf={target}", page.as_uri()]
-    must("Printing", command, quiet=True)
-    if not target.exists():  # a browser may fail and say that all is well
+    printing = [browser, *options, *patience, f"--print-to-pdf={draft}", page.as_uri()]
+    must("Printing", printing, quiet=True)
+    if not draft.exists():  # a browser may fail and say that all is well
         raise Failed("The browser has printed nothing.")
-    say(f"The PDF: {target.as_uri()}")
-    return 0
+    make_book(update=True, printed=draft)
+
+
+def lab() -> int:
+    """Open the notebooks in JupyterLab: copies of your own in workbook/, which git ignores."""
+    prepare()
+    must("Copying the notebooks", [in_venv("python"), TOOLS / "workbook.py", WORKBOOK])
+    say(f"Your copies: {WORKBOOK} (delete one, and the next start brings it anew)")
+    command = [in_venv("python"), "-m", "jupyter", "lab", "--notebook-dir", WORKBOOK]
+    return subprocess.call(command, cwd=ROOT, env=environment())
 
 
 def lint() -> int:
@@ -402,11 +609,14 @@ def lint() -> int:
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
-        "Numbers of chapters (run.py renumber)": [
-            in_venv("python"),
-            TOOLS / "renumber.py",
-            "--check",
-        ],
+        **{
+            f"Chapters (run.py renumber: {name})": [
+                in_venv("python"),
+                TOOLS / f"{name}.py",
+                "--check",
+            ]
+            for name in CHAPTER_TOOLS
+        },
         "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
@@ -461,8 +671,12 @@ def find_uv(scratch: Path) -> str | Path:
 
 
 def renumber() -> int:
-    """Give the chapters the numbers of their order in book/index.md: files, titles, links."""
-    return subprocess.call([sys.executable, TOOLS / "renumber.py"], cwd=ROOT)
+    """Write what chapters have in common: numbers, references, first cells, their list."""
+    for name in CHAPTER_TOOLS:
+        status = subprocess.call([sys.executable, TOOLS / f"{name}.py"], cwd=ROOT)
+        if status != 0:
+            return status
+    return 0
 
 
 def metadata() -> int:
@@ -481,6 +695,8 @@ def pack() -> int:
     prepare()
     if not book_is_fresh():
         make_book()
+    if browsers() and not PDF.exists():
+        print_book(find_browser())
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     name = f"qbound-{{}}-{project['version']}"
     remove(DIST)
@@ -513,13 +729,13 @@ def write_checksums() -> None:
 
 def clean() -> int:
     """Remove the environment, the book and the caches; results/ stays."""
-    for path in [VENV, CHAPTERS, BUILD, GENERATED, *(ROOT / name for name in CACHES + BUILT)]:
+    for path in [VENV, NEXT, CHAPTERS, BUILD, GENERATED, *(ROOT / name for name in CACHES + BUILT)]:
         remove(path)
     say("Removed the environment, the book and the caches.")
     return 0
 
 
-COMMANDS = [book, test, serve, pdf, lint, lock, renumber, metadata, licences, pack, clean]
+COMMANDS = [book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, pack, clean]
 
 
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:

@@ -44,7 +44,11 @@ extensions = [
     "paper_numbers",
     "book_pages",
     "ledger_links",
+    "glossary_links",
+    "cards",
+    "panels",
     "explorer_pages",
+    "front_page",
     "play",
     "recorded_numbers",
     "result_pages",
@@ -93,7 +97,8 @@ html_theme = "sphinx_book_theme"
 html_title = PYPROJECT["tool"]["qbound"]["title"]
 html_static_path = ["_static", mathjax_file()]
 html_css_files = ["book.css"]
-html_js_files = ["book.js", ("ledger.js", {"defer": "defer"}), ("results.js", {"defer": "defer"})]
+DEFERRED = ("hover.js", "ledger.js", "results.js")
+html_js_files = ["book.js", *((name, {"defer": "defer"}) for name in DEFERRED)]
 html_favicon = "_static/logo.svg"
 html_context = {"default_mode": "auto"}
 html_domain_indices = False
@@ -108,6 +113,7 @@ html_theme_options = {
     "navbar_persistent": [],  # the theme's default adds a second search box
     "show_toc_level": 2,
     "use_fullscreen_button": False,
+    "use_sidenotes": True,  # a footnote stands in the margin where there is one
     "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
     "extra_footer": f"<p>{project} {version}. Every number and figure of this book was computed "

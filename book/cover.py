@@ -1,6 +1,7 @@
 """Draw the picture of the front page and of the README: python book/cover.py [FILE].
 
-Left the joint values that are safe, right where the tool goes over them, by the exact workspace.
+The joint values that are safe by the paper's rule, and where the tool goes over them, by the exact
+workspace: side by side in FILE, one below the other for a phone in FILE's neighbour "...-narrow".
 """
 
 import re
@@ -11,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib import pyplot as plt
 
-from qbound import figures, find_region, load_robot
+from qbound import Region, Robot, figures, find_region, load_robot
 from qbound.figures.workspace import draw_patches
-from qbound.workspace.areas import find_workspace
+from qbound.workspace.areas import Workspace, find_workspace
 from qbound.workspace.planar import planar_arm
 
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
@@ -21,36 +22,54 @@ PATH, NUMBER = re.compile(r' d="[^"]*"'), re.compile(r"-?\d+\.\d{3,}")
 POSE = np.radians([25.0, -75.0])
 
 
-def draw() -> plt.Figure:
-    robot = load_robot("minervabot-v2")
-    region = find_region(robot)
-    workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
-    figure, (joints, space) = plt.subplots(1, 2, figsize=(10.4, 4.6), width_ratios=[1, 1.35])
-    figures.draw_components(joints, region)
-    figures.joint_axes(joints, robot)
+def draw_joint_space(ax: plt.Axes, region: Region, workspace: Workspace) -> None:
+    """Draw the safe joint values, the singular curve and the pose of the arm."""
+    figures.draw_components(ax, region)
+    figures.joint_axes(ax, region.robot)
     singular = np.degrees(workspace.arm.singularity[0] - np.pi)
-    joints.axhline(singular, color=figures.COLLIDING, ls=":", lw=2)
-    joints.plot(*np.degrees(POSE), "P", color=figures.INK, ms=9, mec="white", zorder=7)
-    joints.set_title("Safe joint values")
-    draw_patches(space, workspace)
-    figures.draw_robot(space, robot, POSE)
-    figures.plane_axes(space, robot, [(-63, 63), (-4, 83)])
-    space.axhline(0, color=figures.INK, lw=1)
-    space.set_title("Where the tool goes: light in one posture, dark in two")
-    return figure
+    ax.axhline(singular, color=figures.COLLIDING, ls=":", lw=2)
+    ax.plot(*np.degrees(POSE), "P", color=figures.INK, ms=9, mec="white", zorder=7)
+    ax.set_title("Safe joint values")
 
 
-def main(target: Path = TARGET) -> None:
+def draw_plane(ax: plt.Axes, robot: Robot, workspace: Workspace) -> None:
+    """Draw the arm over the places that its tool reaches."""
+    draw_patches(ax, workspace)
+    figures.draw_robot(ax, robot, POSE)
+    figures.plane_axes(ax, robot, [(-63, 63), (-4, 83)])
+    ax.axhline(0, color=figures.INK, lw=1)
+    ax.set_title("Where the tool goes:\nlight in one posture, dark in two")
+
+
+def save(target: Path, robot: Robot, region: Region, workspace: Workspace, narrow: bool) -> None:
+    """Draw both pictures into one file, for a wide page or for a narrow one."""
+    rows, columns = (2, 1) if narrow else (1, 2)
+    size = (4.6, 7.9) if narrow else (10.4, 4.6)
+    widths = [1] if narrow else [1, 1.35]
+    heights = [1.25, 1] if narrow else [1]
+    figure, (joints, plane) = plt.subplots(
+        rows, columns, figsize=size, width_ratios=widths, height_ratios=heights
+    )
+    draw_joint_space(joints, region, workspace)
+    draw_plane(plane, robot, workspace)
     buffer = StringIO()
-    with plt.rc_context(figures.STYLE):
-        draw().savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    plt.close("all")
+    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    plt.close(figure)
     target.write_text(PATH.sub(rounded, buffer.getvalue()), encoding="utf-8")
 
 
 def rounded(path: re.Match[str]) -> str:
     """Round the points of a path to hundredths of a typographic point: half the bytes."""
     return NUMBER.sub(lambda number: f"{float(number[0]):.2f}", path[0])
+
+
+def main(target: Path = TARGET) -> None:
+    robot = load_robot("minervabot-v2")
+    region = find_region(robot, rule="paper")
+    workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
+    with plt.rc_context(figures.STYLE):
+        for file, narrow in ((target, False), (target.with_stem(f"{target.stem}-narrow"), True)):
+            save(file, robot, region, workspace, narrow)
 
 
 if __name__ == "__main__":

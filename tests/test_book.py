@@ -1,32 +1,34 @@
 """The built pages, read as text: complete, self-contained, and well formed."""
 
+import importlib
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from collections import Counter
 from copy import copy
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 from unittest import mock
 from xml.etree import ElementTree
 
-import nbformat
+import numpy as np
 import pytest
 from bs4 import BeautifulSoup, Tag
-from sphinx.testing.util import SphinxTestApp
+from matplotlib import pyplot as plt
 
+from qbound import figures
 from qbound.cli import command_parsers
+from support.trial_book import BOOK, ROOT, TRIAL_INDEX, build_trial
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
 )
 
-ROOT = Path(__file__).resolve().parents[1]
-BOOK = ROOT / "book"
 HTML = BOOK / "_build" / "html"
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
@@ -91,7 +93,7 @@ def test_every_image_has_words(page):
 @pytest.mark.parametrize("page", PAGES)
 def test_every_figure_is_drawn_in_lines(page):
     figures = [img["src"] for img in read(page).select("article img")]
-    assert [src for src in figures if not src.endswith(".svg")] == []
+    assert [src for src in figures if not src.partition("#")[0].endswith(".svg")] == []
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -168,8 +170,26 @@ def test_a_wide_picture_has_a_box_in_which_it_scrolls():
     pages = [read(page) for page in PAGES if page.startswith("chapters/")]
     boxed = {image["src"] for page in pages for image in page.select(".wide-figure > img")}
     everywhere = {image["src"] for page in pages for image in page.select("article img")}
-    wide = {src for src in everywhere if inches(HTML / "chapters" / src) > 6.5}
+    wide = {src for src in everywhere if "#" not in src and inches(HTML / "chapters" / src) > 6.5}
     assert wide == boxed != set()
+
+
+VIEW = re.compile(r"(.+)#svgView\(viewBox\(([\d.]+),([\d.]+),([\d.]+),([\d.]+)\)\)")
+
+
+def test_the_panels_of_a_phone_are_views_of_the_picture_and_leave_out_none_of_its_width():
+    pages = [read(page) for page in PAGES if page.startswith("chapters/")]
+    boxes = [box for page in pages for box in page.select(".panels")]
+    assert boxes
+    for box in boxes:
+        [whole] = box.find_previous_sibling(class_="has-panels").find_all("img")
+        views = [VIEW.fullmatch(image["src"]) for image in box.find_all("img")]
+        assert {view[1] for view in views} == {whole["src"]}
+        lefts, widths = ([float(view[i]) for view in views] for i in (2, 4))
+        rights = [left + width for left, width in zip(lefts, widths, strict=True)]
+        assert [*lefts, rights[-1]] == pytest.approx(
+            [0, *rights[:-1], 72 * inches(HTML / "chapters" / whole["src"])], abs=0.2
+        )
 
 
 def inches(svg: Path) -> float:
@@ -178,48 +198,55 @@ def inches(svg: Path) -> float:
     return float(root.get("width", "0").removesuffix("pt")) / 72
 
 
+# --- cards ----------------------------------------------------------------------------------------
+
+NAMED = re.compile(r"(equation|fig|tab|term)-|thm|(e|b|t|f|s|th)-[0-9]")
+
+
+@cache
+def cards() -> dict[str, dict[str, str]]:
+    text = (HTML / "_static" / "cards.js").read_text(encoding="utf-8")
+    return json.loads(text.removeprefix("var bookCards = ").removesuffix(";\n"))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_whatever_has_a_name_has_a_card(page):
+    links = [link["href"].partition("#") for link in read(page).select("article a.internal[href]")]
+    named = {(file, anchor) for file, _, anchor in links if NAMED.match(anchor)}
+    addresses = {f"{resolved(page, file)}#{anchor}" for file, anchor in named}
+    assert addresses <= cards().keys()
+
+
+def resolved(page: str, file: str) -> str:
+    """Return the page that a link on another leads to."""
+    return os.path.normpath(Path(page).parent / file).replace(os.sep, "/") if file else page
+
+
+def test_a_card_says_what_its_kind_should():
+    by_name = {card["name"]: card["html"] for card in cards().values()}
+    shown = BeautifulSoup(by_name["E-34"], "html.parser")
+    assert shown.select_one(".verdict").get_text() == "confirmed with a condition"
+    assert "atan2" in shown.get_text()
+    assert not shown.select("details, .ledger-evidence")
+    assert r"\beta_{7,3}" in by_name["Equation 29"]
+    assert "<img" in by_name["Figure 7"]
+    assert "<td" in by_name["Table 6"]
+    assert "nowhere singular" in by_name["Aspect"]
+    assert "Lizarraga" in by_name["Reference [1]"]
+    assert "satisfy" in by_name["Theorem 2"]
+
+
+def test_a_card_is_content_only_and_its_pictures_are_there():
+    for address, card in cards().items():
+        shown = BeautifulSoup(card["html"], "html.parser")
+        assert shown.get_text().strip() or shown.img, address
+        assert shown.select("a, script, [id], [tabindex]") == [], address
+        assert [i["src"] for i in shown.find_all("img") if not (HTML / i["src"]).exists()] == []
+
+
 def test_the_search_index_holds_the_words_of_the_chapters():
     assert read("search.html")
     assert "boundari" in (HTML / "searchindex.js").read_text(encoding="utf-8")  # the stem
-
-
-PYPROJECT = """
-[project]
-name = "qbound"
-version = "1.2.3"
-authors = [{{ name = "qbound maintainers" }}]
-[tool.qbound]
-title = "Feasible workspaces"
-repository = "{repository}"
-"""
-TRIAL_INDEX = "# Trial\n\n{verdict}`misprint`\n\n```{toctree}\nchapters/01_trial\n```\n"
-
-
-def build_trial(folder: Path, repository: str, index: str = TRIAL_INDEX) -> Path:
-    """Build a book of one chapter with the real configuration and an address of our choice."""
-    book = folder / "book"
-    for name in ("_ext", "_static", "_templates"):
-        shutil.copytree(BOOK / name, book / name)
-    for name in ("conf.py", "references.bib"):
-        shutil.copy(BOOK / name, book)
-    (folder / "pyproject.toml").write_text(PYPROJECT.format(repository=repository), "utf-8")
-    (book / "index.md").write_text(index, "utf-8")
-    (book / "chapters").mkdir()
-    output = [nbformat.v4.new_output("stream", text="2")]
-    cells = [
-        nbformat.v4.new_markdown_cell("# Trial chapter"),
-        nbformat.v4.new_code_cell("1 + 1", outputs=output, execution_count=7),
-    ]
-    python = {"language_info": {"name": "python"}}
-    notebook = nbformat.v4.new_notebook(cells=cells, metadata=python)
-    nbformat.write(notebook, book / "chapters" / "01_trial.ipynb")
-    app = SphinxTestApp("html", srcdir=book, builddir=folder)
-    try:
-        app.build()
-        assert app.warning.getvalue() == ""
-    finally:
-        app.cleanup()
-    return Path(app.outdir)
 
 
 @pytest.fixture(scope="module")
@@ -268,6 +295,76 @@ def test_the_page_of_the_command_is_its_own_help(tmp_path):
 def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
     with pytest.raises(AssertionError, match="unknown verdict 'plausible'"):
         build_trial(tmp_path, "", TRIAL_INDEX.replace("misprint", "plausible"))
+
+
+# --- panels, words, notes -------------------------------------------------------------------------
+
+
+def panels(file: Path) -> list[Any]:
+    """Return what the book's extension makes of a drawing."""
+    sys.path.insert(0, str(BOOK / "_ext"))
+    try:
+        return list(importlib.import_module("panels").panels_of(file))
+    finally:
+        sys.path.pop(0)
+
+
+def drawn(file: Path, columns: int, rows: int = 1, legend: bool = False) -> Path:
+    """Draw axes side by side as the chapters do."""
+    with plt.rc_context(figures.STYLE):
+        figure, axes = plt.subplots(rows, columns, figsize=(8, 3), layout="constrained")
+        for ax in np.ravel(axes):
+            ax.plot([0, 1], [0, 1000], label="a line")
+            ax.set(xlabel="$x$ / cm", ylabel="$y$ / cm", title="A panel")
+        if legend:
+            figure.legend(loc="outside lower center", ncols=9)
+        figure.savefig(file)
+    plt.close(figure)
+    return file
+
+
+@pytest.mark.parametrize(("columns", "rows", "found"), [(1, 1, 0), (2, 1, 2), (3, 1, 3), (2, 2, 2)])
+def test_a_drawing_is_cut_between_its_columns(tmp_path, columns, rows, found):
+    cut = panels(drawn(tmp_path / "drawn.svg", columns, rows))
+    assert len(cut) == found
+    assert all(one.right == two.left for one, two in pairwise(cut))
+
+
+def test_a_drawing_whose_legend_lies_across_is_not_cut(tmp_path):
+    assert panels(drawn(tmp_path / "drawn.svg", 2, legend=True)) == []
+
+
+GLOSSARY = """
+```{glossary}
+Vertex
+  A corner.
+
+Boundary function
+  Positive where safe.
+
+Arc
+  A piece.
+```
+"""
+WORDS = """# Trial chapter
+
+Each boundary function has vertices and an arc. A vertex again.
+
+## Next
+
+Boundary functions, `vertex`, *boundary function*, and a {term}`vertex <Vertex>`; a vertex."""
+
+
+def test_words_of_the_glossary_are_links_once_in_a_section(tmp_path):
+    html = build_trial(tmp_path, "", TRIAL_INDEX + GLOSSARY, WORDS)
+    page = BeautifulSoup((html / "chapters" / "01_trial.html").read_text("utf-8"), "html.parser")
+    links = [(link.get_text(), link["href"]) for link in page.select("article p a.glossary-word")]
+    home = "../index.html#term-"
+    assert links == [
+        ("boundary function", f"{home}Boundary-function"),
+        ("vertices", f"{home}Vertex"),
+        ("Boundary functions", f"{home}Boundary-function"),
+    ]
 
 
 # --- numbers on pages that are no chapters --------------------------------------------------------

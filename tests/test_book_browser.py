@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -18,6 +19,7 @@ from support.browser import (
     refuse_remote,
     settle,
 )
+from support.trial_book import build_trial
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
@@ -33,6 +35,12 @@ LAYOUT = [
     "smallPanels",
 ]
 QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
+
+
+# What the extensions call will leave Sphinx one day: their matter, not this book's.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
+)
 
 
 @dataclass
@@ -291,3 +299,209 @@ def test_a_solution_is_folded_until_a_reader_asks(page):
     assert not words.is_visible()
     solution.locator(".admonition-title").click()
     words.wait_for(state="visible")
+
+
+# --- cards ----------------------------------------------------------------------------------------
+
+THEOREM_2 = chapter_page("theorem_2")
+TO_EQUATION = "article p > a[href*='#equation-eq-29']"
+CARD = "#hover-card"
+
+
+def typeset(page: Any) -> bool:
+    """Tell whether every formula of the card is set and has a width."""
+    return page.evaluate(
+        "() => [...document.querySelectorAll('#hover-card .math')]"
+        ".every((f) => f.querySelector('svg')?.getBoundingClientRect().width > 0)"
+    )
+
+
+def is_in_window(page: Any) -> bool:
+    return page.evaluate(
+        "() => { const { left, right } = document.querySelector('#hover-card')"
+        ".getBoundingClientRect(); return left >= 0 && right <= innerWidth; }"
+    )
+
+
+def test_a_pointer_on_a_reference_shows_the_formula_and_may_move_into_it(page):
+    open_page(page, THEOREM_2)
+    page.locator(TO_EQUATION).first.hover()
+    page.locator(CARD).wait_for()
+    eventually(page, lambda: typeset(page))
+    assert is_in_window(page)
+    page.locator(CARD).hover()
+    assert page.evaluate("waiting") is None  # nothing will take it away
+    assert page.locator(CARD).is_visible()
+    page.mouse.move(1, 1)
+    page.locator(CARD).wait_for(state="hidden")
+
+
+def test_the_keyboard_shows_a_card_escape_takes_it_away_and_enter_leads_on(page):
+    open_page(page, THEOREM_2)
+    page.keyboard.press("Tab")
+    link = page.locator(TO_EQUATION).first
+    link.focus()
+    page.locator(CARD).wait_for()
+    assert link.get_attribute("aria-describedby") == "hover-card"
+    page.keyboard.press("Escape")
+    page.locator(CARD).wait_for(state="hidden")
+    assert link.get_attribute("aria-describedby") is None
+    page.keyboard.press("Enter")
+    page.wait_for_url("**#equation-eq-29")
+
+
+def test_a_card_goes_when_the_focus_goes(page):
+    open_page(page, THEOREM_2)
+    page.keyboard.press("Tab")
+    page.locator(TO_EQUATION).first.focus()
+    page.locator(CARD).wait_for()
+    page.locator(".notebook-line a").first.focus()
+    page.locator(CARD).wait_for(state="hidden")
+
+
+def test_a_page_without_formulas_sets_that_of_a_card(page):
+    open_page(page, "commands.html")
+    assert page.evaluate("window.MathJax") is None
+    link = f"<p><a href='{THEOREM_2}#equation-eq-31'>(31)</a></p>"
+    page.evaluate(
+        "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link
+    )
+    page.get_by_text("(31)").hover()
+    page.locator(f"{CARD} svg").first.wait_for()
+
+
+def test_a_card_is_not_printed(page):
+    open_page(page, THEOREM_2)
+    page.locator(TO_EQUATION).first.hover()
+    page.locator(CARD).wait_for()
+    page.emulate_media(media="print")
+    assert not page.locator(CARD).is_visible()
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_a_card_breaks_no_rule_of_accessibility(page, theme):
+    page.emulate_media(color_scheme=theme)
+    open_page(page, THEOREM_2)
+    page.locator("article p > a[href$='#tab-6']").first.hover()
+    page.locator(CARD).wait_for()
+    eventually(page, lambda: typeset(page))
+    assert page.evaluate("(c) => document.querySelector(c).scrollWidth", CARD) <= 32 * 16 + 2
+    assert (
+        Axe().run(page, context={"include": [["main"]], **FORMULA_HEADS}).response["violations"]
+        == []
+    )
+
+
+@pytest.fixture
+def phone(browser: Any) -> Iterator[Any]:
+    context = browser.new_context(
+        viewport={"width": WIDTHS["phone"], "height": 800}, has_touch=True, is_mobile=True
+    )
+    yield context.new_page()
+    context.close()
+
+
+def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
+    open_page(phone, THEOREM_2)
+    phone.locator(TO_EQUATION).first.tap()
+    phone.locator(CARD).wait_for()
+    eventually(phone, lambda: typeset(phone))
+    assert is_in_window(phone)
+    assert "#" not in phone.url
+    phone.locator("article h1").tap()
+    phone.locator(CARD).wait_for(state="hidden")
+    phone.locator(TO_EQUATION).first.tap()
+    phone.get_by_text("Go to Equation 29").tap()
+    phone.wait_for_url("**#equation-eq-29")
+
+
+def test_a_second_tap_follows_the_link(phone):
+    open_page(phone, THEOREM_2)
+    phone.locator(TO_EQUATION).first.tap()
+    phone.locator(CARD).wait_for()
+    phone.locator(TO_EQUATION).first.tap()
+    phone.wait_for_url("**#equation-eq-29")
+
+
+def test_a_link_without_a_card_leads_on_at_the_first_tap(phone):
+    open_page(phone, THEOREM_2)
+    link = "<p><a href='#exercises'>to the exercises</a></p>"
+    phone.evaluate(
+        "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link
+    )
+    phone.get_by_text("to the exercises").tap()
+    phone.wait_for_url("**#exercises")
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "anchor"),
+    [
+        ("Table 6", "Table 6", "tab-6"),
+        ("tab. 6", "Table 6", "tab-6"),
+        ("E-34", "E-34", "e-34"),
+        ("entry e34", "E-34", "e-34"),
+        ("S-20.1", "S-20.1", "s-20-1"),
+        ("equation 29", "Equation 29", "equation-eq-29"),
+        ("Eq. (29)", "Equation 29", "equation-eq-29"),
+        ("(29)", "Equation 29", "equation-eq-29"),
+        ("fig 7", "Figure 7", "fig-7"),
+        ("Theorem 2", "Theorem 2", "thm:2"),
+        ("aspects", "Aspect", "term-Aspect"),
+        ("revolute joint", "Prismatic joint", "term-Prismatic-joint-revolute-joint"),
+    ],
+)
+def test_a_search_for_a_name_leads_to_its_bearer_first(page, words, name, anchor):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q={quote(words)}")
+    first = page.locator("#search-results li a").first
+    first.wait_for()
+    assert first.inner_text().startswith(name)
+    assert first.get_attribute("href").endswith(f"#{anchor}")
+
+
+# --- notes in the margin --------------------------------------------------------------------------
+
+WITH_NOTE = """# Trial
+
+The tool reaches a place.[^why] It may do so in two postures.
+
+[^why]: Since the region allows it.
+
+```{toctree}
+chapters/01_trial
+```
+"""
+
+
+@pytest.fixture(scope="module")
+def noted(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return (build_trial(tmp_path_factory.mktemp("noted"), "", WITH_NOTE) / "index.html").as_uri()
+
+
+def test_a_note_stands_in_the_margin_of_a_wide_screen(page, noted):
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(noted)
+    note, text = (page.locator(s).bounding_box() for s in (".sidenote", "article p:has(label)"))
+    assert note["x"] >= text["x"] + text["width"]
+    assert note["x"] + note["width"] <= 1280
+
+
+@pytest.mark.parametrize("width", [1100, 390])
+def test_where_there_is_no_margin_the_keyboard_unfolds_a_note(page, noted, width):
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(noted)
+    note = page.locator(".sidenote")
+    assert not note.is_visible()
+    page.locator("input.margin-toggle").focus()
+    page.keyboard.press("Space")
+    note.wait_for()
+    box = note.bounding_box()
+    assert 0 <= box["x"] <= box["x"] + box["width"] <= width
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.locator("label.margin-toggle").click()
+    note.wait_for(state="hidden")
+
+
+def test_a_note_is_printed(page, noted):
+    page.goto(noted)
+    page.emulate_media(media="print")
+    assert page.locator(".sidenote").is_visible()

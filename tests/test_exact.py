@@ -127,6 +127,16 @@ def test_windows_of_table_6_are_roots_at_50_digits():
         assert holds(high1, root)
 
 
+def test_a_limit_of_the_joint_is_a_side_of_the_papers_box(tmp_path):
+    """Home may lie beyond it: the limit does not decide which turn a window takes."""
+    row = "origin = [15.0, 0.0, 25.98]\naxis = [0.0, 1.0, 0.0]"
+    file = written(tmp_path, limits=(row, f"{row}\nlimits = [30.0, 60.0]"))
+    low, high = exact_windows_problem(load_robot(file), exact_robot(file)).ranges[1]
+    with mpmath.workdps(60):
+        assert holds(low, mpmath.pi / 6)
+    assert float(high) == pytest.approx(paper_rule.box(load_robot("minervabot-v2")).upper[1])
+
+
 def test_held_joints_leave_the_others():
     robot = exact_robot("minervabot-v2")
     held = exact_problem(robot, {0: 0.25})

@@ -21,7 +21,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025.closed_form import vertices
 from qbound import figures, find_region, load_robot
-from qbound.figures.pictures import _pose_panel, pose_picture, traversal_picture, workspace_picture
+from qbound.figures.pictures import (
+    _lines,
+    _pose_panel,
+    pose_picture,
+    traversal_picture,
+    workspace_picture,
+)
 from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
 from qbound.workspace.areas import find_workspace
@@ -77,6 +83,44 @@ def test_robot_is_drawn_where_it_stands(ax) -> None:
     assert_array_equal(joints.get_xydata(), spine.get_xydata()[1:-1])
     corner_9 = point_seen_from(table, "9", "0", q)
     assert_allclose(bodies[1].get_xy()[0], corner_9[[0, 2]], atol=1e-12)
+
+
+def test_a_slide_is_a_carriage_on_a_rail_and_no_link_leads_to_the_base(ax) -> None:
+    """The gantry's rail lies at 1.2 m from -2 to 2 m; its arm hangs 0.8 m down from the cart."""
+    artists = figures.draw_robot(ax, load_robot("pr-gantry-arm"), [0.9, 0.0], bodies=False)
+    spine, turning, tool, rail, _, carriage = artists
+    assert_allclose(spine.get_xydata(), [[0.9, 1.2], [0.9, 1.2], [0.9, 0.4]], atol=1e-12)
+    assert_allclose(turning.get_xydata(), [[0.9, 1.2]])
+    assert_allclose(tool.get_xydata(), [[0.9, 0.4]], atol=1e-12)
+    assert_allclose(rail.get_xydata(), [[-2.0, 1.2], [2.0, 1.2]])
+    assert_allclose(carriage.get_xydata(), [[0.9, 1.2]])
+
+
+def test_a_rail_is_carried_by_what_turns_it(ax) -> None:
+    """The boom at 0 is level: pivot at 1.6 m, the rail from 1.2 m on; at -90° it stands upright."""
+    boom = load_robot("rp-telescopic-boom")
+    for angle, ends, foot in (
+        (0.0, [[1.2, 1.6], [3.8, 1.6]], [1.2, 1.6]),
+        (-np.pi / 2, [[0.0, 2.8], [0.0, 5.4]], [0.0, 2.8]),
+    ):
+        spine, _, _, rail, *_ = figures.draw_robot(ax, boom, [angle, 0.4], bodies=False)
+        assert_allclose(rail.get_xydata(), ends, atol=1e-12)
+        assert_allclose(spine.get_xydata()[:3], [[0, 0], [0, 1.6], foot], atol=1e-12)
+        assert np.isnan(spine.get_xydata()[3]).all()  # from the foot to the carriage: the rail
+
+
+def test_half_spaces_with_one_line_are_named_one_above_the_other() -> None:
+    portal = load_robot("pp-portal")
+    assert ["chute", "camera, chute"] in _lines(portal, (0, 2)).values()
+    assert {"chute", "camera, chute", "table"} <= texts_in(pose_picture(portal, portal.home))
+
+
+def test_numbers_bear_a_minus_sign_and_names_keep_their_hyphen() -> None:
+    rows = [("-1.5", "-30.2°", "(-45, 20)", "minervabot-v2", "found [150.0, -150.0]")]
+    table = figures.table(["a", "b", "c", "d", "e"], rows).data
+    assert "| −1.5 | −30.2° | (−45, 20) | minervabot-v2 | found [150.0, −150.0] |" in table
+    boom = load_robot("rp-telescopic-boom")
+    assert "lift = −35°, slide = 0.4 m" in texts_in(pose_picture(boom, boom.home))
 
 
 def test_robot_may_be_drawn_without_bodies(ax) -> None:

@@ -10,6 +10,7 @@ import sys
 import tarfile
 import tomllib
 import zipfile
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
@@ -54,6 +55,10 @@ def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
         "GENERATED": book / "generated",
         "FRONT_PAGE": book / "_build/html/index.html",
         "BOOK_STAMP": book / "_build/made-from",
+        "PDF": book / "_build/qbound.pdf",
+        "RESULTS": tmp_path / "results",
+        "NEXT": tmp_path / ".next",
+        "WORKBOOK": tmp_path / "workbook",
         "CHECKERS": tmp_path / "tests/javascript",
         "NODE_MODULES": tmp_path / ".venv/javascript/node_modules",
     }
@@ -281,34 +286,73 @@ def test_what_was_made_does_not_make_the_book_stale(
     assert run.fingerprint(house) == before
 
 
-def fake_steps(run: ModuleType, monkeypatch: pytest.MonkeyPatch, executed: bool) -> list[str]:
-    """Replace nbmake and Sphinx by what they leave behind."""
+PAGE = "src/qbound/forms/circle.py"
+READS = [("file", PAGE), ("file", "src/qbound/robots/absent.toml"), ("folder", "src/qbound/forms")]
+
+
+EXECUTE_ONE, BUILD = "Executing 1 notebooks", "Building the pages"
+
+
+def fake_steps(
+    run: ModuleType,
+    monkeypatch: pytest.MonkeyPatch,
+    executed: bool = True,
+    reads: list[tuple[str, str]] = READS,
+) -> list[str]:
+    """Replace nbmake and Sphinx by what they leave behind; each chapter says what it read.
+
+    The result of a chapter, and its copy, hold the text of the module that it read.
+    """
     titles: list[str] = []
 
-    def must(title: str, command: list[object], quiet: bool = False) -> None:
-        titles.append(title.split(maxsplit=1)[0])
+    def must(title: str, command: list[object], quiet: bool = False, **settings: object) -> None:
+        titles.append(title)
         if title.startswith("Executing") and executed:
-            for chapter in run.CHAPTERS.glob("*.ipynb"):
-                chapter.write_text(notebook({"source": ["1 + 1"], "execution_count": 1}))
-        if title.startswith("Building"):
-            run.FRONT_PAGE.parent.mkdir(parents=True)
-            run.FRONT_PAGE.touch()
+            for chapter in (word for word in command if str(word).endswith(".ipynb")):
+                execute(Path(str(chapter)), Path(str(settings["QBOUND_MADE"])))
+        if title.startswith("Building the pages"):
+            html = run.in_next(run.FRONT_PAGE)
+            html.parent.mkdir(parents=True, exist_ok=True)
+            shown = sorted(run.in_next(run.RESULTS).glob("*.json"))
+            html.write_text("".join(file.read_text() for file in shown))
+            run.in_next(run.GENERATED).mkdir(exist_ok=True)
+
+    def execute(chapter: Path, made: Path) -> None:
+        said = (run.ROOT / PAGE).read_text()
+        chapter.write_text(notebook({"source": [said], "execution_count": 1}))
+        folder = made / chapter.stem
+        folder.mkdir(parents=True)
+        (folder / f"{chapter.stem[3:]}.json").write_text(said)
+        look = {"file": run.hash_of, "folder": run.names_in}
+        lines = [
+            [kind, name, look[kind](run.ROOT / name)] if kind in look else [kind, name]
+            for kind, name in reads
+        ]
+        (folder / "reads").write_text("".join(json.dumps(line) + "\n" for line in lines))
 
     monkeypatch.setattr(run, "must", must)
+    monkeypatch.setattr(run, "settings", lambda: {"python": "3.13"})
     return titles
+
+
+def book_files(house: Path) -> dict[str, bytes]:
+    """Everything that a book is, by its path: pages, executed copies, results."""
+    places = [house / "book/_build", house / "book/chapters", house / "results"]
+    found = [file for place in places for file in place.rglob("*") if file.is_file()]
+    return {file.relative_to(house).as_posix(): file.read_bytes() for file in found}
 
 
 def test_the_book_is_made_once_and_again_when_a_source_changes(
     run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    titles = fake_steps(run, monkeypatch, executed=True)
+    titles = fake_steps(run, monkeypatch)
     monkeypatch.setattr(run, "prepare", lambda: None)
     monkeypatch.setattr(run.subprocess, "call", lambda *_, **__: 0)
     assert [run.test(), run.test()] == [0, 0]
-    assert titles == ["Executing", "Building"]
-    (house / "src/qbound/forms/circle.py").write_text("TURN = 6.283\n")
+    assert titles == [EXECUTE_ONE, BUILD]
+    (house / PAGE).write_text("TURN = 6.283\n")
     run.test()
-    assert titles == ["Executing", "Building"] * 2
+    assert titles == [EXECUTE_ONE, BUILD] * 2
 
 
 def test_the_committed_notebooks_are_not_written(
@@ -316,7 +360,7 @@ def test_the_committed_notebooks_are_not_written(
 ) -> None:
     committed = house / "notebooks/01_a.ipynb"
     before = committed.read_bytes()
-    fake_steps(run, monkeypatch, executed=True)
+    fake_steps(run, monkeypatch)
     run.make_book()
     assert committed.read_bytes() == before
     assert run.unrun_cells(run.CHAPTERS / "01_a.ipynb") == []
@@ -328,7 +372,7 @@ def test_a_cell_that_did_not_run_stops_the_book(
     titles = fake_steps(run, monkeypatch, executed=False)
     with pytest.raises(run.Failed, match=r"01_a\.ipynb: cells that did not run: \[1\]"):
         run.make_book()
-    assert titles == ["Executing"]
+    assert titles == [EXECUTE_ONE]
     assert not run.book_is_fresh()
 
 
@@ -349,11 +393,11 @@ def test_the_cells_that_did_not_run_are_named(run: ModuleType, tmp_path: Path) -
 def test_a_source_that_changes_meanwhile_is_noticed(
     run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fake_steps(run, monkeypatch, executed=True)
+    fake_steps(run, monkeypatch)
     step = run.must
 
-    def must(title: str, command: list[object], quiet: bool = False) -> None:
-        step(title, command, quiet)
+    def must(*arguments: object, **settings: object) -> None:
+        step(*arguments, **settings)
         (house / "book/conf.py").write_text("project = 'changed'\n")
 
     monkeypatch.setattr(run, "must", must)
@@ -369,6 +413,7 @@ def test_a_failing_step_ends_the_run_with_its_status(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run, "settings", dict)
     monkeypatch.setattr(run, "install_checkers", lambda _: None)
     monkeypatch.setattr(run, "call", lambda *_, **__: 3)
     assert run.main(["book"]) == 3
@@ -378,7 +423,7 @@ def test_a_failing_step_ends_the_run_with_its_status(
 
 def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -> None:
     kept = house / "results/region.json"
-    made = [run.VENV, run.CHAPTERS, run.BUILD, house / ".mypy_cache", house / "dist"]
+    made = [run.VENV, run.NEXT, run.CHAPTERS, run.BUILD, house / ".mypy_cache", house / "dist"]
     for folder in (kept.parent, *made):
         folder.mkdir(parents=True)
         (folder / "region.json").touch()
@@ -388,38 +433,275 @@ def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -
     assert not any(folder.exists() for folder in made)
 
 
-# --- run.py: the author's loop and the PDF --------------------------------------------------------
+# --- run.py: only what changed, and the old book until the new one is whole -----------------------
 
 
 @pytest.fixture
-def made(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What remake has made, in order, instead of making it."""
-    made: list[str] = []
-    monkeypatch.setattr(run, "make_book", lambda: made.append("everything"))
-    monkeypatch.setattr(run, "build_pages", lambda: made.append("pages"))
-    monkeypatch.setattr(run, "must", lambda title, *_: made.append(title))
-    monkeypatch.setattr(run, "execute", lambda files: made.extend(f.name for f in files))
-    (house / "notebooks/01_a.md").write_text("# A\n")
-    return made
+def two(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """A made book of two chapters; the titles of the steps that come after."""
+    (house / "notebooks/02_b.ipynb").write_text(notebook({"source": ["2"]}))
+    (house / "src/qbound/other.py").write_text("# read by no chapter\n")
+    titles = fake_steps(run, monkeypatch)
+    run.make_book()
+    assert titles == ["Executing 2 notebooks", BUILD]
+    titles.clear()
+    return titles
+
+
+def test_nothing_is_executed_where_nothing_changed(run: ModuleType, two: list[str]) -> None:
+    before = book_files(run.ROOT)
+    run.make_book()
+    assert two == [BUILD]
+    assert book_files(run.ROOT) == before
+    assert not run.NEXT.exists()
+
+
+@pytest.mark.parametrize("name", ["src/qbound/other.py", "book/conf.py", "pyproject.toml"])
+def test_what_no_chapter_read_executes_none(run: ModuleType, two: list[str], name: str) -> None:
+    with (run.ROOT / name).open("a") as file:
+        file.write("\n")
+    assert not run.book_is_fresh()
+    run.make_book()
+    assert two == [BUILD]
+    assert run.book_is_fresh()
+
+
+def test_the_time_of_a_file_does_not_count(run: ModuleType, two: list[str]) -> None:
+    os.utime(run.ROOT / PAGE, (0, 0))
+    run.make_book()
+    assert two == [BUILD]
+
+
+CHANGES: dict[str, Callable[[Path], object]] = {
+    "a module": lambda house: (house / PAGE).write_text("TURN = 7\n"),
+    "a module that is gone": lambda house: (house / PAGE).unlink(),
+    "a module that comes before another": lambda house: (house / PAGE).with_name("x.py").touch(),
+    "a folder that comes": lambda house: (house / PAGE).with_name("x").mkdir(),
+    "a file that was asked for and was not there": lambda house: absent(house).write_text(""),
+}
+
+
+def absent(house: Path) -> Path:
+    file = house / "src/qbound/robots/absent.toml"
+    file.parent.mkdir()
+    return file
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_both_chapters_read_executes_both(run: ModuleType, two: list[str], what: str) -> None:
+    CHANGES[what](run.ROOT)
+    (run.ROOT / PAGE).touch()  # the chapters of this house read it
+    run.make_book()
+    assert two == ["Executing 2 notebooks", BUILD]
+
+
+OWN_CHANGES: dict[str, Callable[[Path], object]] = {
+    "its text": lambda house: (house / "notebooks/01_a.ipynb").write_text(
+        notebook({"source": "3"})
+    ),
+    "its copy": lambda house: (house / "book/chapters/01_a.ipynb").write_text("{}"),
+    "its copy is gone": lambda house: (house / "book/chapters/01_a.ipynb").unlink(),
+    "its record is none": lambda house: (house / RECORD).write_text("{"),
+    "its record lacks a part": lambda house: (house / RECORD).write_text("{}"),
+    "its record is a list": lambda house: (house / RECORD).write_text("[]"),
+    "its results": lambda house: (house / "results/a.json").write_text("TURN = 6\n"),
+    "its results are gone": lambda house: (house / "results/a.json").unlink(),
+}
+RECORD = "book/chapters/01_a.made-from.json"
+
+
+@pytest.mark.parametrize("what", OWN_CHANGES)
+def test_a_change_of_one_chapter_executes_that_one(
+    run: ModuleType, two: list[str], what: str
+) -> None:
+    OWN_CHANGES[what](run.ROOT)
+    assert not run.book_is_fresh() or "copy" in what or "record" in what
+    run.make_book()
+    assert two == [EXECUTE_ONE, BUILD]
+    assert run.is_current("01_a", run.settings())
+    assert (run.ROOT / "results/a.json").read_text() == "TURN = 6.28\n"
+
+
+def test_other_settings_execute_all(
+    run: ModuleType, two: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "settings", lambda: {"python": "3.14"})
+    run.make_book()
+    assert two == ["Executing 2 notebooks", BUILD]
+
+
+def test_settings_are_python_lock_packages_and_what_of_the_shell_counts(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run.subprocess, "check_output", lambda *_, **__: "3.13\n")
+    found = [run.settings()]
+
+    def differs() -> list[str]:
+        found.append(run.settings())
+        return [key for key in found[-1] if found[-2][key] != found[-1][key]]
+
+    monkeypatch.setenv("EDITOR", "ed")
+    assert differs() == []
+    for name in ("MPLBACKEND", "LC_ALL", "PYTHONOPTIMIZE", "OMP_PROC_BIND"):
+        monkeypatch.setenv(name, "x")
+        assert differs() == ["environment"]
+    run.LOCK.write_text(LOCK + "\n")
+    assert differs() == ["lock"]
+    (run.VENV / "lib/python3.13/site-packages/numpy-9.dist-info").mkdir(parents=True)
+    assert differs() == ["packages"]
+    monkeypatch.setattr(run.subprocess, "check_output", lambda *_, **__: "3.14\n")
+    assert differs() == ["python"]
+
+
+def test_a_chapter_that_starts_a_program_hangs_on_every_source(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles = fake_steps(run, monkeypatch, reads=[("program", "python3.13")])
+    run.make_book()
+    with (house / "book/conf.py").open("a") as file:
+        file.write("\n")
+    run.make_book()
+    assert titles == [EXECUTE_ONE, BUILD] * 2
+
+
+def test_a_chapter_may_not_read_what_others_record(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake_steps(run, monkeypatch, reads=[("file", "results/b.json")])
+    with pytest.raises(run.Failed, match=r"01_a\.ipynb reads results"):
+        run.make_book()
+
+
+def test_two_chapters_may_not_record_one_file(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake_steps(run, monkeypatch)
+    (house / "notebooks/02_a.ipynb").write_text(notebook({"source": ["2"]}))
+    with pytest.raises(run.Failed, match=r"02_a\.ipynb writes a\.json"):
+        run.make_book()
+
+
+def test_the_results_of_a_chapter_that_is_gone_go(run: ModuleType, two: list[str]) -> None:
+    (run.ROOT / "notebooks/02_b.ipynb").unlink()
+    run.make_book()
+    assert [file.name for file in run.RESULTS.iterdir()] == ["a.json"]
+    assert sorted(file.name for file in run.CHAPTERS.glob("*.ipynb")) == ["01_a.ipynb"]
+
+
+def test_the_pages_are_built_from_the_new_results(run: ModuleType, two: list[str]) -> None:
+    (run.ROOT / PAGE).write_text("TURN = 7\n")
+    run.make_book()
+    assert run.FRONT_PAGE.read_text() == "TURN = 7\n" * 2
+
+
+@pytest.mark.parametrize("step", ["Executing", "Building"])
+def test_a_build_that_is_interrupted_leaves_the_old_book(
+    run: ModuleType, two: list[str], monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    before, whole = book_files(run.ROOT), run.must
+    (run.ROOT / PAGE).write_text("TURN = 7\n")
+
+    def killed(title: str, *arguments: object, **settings: object) -> None:
+        whole(title, *arguments, **settings)
+        if title.startswith(step):
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as context:
+        context.setattr(run, "must", killed)
+        with pytest.raises(KeyboardInterrupt):
+            run.make_book()
+    assert book_files(run.ROOT) == before
+    assert not run.book_is_fresh()
+    run.make_book()
+    assert run.book_is_fresh()
+    assert run.FRONT_PAGE.read_text() == "TURN = 7\n" * 2
+
+
+def test_a_kill_while_the_books_change_places_is_mended_by_the_next_command(
+    run: ModuleType, two: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After each of the renamings, deletions and copies, one after the other."""
+    (run.ROOT / "notebooks/02_b.ipynb").unlink()
+    for count in range(100):
+        (run.ROOT / PAGE).write_text(f"TURN = {count}\n")
+        left = [count]
+
+        def dies(step: Callable[..., object], left: list[int] = left) -> Callable[..., object]:
+            def after(*arguments: object, **options: object) -> object:
+                if left[0] == 0:
+                    raise KeyboardInterrupt
+                left[0] -= 1
+                return step(*arguments, **options)
+
+            return after
+
+        with monkeypatch.context() as context:
+            whole = run.take_over
+
+            def killed(context: pytest.MonkeyPatch = context, whole: Callable = whole) -> None:
+                if (run.NEXT / run.WHOLE).exists():
+                    for name in ("rename", "replace", "unlink"):
+                        context.setattr(Path, name, dies(getattr(Path, name)))
+                    context.setattr(run.shutil, "rmtree", dies(shutil.rmtree))
+                    context.setattr(run.shutil, "copy", dies(shutil.copy))
+                whole()
+
+            context.setattr(run, "take_over", killed)
+            try:
+                run.make_book()
+            except KeyboardInterrupt:
+                pass
+            else:
+                break
+        assert run.book_is_fresh()
+        assert run.FRONT_PAGE.read_text() == f"TURN = {count}\n"
+        assert (run.RESULTS / "a.json").read_text() == f"TURN = {count}\n"
+        assert [file.name for file in run.RESULTS.iterdir()] == ["a.json"]
+    assert 8 < count < 99
+
+
+# --- run.py: the author's loop and the PDF --------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("changed", "expected"),
+    ("changed", "paired", "update"),
     [
-        (["book/index.md"], ["pages"]),
-        (["notebooks/01_a.md"], ["Pairing 01_a.md", "01_a.ipynb", "pages"]),
-        (["notebooks/01_a.ipynb"], ["01_a.ipynb", "pages"]),
-        (["notebooks/01_a.md", "notebooks/01_a.ipynb"], ["Pairing 01_a.md", "01_a.ipynb", "pages"]),
-        (["notebooks/02_gone.md"], ["pages"]),
-        (["notebooks/01_a.md", "src/qbound/forms/circle.py"], ["everything"]),
-        (["pyproject.toml"], ["everything"]),
+        (["book/index.md"], [], True),
+        (["notebooks/01_a.md"], ["Pairing 01_a.md"], True),
+        (["notebooks/01_a.md", "notebooks/01_a.ipynb"], ["Pairing 01_a.md"], True),
+        (["notebooks/02_gone.md"], [], False),
+        (["notebooks/01_a.md", "src/qbound/forms/circle.py"], ["Pairing 01_a.md"], False),
+        (["book/conf.py"], [], False),
+        (["pyproject.toml"], [], False),
     ],
 )
-def test_a_change_makes_again_what_hangs_on_it_and_no_more(
-    run: ModuleType, made: list[str], changed: list[str], expected: list[str]
+def test_where_text_alone_changed_the_other_pages_are_kept(
+    run: ModuleType,
+    house: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    changed: list[str],
+    paired: list[str],
+    update: bool,
 ) -> None:
+    (house / "notebooks/01_a.md").write_text("# A\n")
+    (house / "book/index.md").write_text("# The book\n")
+    done: list[object] = []
+    monkeypatch.setattr(run, "must", lambda title, *_: done.append(title))
+    monkeypatch.setattr(run, "make_book", lambda **options: done.append(options["update"]))
     run.remake({Path(name) for name in changed})
-    assert made == expected
+    assert done == [*paired, update]
+
+
+def test_an_update_starts_from_the_pages_that_are_there(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake_steps(run, monkeypatch)
+    run.make_book()
+    (run.BUILD / "html/other.html").write_text("another page")
+    run.make_book(update=True)
+    assert (run.BUILD / "html/other.html").exists()
+    run.make_book()
+    assert not (run.BUILD / "html/other.html").exists()
 
 
 def test_without_chromium_the_pdf_is_refused_in_a_sentence(
@@ -437,21 +719,56 @@ def test_any_browser_of_the_family_prints(run: ModuleType, monkeypatch: pytest.M
     assert run.find_browser() == "/opt/google-chrome"
 
 
-def test_a_browser_that_prints_nothing_is_a_failure_and_leaves_no_old_pdf(
-    run: ModuleType,
-    house: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+@pytest.fixture
+def printer(run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, bytes]:
+    """A browser that prints what the dictionary holds, onto an old PDF; without it, nothing."""
+    fake_steps(run, monkeypatch)
+    run.make_book()
+    run.PDF.write_bytes(b"of last week")
+    prints: dict[str, bytes] = {}
+    build = run.must
+
+    def must(title: str, command: list[object], quiet: bool = False, **settings: object) -> None:
+        build(title, command, quiet, **settings)
+        if title == "Printing" and "pdf" in prints:
+            [option] = [str(w) for w in command if str(w).startswith("--print-to-pdf=")]
+            draft = Path(option.partition("=")[2])
+            draft.parent.mkdir(parents=True, exist_ok=True)
+            draft.write_bytes(prints["pdf"])
+        if title == "Printing" and prints.get("pdf") == b"half":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "must", must)
+    monkeypatch.setattr(run, "prepare", lambda: None)
+    monkeypatch.setattr(run, "browsers", lambda: ["chromium"])
+    return prints
+
+
+def test_a_pdf_belongs_to_its_book(run: ModuleType, printer: dict[str, bytes]) -> None:
+    """The pages are built once more, with it; the next book begins without one."""
+    printer["pdf"] = b"of today"
+    assert run.main(["pdf"]) == 0
+    assert run.PDF.read_bytes() == b"of today"
+    assert run.book_is_fresh()
+    assert not (run.BUILD / "pdf").exists()
+    run.make_book(update=True)
+    assert not run.PDF.exists()
+
+
+def test_a_browser_that_prints_nothing_is_a_failure(
+    run: ModuleType, printer: dict[str, bytes], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    run.BUILD.mkdir(parents=True)
-    (run.BUILD / "qbound.pdf").write_text("of last week")
-    steps = record_steps(run, monkeypatch)
-    monkeypatch.setattr(run, "find_browser", lambda: "chromium")
-    monkeypatch.setattr(run, "book_is_fresh", lambda: True)
     assert run.main(["pdf"]) == 1
-    assert "Printing" in steps
     assert "has printed nothing" in capsys.readouterr().out
-    assert not (run.BUILD / "qbound.pdf").exists()
+    assert run.PDF.read_bytes() == b"of last week"
+
+
+def test_an_interrupted_printing_leaves_the_old_pdf(
+    run: ModuleType, printer: dict[str, bytes]
+) -> None:
+    printer["pdf"] = b"half"
+    assert run.main(["pdf"]) == 130
+    assert run.PDF.read_bytes() == b"of last week"
 
 
 # --- run.py: JavaScript ---------------------------------------------------------------------------

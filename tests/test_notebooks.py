@@ -20,7 +20,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 
 ROOT = Path(__file__).resolve().parent.parent
-CHAPTERS = sorted((ROOT / "notebooks").glob("*.md"))
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 LEDGER = ROOT / "results" / "claims.json"  # compared in test_claims.py
 RESULTS = sorted(path for path in (ROOT / "results").glob("*.json") if path != LEDGER)
 
@@ -129,27 +129,31 @@ NOT_PROSE = [
     r"(?s)\$\$.*?\$\$(?: *\(eq:[\w-]+\))?",  # displayed formulas: the paper's, or proved by a cell
     r"(?m)^:::.*$|^:label:.*$|^(?:# )?\d+\. ",  # directives, numbered items and titles
     r"`[^`]*`",  # code and the targets of roles
+    r"<div[^>]*>",  # places of the moving figures
     r"\]\([^)]*\)",  # targets of links
     r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # the ledger's ids, own numbers
 ]
 # What a number may name instead of count: Figure 4, eqs. (11), (12), points 6 and 8, point 1 to 2.
 NAMED = (
     r"(?:Figures?|Tables?|Theorems?|Sections?|eqs?\.|[Pp]oints?|[Jj]oints?|[Ll]inks?|[Rr]ows?|[Rr]ules?|"
-    r"[Cc]hapters?|[Ss]teps?|functions?|[Ff]rom|CC BY)\s+"
+    r"[Cc]hapters?|[Ss]teps?|Exercises?|[Rr]egions?|functions?|[Ff]rom|CC BY)\s+"
 )
 NUMBERS = r"\(?\d+(?:\.\d+)?\)?(?:(?:,\s+|\s+(?:and|or|to|with)\s+|\s*-\s*)\(?\d+(?!\.\d|\d)\)?)*"
 REFERENCES = [NAMED + NUMBERS, r"\(\d+\)(?:-\(\d+\))?", r"\b\d(?:-\d){2,}\b"]
 NUMBER = r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?![\w.]*\d)"
 
 
+def captions_of(chapter: Path) -> list[str]:
+    """Captions and alternative texts of the figures and tables."""
+    blocks = [cell.metadata.get("mystnb", {}) for cell in cells(chapter, "code")]
+    captions = [block.get("figure", {}).get("caption", "") for block in blocks]
+    return captions + [block.get("image", {}).get("alt", "") for block in blocks]
+
+
 def prose_of(chapter: Path) -> str:
     """Markdown cells and captions, without what is no prose."""
-    captions = []
-    for cell in cells(chapter, "code"):
-        block = cell.metadata.get("mystnb", {})
-        captions.append(block.get("figure", {}).get("caption", ""))
-        captions.append(block.get("image", {}).get("alt", ""))
-    text = "\n\n".join([*(cell.source for cell in cells(chapter, "markdown")), *captions])
+    markdown = (cell.source for cell in cells(chapter, "markdown"))
+    text = "\n\n".join([*markdown, *captions_of(chapter)])
     text = re.sub(r"(?s)```\{prf:\w+\}[^\n]*\n(.*?)\n```", r"\1", text)  # a theorem is prose
     for pattern in NOT_PROSE:
         text = re.sub(pattern, " ", text)
@@ -203,6 +207,40 @@ def test_every_number_of_the_prose_was_computed(chapter):
     known = known_to(chapter)
     stated = numbers_in(prose_of(chapter))
     assert [n for n in stated if not any(is_rounding(n, x) for x in known)] == []
+
+
+UNITS = {"°": "deg", "cm²": "cm^2", "rad²": "rad^2", "cm": "cm", "mm": "mm", "m": "m", "%": "%"}
+
+
+def measures_in(caption: str) -> list[tuple[str, str]]:
+    """Numbers that stand before a unit, with their sign and the unit as results write it."""
+    with_unit = rf"({NUMBER})\s?({'|'.join(UNITS)})(?!\w)"
+    return [(n.replace("−", "-"), UNITS[unit]) for n, unit in re.findall(with_unit, caption)]
+
+
+def is_measured(text: str, unit: str, entry: dict) -> bool:
+    """Tell whether a result is this number, with its sign, in this unit."""
+    here = entry["unit"] == unit
+    return here and any(
+        is_rounding(text, x) and x * float(text) >= 0 for x in leaves(entry["value"])
+    )
+
+
+@chapters
+def test_a_number_with_a_unit_in_a_caption_was_computed_in_that_unit_with_that_sign(chapter):
+    """In prose "0.41 cm too low" may stand for a negative value; a caption names what is drawn."""
+    entries = json.loads(results_of(chapter).read_text(encoding="utf-8"))["results"]
+    entries.append({"unit": "cm", "value": list(paper.offsets_in_cm().values())})
+    stated = [pair for caption in captions_of(chapter) for pair in measures_in(caption)]
+    assert [pair for pair in stated if not any(is_measured(*pair, e) for e in entries)] == []
+
+
+def test_a_caption_with_another_angle_than_the_panels_is_found():
+    """It stood here: the wrist at 90°, which −90 vouched for, where the panel has 45."""
+    entry = {"unit": "deg", "value": [-90, 0, 45]}
+    stated = measures_in("The wrist held at −90°, 0° and 90°, 45 times, at 45 cm.")
+    assert stated == [("-90", "deg"), ("0", "deg"), ("90", "deg"), ("45", "cm")]
+    assert [is_measured(*pair, entry) for pair in stated] == [True, True, False, False]
 
 
 def test_the_search_for_numbers_finds_them():

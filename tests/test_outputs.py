@@ -32,7 +32,8 @@ def holds(output: dict[str, Any], kind: str) -> bool:
 
 @chapters
 def test_a_table_writes_minus_signs(chapter: Path) -> None:
-    rows = [row for text in outputs(chapter, "text/markdown") for row in text.splitlines()]
+    lines = [line for text in outputs(chapter, "text/markdown") for line in text.splitlines()]
+    rows = [line for line in lines if line.startswith("|")]  # the text of a robot file is no table
     printed = [NOT_PRINT.sub("", row) for row in rows if not set(row) <= set("|- ")]
     assert [row for row in printed if HYPHEN_FOR_MINUS.search(row)] == []
 

@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.closed_form import bound_curves, geometric_bounds, vertices
-from qbound import load_robot
+from lizarraga2025.closed_form import bound_curves, geometric_bounds, refined, vertices
+from qbound import find_region, load_robot
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Boundary, Robot
 from qbound.model.robotfile import parse_robot
@@ -454,6 +454,54 @@ def test_pairs_that_the_rule_says_nothing_about_are_refused(change, points, says
     row_of(table, "boundary", "B1")["points"] = points
     with pytest.raises(ValueError, match=f"^B1: the paper's rule {says}"):
         windows(parse_robot(table))
+
+
+# --- joint limits (eq. 10) ------------------------------------------------------------------------
+
+
+def limited(low: float, high: float) -> Robot:
+    """The paper's robot with limits of q2, degrees."""
+    one, other = MINERVA.joints
+    ends = np.radians([low, high]).tolist()
+    return replace(MINERVA, joints=(one, replace(other, limits=(ends[0], ends[1]))))
+
+
+def test_a_limit_that_binds_is_a_side_of_the_box_and_of_the_region() -> None:
+    """Passing over it would call free what the joint cannot reach."""
+    arm = limited(-100, 60)
+    sides = box(arm)
+    assert degrees(sides.lower[1]) == pytest.approx(-100)
+    assert sides.upper[1] == box(MINERVA).upper[1]
+    assert sides.lower_bounds[1].label == "q2.lower"
+    assert feasible(arm, np.radians([[0, -99], [0, -101]])).tolist() == [True, False]
+    names = {bound.label for vertex in vertices(arm) for bound in vertex.bounds}
+    assert names == NAMED - {"beta_{4,1,2}"} | {"q2.lower"}
+    assert polygon_of(arm)[:, 1].min() == sides.lower[1]
+
+
+def test_a_limit_beyond_the_windows_changes_nothing() -> None:
+    assert_array_equal(box(limited(-170, 60)).lower, box(MINERVA).lower)
+    assert_array_equal(polygon_of(limited(-170, 60)), polygon_of(MINERVA))
+
+
+def test_a_limit_needs_no_points_on_its_side() -> None:
+    arm = limited(-100, 60)
+    assert len(refined(arm, 2, tangents=False)) == len(vertices(arm))
+    assert refined(arm, 3, tangents=True)[:, 1].min() == pytest.approx(box(arm).lower[1])
+
+
+def test_the_region_by_the_papers_rule_keeps_the_limits() -> None:
+    found = find_region(limited(-100, 60), rule="paper")
+    assert "q2.lower" in {arc.boundary for arc in found.home_component.loops[0]}
+    assert found.area < find_region(MINERVA, rule="paper").area
+    assert not found.contains(np.radians([0, -101]))
+
+
+def test_limits_and_windows_without_a_common_value_are_refused() -> None:
+    with pytest.raises(
+        ValueError, match=r"^q2: no room between q2.lower at 50° and beta_{3,3,1} at "
+    ):
+        box(limited(50, 90))
 
 
 def test_a_joint_without_a_window_is_refused() -> None:

@@ -23,11 +23,11 @@ from scipy.spatial import cKDTree
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.evidence.joint_region import scaled
-from lizarraga2025.evidence.rounding import grid_error
 from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.latex import escaped
+from lizarraga2025.results import grid_error
 from qbound import load_robot
 from qbound.cli import main
 from qbound.model.robotfile import robot_text
@@ -98,7 +98,7 @@ def test_one_quantity_is_one_result() -> None:
 
 def test_half_a_digit_of_the_print_is_defined_once() -> None:
     """Two formulas for what rounding can do gave 0.0212 cm and 0.0190 cm."""
-    files = [*(ROOT / "src/lizarraga2025").rglob("*.py"), *(ROOT / "notebooks").glob("*.md")]
+    files = [*(ROOT / "src/lizarraga2025").rglob("*.py"), *(ROOT / "notebooks").glob("[0-9]*.md")]
     users = [file.name for file in files if re.search(r"(?<![\w.])(0\.005|5e-3)\b", code(file))]
     assert users == ["rounding.py"]
 
@@ -111,7 +111,7 @@ def code(file: Path) -> str:
 
 
 def test_chapters_stand_in_the_order_of_the_book() -> None:
-    notebooks = sorted((ROOT / "notebooks").glob("*.md"))
+    notebooks = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
     names = [re.search(r'Results\(\s*"(\w+)"', code(file)) for file in notebooks]
     assert [name[1] for name in names if name] == list(recorded.CHAPTERS)
 
@@ -280,7 +280,10 @@ def test_an_area_on_a_grid_is_within_its_error() -> None:
 # --- robots ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("chapter", sorted((ROOT / "notebooks").glob("*.md")), ids=lambda f: f.stem)
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda f: f.stem)
 def test_a_chapter_names_the_robots_that_it_loads(chapter: Path) -> None:
     tree = ast.parse(code(chapter))
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]

@@ -3,9 +3,11 @@
 By hand, for many more robots than the suite takes: `python tests/test_region.py 10000`.
 """
 
+import re
 import sys
 import warnings
-from math import atan2, pi
+from dataclasses import replace
+from math import atan2, pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,16 @@ from qbound import load_robot
 from qbound.boundary.functions import clearance, components
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
-from qbound.region import Problem, Region, find_region, margins, paper_rule, solve, violated
+from qbound.region import (
+    NoHomeError,
+    Problem,
+    Region,
+    find_region,
+    margins,
+    paper_rule,
+    solve,
+    violated,
+)
 from support.forms import LIMITS, PP, PR, RR, TURN, forms
 from support.oracles import circle_zeros, equation_29
 from support.regions import (
@@ -259,6 +270,53 @@ def test_home_at_a_touching_point_belongs_to_both_components():
     region = solve(saddle, (0, 0))
     assert [component.contains_home for component in region.components] == [True, True]
     assert region.home is region.components[0]
+
+
+def with_limits(robot, low, high):
+    one, other = robot.joints
+    return replace(robot, joints=(one, replace(other, limits=(radians(low), radians(high)))))
+
+
+def test_the_component_of_a_feasible_home_is_home():
+    region = find_region(MINERVA)
+    assert region.home_component is region.home
+
+
+@pytest.mark.parametrize(
+    ("robot", "rule", "says"),
+    [
+        (with_limits(MINERVA, 30, 120), "clearance", "q2.lower is violated by 30°"),
+        (with_limits(MINERVA, -150, -60), "clearance", "q2.upper is violated by 60°"),
+        (with_limits(MINERVA, 30, 120), "paper", "q2.lower is violated by 30°"),
+        (replace(MINERVA, home=np.array([1.5, 0.0])), "clearance", "B7 is violated by 26.88 cm"),
+        (replace(MINERVA, home=np.array([3.0, 0.0])), "paper", "B7 is violated by 20.18 cm"),
+    ],
+    ids=[
+        "below a limit",
+        "above a limit",
+        "by the paper's rule",
+        "under the floor",
+        "and by the paper's rule",
+    ],
+)
+def test_a_home_in_no_component_says_which_boundary_it_violates_and_by_how_much(robot, rule, says):
+    region = find_region(robot, rule=rule)
+    assert region.home is None
+    with pytest.raises(NoHomeError, match=re.escape(f"the home pose is in no component: {says}")):
+        _ = region.home_component
+
+
+def test_a_home_that_touches_without_room_says_what_it_touches():
+    """Two floors at one height, one for below and one for above: the tool may move along a line."""
+    floor = MINERVA.boundary("B7")
+    place = MINERVA.frames(MINERVA.home).position("0", "3", "0")[2]
+    walls = [
+        replace(floor, name=name, normal=sign * floor.normal, offset=sign * place)
+        for name, sign in (("above", 1.0), ("below", -1.0))
+    ]
+    region = find_region(replace(MINERVA, boundaries=tuple(walls)))
+    with pytest.raises(NoHomeError, match=r"it touches above.* and has no room there"):
+        _ = region.home_component
 
 
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])

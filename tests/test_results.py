@@ -209,26 +209,23 @@ def test_a_write_that_fails_leaves_the_old_file(
     assert [file.name for file in tmp_path.iterdir()] == ["region.json"]
 
 
-def test_folder_is_the_argument_then_the_environment_then_the_project(
+def test_the_folder_is_the_argument_then_the_environments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    project = tmp_path / "project"
-    below = project / "notebooks" / "deep"
-    below.mkdir(parents=True)
-    (project / "pyproject.toml").touch()
-    monkeypatch.chdir(below)
-    monkeypatch.delenv("QBOUND_RESULTS", raising=False)
-    assert example().save() == project / "results" / "region.json"
     monkeypatch.setenv("QBOUND_RESULTS", str(tmp_path / "elsewhere"))
     assert example().save() == tmp_path / "elsewhere" / "region.json"
     assert example().save(tmp_path / "here") == tmp_path / "here" / "region.json"
 
 
-def test_without_a_project_results_stand_in_the_working_directory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_outside_of_a_build_nothing_is_written_and_a_line_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """In a project, too: what a reader tries in a chapter changes no file that git tracks."""
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "results").mkdir()
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("QBOUND_RESULTS", raising=False)
-    if any((place / "pyproject.toml").exists() for place in tmp_path.parents):
-        pytest.skip("the temporary folder stands inside a project")
-    assert example().save() == tmp_path / "results" / "region.json"
+    assert example().save() is None
+    [line] = capsys.readouterr().out.splitlines()
+    assert line == "region.json is not written: results are recorded when the book is made."
+    assert list((tmp_path / "results").iterdir()) == []

@@ -16,8 +16,8 @@ from shapely import LineString, Polygon, unary_union
 
 from qbound import load_robot
 from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import Problem, clearance_problem, paper_rule
-from qbound.workspace.areas import NoHomeError, area_by_green, find_workspace, overlap
+from qbound.region import NoHomeError, Problem, clearance_problem, paper_rule
+from qbound.workspace.areas import area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form

@@ -102,17 +102,23 @@ def renumbered(names: list[str]) -> dict[Path, str]:
 
 def texts() -> list[Path]:
     """Return every text of the repository that may name a chapter; records of the past stay."""
-    found = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        check=True,
-    ).stdout.decode()
     kinds = {".md", ".ipynb", ".py", ".toml", ".js", ".html", ".yml"}
     past = {"CHANGELOG.md"}
-    paths = [ROOT / name for name in found.split("\0") if Path(name).suffix in kinds]
-    kept = [p for p in paths if p.name not in past and "decisions" not in p.parts and p.is_file()]
-    return sorted(kept)
+    paths = [path for path in files() if path.suffix in kinds and path.is_file()]
+    return sorted(p for p in paths if p.name not in past and "decisions" not in p.parts)
+
+
+def files() -> list[Path]:
+    """Return the files that git tracks or would; without git, all but what tools have made."""
+    listing = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    try:
+        listed = subprocess.run(listing, cwd=ROOT, capture_output=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        made = {"_build", "chapters", "generated", "workbook", "dist", "build"}
+        found = [path.relative_to(ROOT) for path in ROOT.rglob("*")]
+        kept = [p for p in found if not any(x in made or x.startswith(".") for x in p.parts)]
+        return [ROOT / path for path in kept]
+    return [ROOT / name for name in listed.decode().split("\0") if name]
 
 
 def rename(moves: dict[Path, Path]) -> None:

@@ -1,4 +1,4 @@
-"""What pages need beyond the theme: verdicts, notebooks, sound ids, wide figures, a calm API."""
+"""What pages need beyond the theme: verdicts, notebooks, sound ids, a calm API."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import NumpyDocstring
 from sphinx.transforms import SphinxTransform
-from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.typing import ExtensionMetadata
 
@@ -32,10 +31,6 @@ VERDICTS = (
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40
-
-# A picture wider than this has panels side by side, too small to read on a phone; in points.
-WIDEST_PANEL = 6.5 * 72
-SVG_WIDTH = re.compile(r'<svg\b[^>]*\swidth="([\d.]+)pt"')
 
 # Help is folded here, in characters; argparse itself leaves two of them free.
 HELP_WIDTH = "88"
@@ -105,28 +100,6 @@ class ShortValuesOnly(SphinxTransform):
                 value.parent.remove(value)
 
 
-class PanelsScroll(SphinxPostTransform):
-    """Put every wide picture into a box in which it can scroll: the style sheet does the rest."""
-
-    default_priority = 900
-
-    def run(self, **kwargs: Any) -> None:
-        for image in list(self.document.findall(nodes.image)):
-            if width_in_points(Path(self.app.srcdir, image["uri"])) > WIDEST_PANEL:
-                shown = image.parent if isinstance(image.parent, nodes.reference) else image
-                box = nodes.container(classes=["wide-figure"])
-                shown.replace_self(box)
-                box += shown
-
-
-def width_in_points(file: Path) -> float:
-    """Return the width that an SVG file states in points, else 0."""
-    if file.suffix != ".svg" or not file.is_file():
-        return 0.0
-    stated = SVG_WIDTH.search(file.read_text(encoding="utf-8"))
-    return float(stated[1]) if stated else 0.0
-
-
 def link_to_chapters(app: Sphinx, docname: str, source: list[str]) -> None:
     """Lead a chapter's links to the executed copies: they have no text twins beside them."""
     if docname.startswith("chapters/"):
@@ -192,7 +165,6 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
-    app.add_post_transform(PanelsScroll)
     app.connect("source-read", link_to_chapters)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)

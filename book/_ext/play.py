@@ -37,6 +37,9 @@ from qbound.files import write_whole
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"
 
+WITHOUT_PARTS = {"explorer"}
+"""Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
+
 LOGGER = logging.getLogger(__name__)
 
 Options = dict[str, str]
@@ -113,6 +116,8 @@ def add_scripts(
     if not found:
         return
     files: dict[str, str | None] = {"play/engine.js": engine_script()}
+    if any(hook.get("figure") not in WITHOUT_PARTS for hook in found):
+        files["play/parts.js"] = None
     files |= {address: text for hook in found for address, text in scripts_of(hook)}
     files |= {"play/play.js": None}
     for address, text in files.items():

@@ -30,6 +30,17 @@ function watchBoxes() {
   }
 }
 
+// A formula that is a little too wide shrinks to the page, before its box has to scroll.
+const SMALLEST = 0.72;
+
+function letFormulasShrink() {
+  for (const drawn of document.querySelectorAll("mjx-container > svg")) {
+    const width = drawn.getAttribute("width") ?? "";
+    if (drawn instanceof SVGElement && width.endsWith("ex"))
+      drawn.style.minWidth = `${parseFloat(width) * SMALLEST}ex`;
+  }
+}
+
 // A browser may break the line on either side of a formula: keep its brackets and stops beside it.
 function holdPunctuation() {
   for (const formula of document.querySelectorAll("span.math")) {
@@ -127,5 +138,5 @@ window.addEventListener("load", () => {
   breakNames();
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
-  formulasShown.then(holdPunctuation).then(watchBoxes);
+  formulasShown.then(letFormulasShrink).then(holdPunctuation).then(watchBoxes);
 });

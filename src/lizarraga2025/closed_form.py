@@ -120,7 +120,7 @@ def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
     for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
         result.append(one.q)
         (bound,) = set(one.bounds) & set(other.bounds)
-        if isinstance(robot.boundary(bound.boundary), HalfSpace):
+        if _is_half_space(robot, bound):
             curve = _curve_between(robot, bound, one.q, other.q, n)
             normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
             result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
@@ -133,6 +133,11 @@ def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: in
     lower, upper = geometric_bounds(robot, bound.boundary, np.stack([q1, q1], -1))
     q2 = np.unwrap(upper if bound.k == UPPER else lower)
     return np.stack([q1, q2 + start[1] - q2[0]], -1)
+
+
+def _is_half_space(robot: Robot, bound: Bound) -> bool:
+    """Tell whether a bound is a half-space's; a joint limit has no component."""
+    return bool(bound.component) and isinstance(robot.boundary(bound.boundary), HalfSpace)
 
 
 def _edges(region: Box) -> Iterator[tuple[Floats, Floats, Bound, Bound]]:

@@ -55,6 +55,8 @@ def _compared(answer: Any, expected: np.ndarray[Any, Any], within: float) -> str
         given = np.asarray(answer, dtype=float)
     except (TypeError, ValueError):
         return "Not yet: a number is asked for."
+    if np.isnan(given).any():  # None, too
+        return "Not yet: a number is asked for."
     if given.shape != expected.shape:
         return f"Not yet: {expected.size} numbers are asked for."
     if np.all(np.abs(given - expected) <= within):

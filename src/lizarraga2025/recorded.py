@@ -7,6 +7,7 @@ is read.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -53,13 +54,15 @@ def file_stem(chapter: str) -> str:
 
 
 def folder() -> Traversable:
-    """Return the folder of the recorded results.
+    """Return the folder of the recorded results: while the book is made, that of the next book.
 
     Raises
     ------
     FileNotFoundError
         If there is neither a copy in the package nor a repository around it.
     """
+    if chosen := os.environ.get("QBOUND_RESULTS"):
+        return Path(chosen)
     packaged = resources.files("lizarraga2025") / "recorded_results"
     repository = Path(__file__).resolve().parents[2] / "results"
     for place in (packaged, repository):

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qbound import __version__
 from qbound.files import write_whole
@@ -50,7 +51,7 @@ RATIO: Final = rounding(1)
 def area_error(*areas: float) -> float:
     """Bound the error of the engine's areas: 1e-12 of their sum.
 
-    Chapter 13 proves the areas of both rules; the engine is within this bound of them.
+    The chapter "Certainty" proves the areas of both rules; the engine is within this bound of them.
     """
     return 1e-12 * float(np.sum(np.abs(areas)))
 
@@ -58,6 +59,23 @@ def area_error(*areas: float) -> float:
 def last_place(*numbers: str) -> float:
     """Return a unit of the last decimal place of numbers that are written out."""
     return float(max(10.0 ** -len(number.partition(".")[2]) for number in numbers))
+
+
+def grid_error(inside: NDArray[np.bool_], cell: float) -> float:
+    """Bound the error of an area that was counted on a grid of one turn of both joints.
+
+    A cell whose neighbours answer alike is taken for what its middle says; the others may be in or
+    out. What is smaller than a cell and missed by every middle is not seen.
+
+    Parameters
+    ----------
+    inside : ndarray of bool, shape (n, n)
+        The answer at the middle of each cell.
+    cell : float
+        Area of a cell.
+    """
+    beside = [inside != np.roll(inside, step, axis) for axis in (0, 1) for step in (1, -1)]
+    return float(cell * np.any(beside, axis=0).sum())
 
 
 class Results:
@@ -123,33 +141,29 @@ class Results:
         self.entries.append(entry | {"error": bound})
         return value
 
-    def save(self, folder: str | Path | None = None) -> Path:
+    def save(self, folder: str | Path | None = None) -> Path | None:
         """Write ``<chapter>.json``, complete or not at all, and return its path.
 
-        The folder is `folder`, else the environment's QBOUND_RESULTS, else ``results`` beside the
-        nearest pyproject.toml at or above the working directory, else ``results`` in it.
+        The folder is `folder`, else the environment's QBOUND_RESULTS, which the build of the book
+        sets. Without either nothing is written, and a line says so: whoever tries things in a
+        chapter changes no recorded result.
         """
         head = {"schema": SCHEMA, "version": __version__, "robots": self.robots}
         content = head | {"chapter": self.chapter, "results": self.entries}
         return write_json(self.chapter, content, folder)
 
 
-def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path:
-    """Write ``<name>.json``, complete or not at all, into the folder that `Results.save` names."""
-    target = _folder(folder) / f"{name}.json"
+def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path | None:
+    """Write ``<name>.json``, complete or not at all, where and if `Results.save` does."""
+    chosen = folder or os.environ.get("QBOUND_RESULTS")
+    if not chosen:
+        print(f"{name}.json is not written: results are recorded when the book is made.")
+        return None
+    target = Path(chosen) / f"{name}.json"
     target.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
     write_whole(target, text.encode())
     return target
-
-
-def _folder(folder: str | Path | None) -> Path:
-    chosen = folder or os.environ.get("QBOUND_RESULTS")
-    if chosen:
-        return Path(chosen)
-    here = Path.cwd()
-    roots = (place for place in (here, *here.parents) if (place / "pyproject.toml").exists())
-    return next(roots, here) / "results"
 
 
 def _sha256(text: str) -> str:

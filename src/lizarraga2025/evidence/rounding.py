@@ -127,20 +127,3 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
 def turned_by_rounding(slope: float) -> float:
     """Return how far, rad, rounding of the offsets can turn a root of a component of this slope."""
     return COMPONENT / abs(slope)
-
-
-def grid_error(inside: np.ndarray, cell: float) -> float:
-    """Bound the error of an area that was counted on a grid of one turn of both joints.
-
-    A cell whose neighbours answer alike is taken for what its middle says; the others may be in or
-    out. What is smaller than a cell and missed by every middle is not seen.
-
-    Parameters
-    ----------
-    inside : ndarray of bool, shape (n, n)
-        The answer at the middle of each cell.
-    cell : float
-        Area of a cell.
-    """
-    beside = [inside != np.roll(inside, step, axis) for axis in (0, 1) for step in (1, -1)]
-    return float(cell * np.any(beside, axis=0).sum())

@@ -104,8 +104,8 @@ def claims() -> tuple[Claim, ...]:
     return tuple(claim(name) for name in identifiers())
 
 
-def save(ledger: Iterable[Claim], folder: str | Path | None = None) -> Path:
-    """Write ``claims.json`` where `Results.save` writes, complete or not at all."""
+def save(ledger: Iterable[Claim], folder: str | Path | None = None) -> Path | None:
+    """Write ``claims.json`` where and if `Results.save` writes, complete or not at all."""
     content = {"schema": SCHEMA, "claims": [one.content() for one in ledger]}
     return write_json("claims", content, folder)
 

@@ -12,7 +12,7 @@ from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.model.robotfile import load_robot
-from qbound.workspace.areas import NoHomeError
+from qbound.region import NoHomeError
 from qbound.workspace.report import WorkspaceReport, workspace_report
 
 

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from qbound.export.formats import heading
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
-from qbound.region import Component, Region, Vertex, find_region, margins
+from qbound.region import Component, NoHomeError, Region, Vertex, find_region, margins
 from qbound.region.arcs import Arc
 from qbound.version import __version__
-from qbound.workspace.areas import NoHomeError, find_workspace
+from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 

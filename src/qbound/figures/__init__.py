@@ -11,6 +11,7 @@ Here are the style and the parts of pictures.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from itertools import count, pairwise, product
@@ -23,7 +24,8 @@ from qbound.export.polygons import polygons
 from qbound.extras import require
 from qbound.forms.angles import TURN, whole_turns
 from qbound.measures.bodies import outline
-from qbound.model.robot import Robot
+from qbound.model.frames import Frames
+from qbound.model.robot import Joint, Robot
 from qbound.paths.traversal import Traversal
 from qbound.printable import printable
 from qbound.region import Region
@@ -115,6 +117,9 @@ def draw_robot(
 ) -> list[Artist]:
     """Draw a planar arm at one configuration: bodies, links, joints, and points by name.
 
+    A joint that turns is a circle; one that slides is a carriage on a rail from its lowest value
+    to its highest. A rail on the base stands where it is, without a link to the base's origin.
+
     Parameters
     ----------
     q : array_like, shape (n,)
@@ -130,12 +135,7 @@ def draw_robot(
         colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
         seen = outline(robot, body, q)
         artists += ax.fill(*seen.T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1)
-    names = [robot.base, *(joint.frame for joint in robot.joints), robot.tool]
-    spine = np.array([frames.position(robot.base, name, robot.base)[axes] for name in names])
-    joints, tool = spine[1:-1], spine[-1:]
-    artists += ax.plot(*spine.T, color=INK, lw=2, alpha=alpha, zorder=3)
-    artists += ax.plot(*joints.T, "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4)
-    artists += ax.plot(*tool.T, "s", color=INK, ms=5, alpha=alpha, zorder=4)
+    artists += _draw_chain(ax, robot, frames, axes, alpha)
     # Names go left and right by turns: the two points of a pair in contact are at one place.
     for i, name in enumerate(points):
         x, z = frames.position(robot.base, name, robot.base)[axes]
@@ -145,6 +145,57 @@ def draw_robot(
         text = ax.annotate(as_text(name), (x, z), shift, textcoords="offset points", zorder=6)
         text.set_horizontalalignment("right" if left else "left")
         artists.append(_halo(text))
+    return artists
+
+
+def _draw_chain(
+    ax: Axes, robot: Robot, frames: Frames, axes: list[int], alpha: float
+) -> list[Artist]:
+    """Draw the links as one line, a circle where a joint turns, the tool, and the slides."""
+
+    def place(name: str) -> Floats:
+        return np.asarray(frames.position(robot.base, name, robot.base)[axes], dtype=float)
+
+    spine, circles, slides = [place(robot.base)], [], []
+    for joint in robot.joints:
+        if joint.turns:
+            circles.append(place(joint.frame))
+        else:
+            rail = _rail(robot, joint, frames)[:, axes]
+            slides.append((rail[1:], place(joint.frame)))
+            spine = [] if joint.parent == robot.base else [*spine, rail[0], np.full(2, np.nan)]
+        spine.append(place(joint.frame))
+    tool = place(robot.tool)
+    artists: list[Artist] = []
+    artists += ax.plot(*np.array([*spine, tool]).T, color=INK, lw=2, alpha=alpha, zorder=3)
+    marks = np.reshape(circles, (-1, 2)).T
+    artists += ax.plot(*marks, "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4)
+    artists += ax.plot(*tool[:, None], "s", color=INK, ms=5, alpha=alpha, zorder=4)
+    for rail, carriage in slides:
+        artists += _draw_slide(ax, rail, carriage, alpha)
+    return artists
+
+
+def _rail(robot: Robot, joint: Joint, frames: Frames) -> Floats:
+    """Return where a slide is at zero, or as near as it comes, and the ends of its rail, (3, 3)."""
+    low, high = joint.limits or (0.0, 0.0)
+    values = np.array([np.clip(0.0, low, high), low, high])
+    places = joint.origin + values[:, None] * (joint.mount @ joint.axis)
+    turn = np.asarray(frames.rotation(robot.base, joint.parent), dtype=float)
+    return np.asarray(places @ turn.T + frames.position(robot.base, joint.parent, robot.base))
+
+
+def _draw_slide(ax: Axes, rail: Floats, carriage: Floats, alpha: float) -> list[Artist]:
+    """Draw a rail, shape (2, 2), as a hollow bar, and the carriage on it, turned as the rail is."""
+    artists: list[Artist] = []
+    for colour, width in ((INK, 6.0), ("white", 3.5)):
+        look: dict[str, Any] = {"lw": width, "solid_capstyle": "butt", "zorder": 2.5}
+        artists += ax.plot(*rail.T, color=colour, alpha=alpha, **look)
+    across, up = rail[1] - rail[0]
+    square: Any = (4, 0, 45 + math.degrees(math.atan2(up, across)))
+    artists += ax.plot(
+        *carriage[:, None], marker=square, mfc="white", mec=INK, ms=13, alpha=alpha, zorder=3.5
+    )
     return artists
 
 
@@ -325,9 +376,20 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
     return Markdown(text)  # type: ignore[no-untyped-call]
 
 
+def minus_signs(text: str) -> str:
+    """Write a minus sign for every hyphen that begins a number.
+
+    Examples
+    --------
+    >>> minus_signs("q1 = -30.5°, x-axis, 1e-12, robot-v2")
+    'q1 = −30.5°, x-axis, 1e-12, robot-v2'
+    """
+    return re.sub(r"(?<![\w.-])-(?=\.?\d)", "\N{MINUS SIGN}", text)
+
+
 def bound_label(label: str) -> str:
-    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext."""
-    return f"$\\{label}$"
+    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext; a limit's name as text."""
+    return f"$\\{label}$" if label.startswith("beta_") else as_text(label)
 
 
 def symbol(name: str) -> str:

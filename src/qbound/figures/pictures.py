@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from io import BytesIO
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 PANEL: Final = (5.4, 5.0)
+Limits = tuple[float, float]
+Line = tuple[float, float, float]
+"""Where a half-space that stands upright on the plane cuts it: unit normal and offset."""
 
 
 def pose_picture(
@@ -190,31 +193,49 @@ def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
     ax.margins(0.12)
     ax.autoscale_view()
     window = ax.get_xlim(), ax.get_ylim()
-    for half_space in robot.boundaries:
-        if isinstance(half_space, HalfSpace) and half_space.used:
-            _half_space(ax, half_space, np.asarray(half_space.normal, dtype=float)[list(plane)])
+    for line, names in _lines(robot, plane).items():
+        _draw_line(ax, line)
+        _name_line(ax, window, line, names)
     ax.set(xlim=window[0], ylim=window[1])
 
 
 def _written(robot: Robot, q: Floats) -> str:
     """Joint values for a title, angles in degrees."""
     return ", ".join(
-        f"{figures.symbol(joint.name)} = {value * joint.shown_scale:.4g}"
+        f"{figures.symbol(joint.name)} = "
+        + figures.minus_signs(f"{value * joint.shown_scale:.4g}")
         + ("" if joint.turns else " ")
         + joint.unit(robot.length_unit, "°")
         for joint, value in zip(robot.joints, q, strict=True)
     )
 
 
-def _half_space(ax: Axes, half_space: HalfSpace, normal: Floats) -> None:
-    """Draw the line at which a half_space cuts the plane, if it stands upright on it."""
-    if np.hypot(*normal) > 1 - 1e-9:
-        foot = half_space.offset * normal
-        along = np.array([-normal[1], normal[0]])
-        ax.axline(tuple(foot), tuple(foot + along), color=figures.COLLIDING, lw=1.2)
-        if abs(along[0]) > 0.5:  # its name at the right edge
-            height = foot[1] + along[1] / along[0] * (ax.get_xlim()[1] - foot[0])
-            ax.annotate(
-                figures.as_text(half_space.name), (ax.get_xlim()[1], height), (-3, 3),
-                textcoords="offset points", ha="right", color=figures.COLLIDING,
-            )  # fmt: skip
+def _lines(robot: Robot, plane: tuple[int, int]) -> dict[Line, list[str]]:
+    """Return the lines at which upright half-spaces cut the plane, each with all of its names."""
+    lines: dict[Line, list[str]] = {}
+    for half_space in robot.boundaries:
+        if isinstance(half_space, HalfSpace) and half_space.used:
+            across, up = np.asarray(half_space.normal, dtype=float)[list(plane)].tolist()
+            if np.hypot(across, up) > 1 - 1e-9:
+                lines.setdefault((across, up, half_space.offset), []).append(half_space.name)
+    return lines
+
+
+def _draw_line(ax: Axes, line: Line) -> None:
+    normal = np.array(line[:2])
+    foot, along = line[2] * normal, np.array([-normal[1], normal[0]])
+    ax.axline(tuple(foot), tuple(foot + along), color=figures.COLLIDING, lw=1.2)
+
+
+def _name_line(ax: Axes, window: tuple[Limits, Limits], line: Line, names: list[str]) -> None:
+    """Write names at the right edge of the window, one above the other, where the line leaves."""
+    (_, right), (bottom, top) = window
+    across, up, offset = line
+    if abs(up) > 0.5 and bottom <= (height := (offset - across * right) / up) <= top:
+        text = "\n".join(map(figures.as_text, names))
+        look: Any = {"ha": "right", "va": "bottom", "color": figures.COLLIDING}
+        label = ax.annotate(
+            text, (right, height), (-3, 3), textcoords="offset points", annotation_clip=False,
+            **look,
+        )  # fmt: skip
+        figures._halo(label)

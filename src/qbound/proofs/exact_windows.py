@@ -36,14 +36,16 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
 
 
 def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
-    """Return the highest lower end and the lowest upper end of a joint's windows."""
+    """Return the highest lower end and the lowest upper end of a joint's windows and limits."""
     own = [window for window in paper_rule.windows(robot) if window.joint == joint]
     upper = [_upper(exact, window) for window in own]
     lower = [end - turns(1) for end in upper]
-    low = lower[max(range(len(own)), key=lambda k: own[k].lower)]
-    high = upper[min(range(len(own)), key=lambda k: own[k].upper)]
     home = ball(exact.home[joint])
-    if any(x > low for x in lower) or any(x < high for x in upper) or not low < home < high:
+    on_turn = all(x < home < y for x, y in zip(lower, upper, strict=True))
+    if limits := exact.joints[joint].limits:  # eq. (10)
+        lower, upper = [*lower, ball(limits[0])], [*upper, ball(limits[1])]
+    low, high = max(lower, key=float), min(upper, key=float)
+    if any(x > low for x in lower) or any(x < high for x in upper) or not on_turn:
         raise ValueError(f"joint {joint + 1}: rounding hides which window binds, or on which turn")
     return low, high
 

@@ -8,10 +8,11 @@
 
 from qbound.region.components import Component, Vertex
 from qbound.region.problem import Problem, Rule, clearance_problem, state
-from qbound.region.region import Region, find_region, margins, solve, violated
+from qbound.region.region import NoHomeError, Region, find_region, margins, solve, violated
 
 __all__ = [
     "Component",
+    "NoHomeError",
     "Problem",
     "Region",
     "Rule",

@@ -15,6 +15,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.boundary.evaluator import limit_names
 from qbound.boundary.functions import clearance, pair_vector
 from qbound.forms.angles import TURN, first_from
 from qbound.forms.circle import circle_roots
@@ -35,7 +36,8 @@ LOWER: Final = 2
 class Bound:
     r"""The bound :math:`\beta_{i,j,k}` of boundary i.
 
-    Component j is 1, 2, 3 for x, y, z; k is 1 for the upper bound, 2 for the lower.
+    Component j is 1, 2, 3 for x, y, z; k is 1 for the upper bound, 2 for the lower. A joint limit
+    (eq. 10) has no component: j is 0, and the boundary is the limit, such as ``q2.lower``.
     """
 
     boundary: str
@@ -44,7 +46,9 @@ class Bound:
 
     @property
     def label(self) -> str:
-        """The paper's label, such as ``beta_{1,3,1}`` for component 3 of B1, upper."""
+        """The paper's label, such as ``beta_{1,3,1}`` (B1, third, upper), or a limit's name."""
+        if not self.component:
+            return self.boundary
         index = self.boundary.removeprefix("B")
         return f"beta_{{{index},{self.component},{self.k}}}"
 
@@ -62,7 +66,7 @@ class Window:
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """What all windows leave: lowest and highest joint values (rad) and the bounds that bind."""
+    """What windows and limits leave: lowest and highest joint values (rad), and their bounds."""
 
     lower: Floats
     upper: Floats
@@ -90,19 +94,20 @@ def windows(robot: Robot) -> list[Window]:
 
 
 def box(robot: Robot) -> Box:
-    """Intersect all windows.
+    """Intersect all windows, and the joints' own limits (eq. 10) where they have some.
 
     Raises
     ------
     ValueError
-        If a joint has no window: the paper's rule then says nothing about it.
+        If a joint has no window: the paper's rule then says nothing about it. Or if windows and
+        limits leave it no value.
     """
     lower, upper = zip(*(_sides(robot, joint) for joint in range(len(robot.joints))), strict=True)
     return Box(
-        lower=np.array([w.lower for w in lower]),
-        upper=np.array([w.upper for w in upper]),
-        lower_bounds=tuple(Bound(w.boundary, w.component, LOWER) for w in lower),
-        upper_bounds=tuple(Bound(w.boundary, w.component, UPPER) for w in upper),
+        lower=np.array([value for value, _ in lower]),
+        upper=np.array([value for value, _ in upper]),
+        lower_bounds=tuple(bound for _, bound in lower),
+        upper_bounds=tuple(bound for _, bound in upper),
     )
 
 
@@ -143,12 +148,22 @@ def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
             yield Window(pair.name, component + 1, joint, upper - TURN, upper)
 
 
-def _sides(robot: Robot, joint: int) -> tuple[Window, Window]:
-    """Return the windows with the highest lower end and with the lowest upper end."""
-    own = [window for window in windows(robot) if window.joint == joint]
+def _sides(robot: Robot, joint: int) -> tuple[tuple[float, Bound], tuple[float, Bound]]:
+    """Return the highest lower end and the lowest upper end of a joint, each with its bound."""
+    own, moved = [window for window in windows(robot) if window.joint == joint], robot.joints[joint]
     if not own:
-        raise ValueError(f"no point pair bounds joint {robot.joints[joint].name!r}")
-    return max(own, key=lambda w: w.lower), min(own, key=lambda w: w.upper)
+        raise ValueError(f"no point pair bounds joint {moved.name!r}")
+    lower = [(w.lower, Bound(w.boundary, w.component, LOWER)) for w in own]
+    upper = [(w.upper, Bound(w.boundary, w.component, UPPER)) for w in own]
+    if moved.limits is not None:
+        low, high = limit_names(moved.name)
+        lower.append((moved.limits[0], Bound(low, 0, LOWER)))
+        upper.append((moved.limits[1], Bound(high, 0, UPPER)))
+    highest, lowest = max(lower, key=lambda end: end[0]), min(upper, key=lambda end: end[0])
+    if highest[0] >= lowest[0]:
+        ends = [f"{bound.label} at {np.degrees(x):.4g}°" for x, bound in (highest, lowest)]
+        raise ValueError(printable(f"{moved.name}: no room between {' and '.join(ends)}"))
+    return highest, lowest
 
 
 def cuts(robot: Robot) -> list[tuple[HalfSpace, HarmonicForm]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.evaluator import evaluator
+from qbound.boundary.evaluator import evaluator, limit_names
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region import paper_rule
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+
+class NoHomeError(ValueError):
+    """The home pose is in no component; the message says which boundary it violates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +64,8 @@ class Region:
     >>> vertex.boundaries, np.degrees(vertex.q).round(2).tolist()
     (('B7', 'B4'), [-93.81, -163.81])
 
-    `home` is None where the home pose is in no component, so test it before use.
+    `home` is None where the home pose is in no component, and `home_component` raises an error that
+    says why.
     """
 
     components: tuple[Component, ...]
@@ -82,6 +87,32 @@ class Region:
     def home(self) -> Component | None:
         """The first component with the home pose."""
         return next((c for c in self.components if c.contains_home), None)
+
+    @property
+    def home_component(self) -> Component:
+        """The first component with the home pose, for code that cannot do without.
+
+        Raises
+        ------
+        NoHomeError
+            If there is none; it names what the home pose violates, and by how much.
+
+        Examples
+        --------
+        >>> from dataclasses import replace
+        >>> from qbound import find_region, load_robot
+        >>> robot = load_robot("minervabot-v2")
+        >>> find_region(robot).home_component
+        <Component: area 11.78, 6 vertices, 1 loop, with home>
+        >>> bent = replace(robot.joints[1], limits=(0.5, 2.0))
+        >>> limited = replace(robot, joints=(robot.joints[0], bent))
+        >>> find_region(limited).home_component  # doctest: +ELLIPSIS
+        Traceback (most recent call last):
+        qbound.region.region.NoHomeError: the home pose is in no component: q2.lower is violated ...
+        """
+        if self.home is None:
+            raise NoHomeError(f"the home pose is in no component: {_why_no_home(self)}")
+        return self.home
 
     @property
     def area(self) -> float:
@@ -370,6 +401,31 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
     owner = {k: i for i, (_, windings) in enumerate(components) for k in windings}
     return Region(tuple(component for component, _ in components), problem, cells, base, owner)
+
+
+def _why_no_home(region: Region) -> str:
+    """Say what a home pose that is in no component violates, or else touches."""
+    problem = region.problem
+    if problem.home is None or problem.robot is None:
+        return "it lies in none of them"
+    found = dict(zip(region.boundaries, region.margins(problem.home).tolist(), strict=True))
+    lost = [
+        f"{name} is violated by {_shown(region, name, -m)}" for name, m in found.items() if m < 0
+    ]
+    touched = [name for name, margin in found.items() if margin == 0]
+    return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
+
+
+def _shown(region: Region, boundary: str, margin: float) -> str:
+    """Write a margin with its unit: a length, or of a limit that of its joint."""
+    robot, problem = region.robot, region.problem
+    limited = {name: joint for joint in robot.joints for name in limit_names(joint.name)}
+    for j, ends in zip(problem.joints, problem.limits, strict=True):
+        limited |= dict.fromkeys(ends, robot.joints[j])  # by the paper's rule windows are limits
+    if (joint := limited.get(boundary)) is None:
+        return f"{margin:.4g} {robot.length_unit}"
+    space = "" if joint.turns else " "
+    return f"{margin * joint.shown_scale:.4g}{space}{joint.unit(robot.length_unit, '°')}"
 
 
 def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:

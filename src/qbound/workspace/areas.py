@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.region import Component, Problem
+from qbound.region import Component, NoHomeError, Problem
 from qbound.region.arcs import Arc, integrate
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
@@ -27,10 +27,6 @@ Floats = NDArray[np.float64]
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""
-
-
-class NoHomeError(ValueError):
-    """The home pose is in no component: no workspace belongs to it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,54 @@
+// On the search page: whoever asks for "Table 6", "eq. 29", "E-34" or "aspect" is led there first.
+
+/** @type {[RegExp, string][]} */
+const SHORT_FORMS = [
+  [/^\((\w+)\)$/, "equation $1"],
+  [/\beq(n|s|uations?)?\b/, "equation"],
+  [/\bfig(s|ures?)?\b/, "figure"],
+  [/\btab(s|les?)?\b/, "table"],
+  [/\bth(m|eorems?)\b/, "theorem"],
+  [/\bref(s|erences?)?\b/, "reference"],
+  [/^(the )?(entry|claim|verdict) (?=\S)/, ""],
+  [/[^a-z0-9.']+/g, " "], // "e-34" and "e 34" are one name
+  [/\. | $|\.$/g, " "],
+  [/(?<=[a-z])(?=\d)/g, " "], // so are "e34" and "n5"
+];
+
+/** @type {(name: string) => string} */
+function plain(name) {
+  const lower = name.toLowerCase().replaceAll("’", "'").trim();
+  return SHORT_FORMS.reduce((text, [form, full]) => text.replace(form, full), lower).trim();
+}
+
+// A word of the glossary may have two forms, "Prismatic joint, revolute joint", and a plural.
+/** @type {(card: BookCard, wanted: string) => boolean} */
+function bears(card, wanted) {
+  const names = card.name.split(", ").map(plain);
+  const numbered = /^[a-z]+ \d/.test(wanted) ? ` ${wanted}` : null; // "n 5" is that of every kind
+  return names.some(
+    (name) => name === wanted || `${name}s` === wanted || (numbered && name.endsWith(numbered)),
+  );
+}
+
+/** @type {(address: string, card: BookCard) => SearchResult} */
+function resultOf(address, card) {
+  const [file, anchor] = address.split("#");
+  const page = file.replace(/\.html$/, "");
+  return [page, `${card.name} (${card.page})`, `#${anchor}`, null, 1000, file, "title"];
+}
+
+{
+  const { query, _performSearch: others } = Search;
+  /** @type {[string, BookCard][]} */
+  let cards = [];
+  Search.query = async (text) => {
+    cards = Object.entries(await allCards());
+    query(text);
+  };
+  // Sphinx shows its results from the last to the first.
+  Search._performSearch = (text, ...terms) => {
+    const named = cards.filter(([, card]) => bears(card, plain(text)));
+    const first = named.map(([address, card]) => resultOf(address, card));
+    return [...others(text, ...terms), ...first.reverse()];
+  };
+}

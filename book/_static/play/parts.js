@@ -1,0 +1,238 @@
+"use strict";
+/* What the figures that one moves in a chapter share: values to set, words that say what holds. */
+{
+  const { addArm, element, layer, make, newPrefix, number, pathText, placeArm } = qboundEngine;
+
+  /** A value with its name, a slider and a field.
+   * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
+  function valueRow({ name, spoken, low, high, step, digits, unit }, change) {
+    const limits = { min: String(low), max: String(high) };
+    const slide = element("input", { type: "range", ...limits, step: String(step) });
+    const field = element("input", { type: "number", ...limits, step: "any" });
+    slide.ariaLabel = spoken;
+    field.ariaLabel = `${spoken}, as a number`;
+    let shown = "";
+    let typed = false; // what a reader types stays as it is typed
+    for (const input of [slide, field]) {
+      input.addEventListener("input", () => {
+        const value = Number(input.value);
+        if (input.value === "" || !Number.isFinite(value)) return;
+        typed = input === field;
+        change(Math.min(high, Math.max(low, value)));
+        typed = false;
+      });
+    }
+    field.addEventListener("blur", () => {
+      field.value = shown;
+    });
+    const box = element("span", { className: "unit" }, field, unit);
+    return {
+      row: element("div", { className: "slider" }, element("span", {}, name), slide, box),
+      set(value) {
+        shown = String(Number(value.toFixed(digits)));
+        slide.value = String(value);
+        if (!typed) field.value = shown;
+      },
+    };
+  }
+
+  /** A box to tick.
+   * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
+  function tick(text, checked, change) {
+    const box = element("input", { type: "checkbox", checked });
+    box.addEventListener("change", () => change(box.checked));
+    return element("label", { className: "check" }, box, text);
+  }
+
+  /** @type {(text: string, press: () => void) => HTMLButtonElement} */
+  function button(text, press) {
+    const made = element("button", { type: "button", textContent: text });
+    made.addEventListener("click", press);
+    return made;
+  }
+
+  /** Buttons side by side, with what they do.
+   * @type {(...all: [string, () => void][]) => HTMLParagraphElement} */
+  function buttons(...all) {
+    return element(
+      "p",
+      { className: "buttons" },
+      ...all.map(([text, press]) => button(text, press)),
+    );
+  }
+
+  /** What holds now: seen at once, spoken when the hand has come to rest. It is as high as the
+      longest text makes it, so that nothing moves under a hand that drags.
+   * @type {(longest: string) => StatusLine} */
+  function statusLine(longest) {
+    const [text, room] = [element("span", {}), element("span", { ariaHidden: "true" }, longest)];
+    const seen = element("p", { className: "status" }, text, room);
+    const spoken = element("p", { className: "unseen", role: "status" });
+    let [timer, told] = [0, ""];
+    return {
+      seen,
+      spoken,
+      say(words, bad) {
+        text.textContent = words;
+        seen.classList.toggle("violated", bad);
+        told ||= words; // what a figure opens with is read where it stands
+        window.clearTimeout(timer);
+        timer = window.setTimeout(() => {
+          if (words !== told) spoken.textContent = words;
+          told = words;
+        }, 700);
+      },
+    };
+  }
+
+  /** A picture with a name for those who do not see it.
+   * @type {(label: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
+  function canvas(label) {
+    const svg = make("svg", { role: "img", "aria-label": label });
+    svg.id = `${newPrefix()}picture`;
+    return { figure: element("div", { className: "picture" }, svg), svg };
+  }
+
+  /** Call at once, and whenever the element has a new width.
+   * @type {(watched: HTMLElement, draw: () => void) => void} */
+  function whenWidthChanges(watched, draw) {
+    let width = -1;
+    new ResizeObserver(() => {
+      if (Math.abs(watched.clientWidth - width) < 1) return;
+      width = watched.clientWidth;
+      draw();
+    }).observe(watched);
+    width = watched.clientWidth;
+    draw();
+  }
+
+  /** @type {(angle: number, digits?: number) => string} */
+  function degrees(angle, digits = 1) {
+    return `${number((angle * 180) / Math.PI, digits)}°`;
+  }
+
+  /** Room around a picture of two joint angles. */
+  const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
+
+  /** Axes of two joint values in degrees.
+   * @type {(drawn: Picture, step: number) => void} */
+  function jointAxes(drawn, step) {
+    const group = layer(drawn, "axes", false);
+    const { left, top, right, bottom } = drawn.box;
+    const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
+    for (const k of [0, 1]) {
+      const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
+      for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
+        const value = (tickAt * Math.PI) / 180;
+        const [x, y] = drawn.at(k === 0 ? [value, low[1]] : [low[0], value]);
+        const line =
+          k === 0
+            ? [
+                [x, top],
+                [x, bottom],
+              ]
+            : [
+                [left, y],
+                [right, y],
+              ];
+        const at =
+          k === 0
+            ? { x, y: bottom + 15, "text-anchor": "middle" }
+            : { x: left - 6, y: y + 4, "text-anchor": "end" };
+        group.append(
+          make("path", { class: "grid", d: pathText(line) }),
+          make("text", at, `${tickAt}°`.replace("-", "−")),
+        );
+      }
+    }
+    group.append(
+      make("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
+      make("text", { x: left - 52, y: (top + bottom) / 2 + 4, "text-anchor": "middle" }, "q₂"),
+    );
+  }
+
+  /** The arm's parts in a picture of its plane, to be moved by `moveArm`.
+   * @type {(robot: Robot, drawn: Picture) => PlanePicture} */
+  function armParts(robot, drawn) {
+    const none = make("path", {});
+    const rest = { group: make("g", {}), mark: none, room: make("circle", {}), walls: [] };
+    return { ...drawn, ...addArm(robot, drawn), ...rest, path: none, ghost: none };
+  }
+
+  /** Show the arm in a pose; the boundaries `lit` stand out with their points.
+   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>) => void} */
+  function moveArm(robot, drawn, q, lit = []) {
+    const names = new Set(lit);
+    const walls = robot.boundaries.filter((wall) => names.has(wall.name));
+    const points = new Set(walls.flatMap((wall) => wall.points));
+    const shown = { q, show: { names: false } };
+    placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
+      violated: names,
+      bold: names,
+      closest: null,
+      boundaries: names,
+      points,
+      named: points,
+    });
+  }
+
+  /** @type {(element: SVGElement, point: Point) => void} */
+  function moveTo(element, [x, y]) {
+    element.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+  }
+
+  /** Whole turns of the joints that wrap: none, and one back or on.
+   * @type {(robot: Robot) => Pair[]} */
+  function turns(robot) {
+    const [first, second] = robot.views.map(({ wraps }) =>
+      wraps ? [0, -2 * Math.PI, 2 * Math.PI] : [0],
+    );
+    return first.flatMap((a) => second.map((b) => [a, b]));
+  }
+
+  /** The number of the region in which a pose lies, from 1 as the library counts; null for none.
+   * @type {(robot: Robot, pair: Pair) => number | null} */
+  function regionAt(robot, pair) {
+    const all = turns(robot).map((by) => pair.map((value, k) => value + by[k]));
+    const i = robot.components.findIndex(({ loops }) => all.some((at) => isInside(loops, at)));
+    return i < 0 ? null : i + 1;
+  }
+
+  /** Whether a ray from a point crosses the outlines an odd number of times.
+   * @type {(loops: Component["loops"], point: Pair) => boolean} */
+  function isInside(loops, [x, y]) {
+    let odd = false;
+    for (const loop of loops) {
+      const points = loop.flatMap((arc) => arc.points);
+      for (const [i, [bx, by]] of points.entries()) {
+        const [ax, ay] = points.at(i - 1) ?? [bx, by];
+        if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) odd = !odd;
+      }
+    }
+    return odd;
+  }
+
+  /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
+   * @type {(one: Pair, other: Pair) => boolean} */
+  function isSame(one, other) {
+    return one.every((value, k) => Math.abs(value - other[k]) < 1e-9);
+  }
+
+  window.qboundParts = {
+    isSame,
+    turns,
+    regionAt,
+    valueRow,
+    tick,
+    buttons,
+    statusLine,
+    canvas,
+    whenWidthChanges,
+    degrees,
+    AROUND,
+    jointAxes,
+    armParts,
+    moveArm,
+    moveTo,
+  };
+}

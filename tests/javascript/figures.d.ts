@@ -1,0 +1,205 @@
+/* What the figures of the chapters hand each other, and what parts.js offers them. For the type
+   checker only: no page carries this file. Angles are in rad, lengths in the robot's unit. */
+
+/* --- parts.js --------------------------------------------------------------------------------- */
+
+interface ValueRow {
+  name: string; // beside the slider
+  spoken: string; // for those who do not see it, with its unit
+  low: number;
+  high: number;
+  step: number; // of the slider; the field takes any number
+  digits: number; // that the field shows
+  unit: string;
+}
+
+interface SetRow {
+  row: HTMLElement;
+  set: (value: number) => void;
+}
+
+interface StatusLine {
+  seen: HTMLElement;
+  spoken: HTMLElement;
+  say: (text: string, bad: boolean) => void;
+}
+
+type Press = [string, () => void]; // a button's words, and what it does
+
+interface Parts {
+  isSame(one: Pair, other: Pair): boolean;
+  turns(robot: Robot): Pair[];
+  regionAt(robot: Robot, pair: Pair): number | null;
+  valueRow(value: ValueRow, change: (value: number) => void): SetRow;
+  tick(text: string, checked: boolean, change: (checked: boolean) => void): HTMLLabelElement;
+  buttons(...all: [string, () => void][]): HTMLParagraphElement;
+  statusLine(longest: string): StatusLine;
+  canvas(label: string): { figure: HTMLElement; svg: SVGSVGElement };
+  whenWidthChanges(watched: HTMLElement, draw: () => void): void;
+  degrees(angle: number, digits?: number): string;
+  AROUND: Picture["box"];
+  jointAxes(drawn: Picture, step: number): void;
+  armParts(robot: Robot, drawn: Picture): PlanePicture;
+  moveArm(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>): void;
+  moveTo(element: SVGElement, point: Point): void;
+}
+
+declare const qboundParts: Parts;
+interface Window {
+  qboundParts: Parts;
+}
+
+/* --- circle ----------------------------------------------------------------------------------- */
+
+interface TheoremTwo {
+  d: number;
+  theta: number;
+  alpha: number;
+  count: number; // of roots; -1: every angle is one
+  empty: boolean; // no angle satisfies the inequality
+}
+
+interface CirclePicture extends Picture {
+  above: SVGPathElement;
+  line: SVGPathElement;
+  arc: SVGPathElement;
+  proof: SVGPathElement;
+  theorem: SVGPathElement;
+  arrow: SVGPathElement;
+  names: SVGTextElement[];
+  roots: SVGCircleElement[];
+  vector: Handle;
+  cut: Handle;
+  point: Handle;
+}
+
+/* --- switches --------------------------------------------------------------------------------- */
+
+type Reading = "arctan" | "atan2" | "plus";
+
+interface Component2 {
+  boundary: string;
+  component: number; // 1, 2, 3: x, y, z
+}
+
+interface Coefficients extends Component2 {
+  joint: number;
+  a: number;
+  b: number;
+  c: number;
+}
+
+interface StraightBound extends Component2 {
+  joint: number;
+  k: number; // 1 is the upper bound, 2 the lower
+  value: number;
+}
+
+interface CurvedWall extends Component2 {
+  matrix: Matrix;
+}
+
+interface WallArc {
+  middle: number;
+  alpha: number;
+  cuts: boolean; // whether it ends in roots
+}
+
+interface CurveRow extends WallArc {
+  first: number;
+}
+
+interface BoxSide {
+  value: number;
+  by: string | null; // the bound there; null: the square's edge
+}
+
+interface BoundBox {
+  box: HTMLInputElement;
+  label: HTMLLabelElement;
+  value: HTMLSpanElement;
+}
+
+/* --- scale ------------------------------------------------------------------------------------ */
+
+interface Lowest {
+  value: number;
+  q: Pair;
+}
+
+interface ScalePictures {
+  joints: Picture;
+  inside: SVGPathElement;
+  lines: SVGPathElement[];
+  numbers: SVGTextElement[];
+  dot: SVGCircleElement;
+  plane: PlanePicture;
+  depth: SVGPathElement;
+}
+
+/* --- bodies ----------------------------------------------------------------------------------- */
+
+interface BodyPair {
+  frames: number[];
+  gap: number;
+  shared: Point[];
+}
+
+interface BodyPictures {
+  joints: Picture;
+  dot: Handle;
+  plane: PlanePicture;
+  overlap: SVGPathElement;
+  elbow: Handle;
+  tool: Handle;
+}
+
+/* --- traversals ------------------------------------------------------------------------------- */
+
+interface Way {
+  name: string; // "all", "right", "left", "mirror"
+  labels: string[]; // of the stops
+  stops: Pair[];
+}
+
+interface Trace {
+  way: Way;
+  joints: SVGPathElement; // as far as it is done
+  plane: SVGPathElement;
+}
+
+interface Player {
+  calm: () => boolean;
+  runs: () => boolean;
+  stop: () => void;
+  go: (done: number) => void;
+  play: (seconds: number, places: number[], loops?: boolean) => void;
+}
+
+/* --- regions ---------------------------------------------------------------------------------- */
+
+interface Rule {
+  wall: Wall;
+  form: Matrix;
+}
+
+interface Slid {
+  at: Pair; // how far the arm came
+  by: Wall[]; // what barred the straight way; empty where nothing did
+  goal: Pair;
+}
+
+interface Behind {
+  pair: Pair; // the first safe pose beyond
+  width: number; // of what lies between, rad
+  region: number | null;
+}
+
+/* --- postures --------------------------------------------------------------------------------- */
+
+interface Judged {
+  pair: Pair;
+  safe: boolean;
+  region: number | null;
+  violated: string[];
+}

@@ -1,0 +1,50 @@
+"""A book of one chapter, built with the real configuration and extensions."""
+
+import shutil
+from pathlib import Path
+
+import nbformat
+from sphinx.testing.util import SphinxTestApp
+
+ROOT = Path(__file__).resolve().parents[2]
+BOOK = ROOT / "book"
+
+PYPROJECT = """
+[project]
+name = "qbound"
+version = "1.2.3"
+authors = [{{ name = "qbound maintainers" }}]
+[tool.qbound]
+title = "Feasible workspaces"
+repository = "{repository}"
+"""
+TRIAL_INDEX = "# Trial\n\n{verdict}`misprint`\n\n```{toctree}\nchapters/01_trial\n```\n"
+
+
+def build_trial(
+    folder: Path, repository: str, index: str = TRIAL_INDEX, chapter: str = "# Trial chapter"
+) -> Path:
+    """Build a book of one chapter with the real configuration and an address of our choice."""
+    book = folder / "book"
+    for name in ("_ext", "_static", "_templates"):
+        shutil.copytree(BOOK / name, book / name)
+    for name in ("conf.py", "references.bib"):
+        shutil.copy(BOOK / name, book)
+    (folder / "pyproject.toml").write_text(PYPROJECT.format(repository=repository), "utf-8")
+    (book / "index.md").write_text(index, "utf-8")
+    (book / "chapters").mkdir()
+    output = [nbformat.v4.new_output("stream", text="2")]
+    cells = [
+        nbformat.v4.new_markdown_cell(chapter),
+        nbformat.v4.new_code_cell("1 + 1", outputs=output, execution_count=7),
+    ]
+    python = {"language_info": {"name": "python"}}
+    notebook = nbformat.v4.new_notebook(cells=cells, metadata=python)
+    nbformat.write(notebook, book / "chapters" / "01_trial.ipynb")
+    app = SphinxTestApp("html", srcdir=book, builddir=folder)
+    try:
+        app.build()
+        assert app.warning.getvalue() == ""
+    finally:
+        app.cleanup()
+    return Path(app.outdir)

@@ -1,0 +1,330 @@
+"""What `run.py renumber` does to chapters: numbers, references, first cells, their list."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import jupytext
+import nbformat
+import pytest
+from bs4 import BeautifulSoup
+from jupytext.compare import compare_notebooks
+
+from support.scripts import load_script
+
+ROOT = Path(__file__).resolve().parent.parent
+TOOLS = ROOT / "tools"
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
+HTML = ROOT / "book" / "_build" / "html"
+
+TEXT = """\
+---
+jupytext:
+  text_representation:
+    extension: .md
+    format_name: myst
+---
+
+# A new one
+
+See [chapter 3](03_theorem_1.ipynb).
+
+```{code-cell} ipython3
+1 + 1
+```
+"""
+
+
+def tool(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """A tool as a module; one may import another."""
+    monkeypatch.syspath_prepend(TOOLS)
+    return load_script(f"tools/{name}.py")
+
+
+@pytest.fixture
+def scratch(tmp_path: Path) -> Path:
+    """A copy of what the tools read and write, as a repository of its own."""
+    for folder in ("notebooks", "tools", "results"):
+        skip = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=skip)
+    for name in ("pyproject.toml", "CHANGELOG.md", "src/lizarraga2025/recorded.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    shutil.copytree(ROOT / "src/lizarraga2025/ledger", tmp_path / "src/lizarraga2025/ledger")
+    (tmp_path / "book").mkdir()
+    for page in (ROOT / "book").glob("*.md"):
+        shutil.copy(page, tmp_path / "book")
+    assert apply("renumber", tmp_path).returncode == 0
+    return tmp_path
+
+
+def apply(name: str, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run a copy's own tool."""
+    command = [sys.executable, folder / "tools" / f"{name}.py", *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    found = [
+        path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in str(path)
+    ]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in found}
+
+
+def entries(folder: Path) -> list[str]:
+    index = (folder / "book/index.md").read_text(encoding="utf-8")
+    return re.findall(r"^chapters/(\w+)$", index, re.M)
+
+
+# --- numbers of chapters --------------------------------------------------------------------------
+
+
+def test_chapters_in_order_are_left_alone(scratch: Path) -> None:
+    before = contents(scratch)
+    assert apply("renumber", scratch).returncode == 0
+    assert apply("renumber", scratch, "--check").returncode == 0
+    assert contents(scratch) == before
+
+
+def test_a_chapter_put_in_the_middle_moves_those_after_it(scratch: Path) -> None:
+    before = entries(scratch)
+    titles = {stem[3:]: title(scratch, stem) for stem in before}
+    fixed = {name: data for name, data in contents(scratch).items() if is_fixed(name)}
+    (scratch / "notebooks/middle.md").write_text(TEXT, encoding="utf-8")
+    index = scratch / "book/index.md"
+    text = index.read_text(encoding="utf-8")
+    line = f"chapters/{before[4]}\n"
+    index.write_text(text.replace(line, f"chapters/middle\n{line}"), encoding="utf-8")
+    assert apply("renumber", scratch, "--check").returncode == 1
+    assert apply("renumber", scratch).returncode == 0
+    assert apply("renumber", scratch, "--check").returncode == 0
+
+    names = [stem[3:] for stem in before]
+    names.insert(4, "middle")
+    stems = [f"{number:02d}_{name}" for number, name in enumerate(names, start=1)]
+    assert entries(scratch) == stems
+    assert sorted(p.stem for p in (scratch / "notebooks").glob("[0-9]*.md")) == stems
+    assert title(scratch, stems[4]) == "5. A new one"
+    for number, (stem, name) in enumerate(zip(stems, names, strict=True), start=1):
+        if name != "middle":
+            words = titles[name].partition(". ")[2]
+            assert title(scratch, stem) == f"{number}. {words}"
+    assert {name: data for name, data in contents(scratch).items() if is_fixed(name)} == fixed
+    recorded = (scratch / "src/lizarraga2025/recorded.py").read_text(encoding="utf-8")
+    listed = re.search(r"(?s)CHAPTERS = \(\n(.*?)\)", recorded)
+    assert listed is not None
+    assert re.findall(r'"(\w+)"', listed[1]) == names
+    check_links(scratch, stems)
+
+
+def is_fixed(name: str) -> bool:
+    """Tell what has no number of a chapter in it: ledger, results, what was."""
+    return name.startswith(("src/lizarraga2025/ledger", "results/")) or name == "CHANGELOG.md"
+
+
+def title(folder: Path, stem: str) -> str:
+    """The title of a chapter, the same in both of its files."""
+    text = (folder / f"notebooks/{stem}.md").read_text(encoding="utf-8")
+    own = re.findall(r"^# (.*)$", text, re.M)[0]
+    pair = folder / f"notebooks/{stem}.ipynb"
+    if pair.exists():
+        first = "".join(json.loads(pair.read_text(encoding="utf-8"))["cells"][0]["source"])
+        assert first.splitlines()[0] == f"# {own}"
+    return own
+
+
+def check_links(folder: Path, stems: list[str]) -> None:
+    """Every link to a chapter leads to a file, and says its number."""
+    for page in [*(folder / "notebooks").iterdir(), *(folder / "book").glob("*.md")]:
+        text = page.read_text(encoding="utf-8")
+        for words, stem in re.findall(
+            r"\[([^\[\]]*)\]\((?:chapters/)?(\d\d_\w+)\.(?:ipynb|md)", text
+        ):
+            assert stem in stems, page.name
+            said = re.findall(r"(?<=[Cc]hapter )\d+|^\d+(?=\. )", words)
+            assert said in ([], [str(int(stem[:2]))]), f"{page.name}: {words}"
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        (lambda text: text.replace("chapters/07_region\n", ""), "differ: region"),
+        (lambda text: text + "\n```{toctree}\nchapters/nowhere\n```\n", "differ: nowhere"),
+        (lambda text: text + "\n```{toctree}\nchapters/07_region\n```\n", "names a chapter twice"),
+    ],
+)
+def test_an_index_that_cannot_be_is_named_and_nothing_written(
+    scratch: Path, change, complaint: str
+) -> None:
+    index = scratch / "book/index.md"
+    index.write_text(change(index.read_text(encoding="utf-8")), encoding="utf-8")
+    before = contents(scratch)
+    done = apply("renumber", scratch)
+    assert done.returncode == 1
+    assert complaint in done.stderr
+    assert contents(scratch) == before
+
+
+# --- first cells ----------------------------------------------------------------------------------
+
+
+def test_every_chapter_has_the_same_first_cell(monkeypatch: pytest.MonkeyPatch) -> None:
+    script = tool("first_cells", monkeypatch)
+    code = script.first_cell((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for chapter in CHAPTERS:
+        first = next(c for c in jupytext.read(chapter).cells if c.cell_type == "code")
+        assert (first.source, first.metadata["tags"]) == (code, script.TAGS), chapter.name
+
+
+def test_the_first_cell_is_put_before_the_imports_once(scratch: Path) -> None:
+    stem = entries(scratch)[6]
+    for suffix in (".md", ".ipynb"):
+        path = scratch / f"notebooks/{stem}{suffix}"
+        path.write_text(without_first_cell(path), encoding="utf-8")
+    assert apply("first_cells", scratch, "--check").returncode == 1
+    assert apply("first_cells", scratch).returncode == 0
+    once = contents(scratch)
+    assert apply("first_cells", scratch).returncode == 0
+    assert apply("first_cells", scratch, "--check").returncode == 0
+    assert contents(scratch) == once
+    text, notebook = (jupytext.read(scratch / f"notebooks/{stem}{s}") for s in (".md", ".ipynb"))
+    compare_notebooks(notebook, text, fmt="md:myst")
+    codes = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert "first-cell" in codes[0].metadata["tags"]
+    assert "first-cell" not in codes[1].metadata.get("tags", [])
+
+
+def without_first_cell(path: Path) -> str:
+    notebook = jupytext.read(path)
+    cells = notebook.cells
+    notebook.cells = [c for c in cells if "first-cell" not in c.metadata.get("tags", [])]
+    if path.suffix == ".md":
+        return jupytext.writes(notebook, fmt="md:myst")
+    return nbformat.writes(notebook) + "\n"
+
+
+@pytest.mark.parametrize("address", ["", "https://example.org/group/qbound"])
+def test_the_first_cell_says_what_to_install(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
+    """It is nothing where qbound is there; where it is not, it asks for it, or on Colab gets it."""
+    script = tool("first_cells", monkeypatch)
+    code = script.first_cell(f'[tool.qbound]\nrepository = "{address}"\n')
+    exec(code, {})
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(ModuleNotFoundError, match=re.escape("[notebooks]")):
+        exec(code, {})
+    called: list[list[str]] = []
+    monkeypatch.setitem(sys.modules, "google.colab", ModuleType("google.colab"))
+    monkeypatch.setattr(subprocess, "run", lambda words, **_: called.append(words))
+    if address:
+        exec(code, {})
+        assert called[0][-1] == f"qbound[notebooks] @ git+{address}"
+
+
+# --- references -----------------------------------------------------------------------------------
+
+
+def test_roles_become_links_with_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = {"fig:5": "5", "eq:31": "31", "thm:2": "2", "tab:signs": "N4", "thm-arc": "N1"}
+    written = tool("references", monkeypatch).with_numbers
+    for before, after in {
+        "{numref}`fig:5`": "[Figure 5](#fig:5)",
+        "{numref}`Figures %s <fig:5>`": "[Figures 5](#fig:5)",
+        "{numref}`%s <fig:5>`": "[5](#fig:5)",
+        "{numref}`tab:signs`": "[Table N4](#tab:signs)",
+        "[Table N3](#tab:signs)": "[Table N4](#tab:signs)",
+        "eq. {eq}`eq:31`": "eq. [(31)](#eq:31)",
+        "{prf:ref}`thm:2`": "{prf:ref}`Theorem 2 <thm:2>`",
+        "{prf:ref}`Theorem N3 <thm-arc>`": "{prf:ref}`Theorem N1 <thm-arc>`",
+        "{prf:ref}`the arc <thm-arc>`": "{prf:ref}`the arc <thm-arc>`",
+        "{numref}`fig:nowhere`": "{numref}`fig:nowhere`",
+        "[why](#six-points), [2 to 3](#fig:5)": "[why](#six-points), [2 to 3](#fig:5)",
+    }.items():
+        assert written(before, known) == written(after, known) == after
+
+
+def test_both_files_of_a_chapter_get_the_same_references(scratch: Path) -> None:
+    assert apply("references", scratch).returncode == 0
+    assert apply("references", scratch, "--check").returncode == 0
+    for stem in entries(scratch):
+        pair = (jupytext.read(scratch / f"notebooks/{stem}{s}") for s in (".ipynb", ".md"))
+        compare_notebooks(*pair, fmt="md:myst")
+        text = (scratch / f"notebooks/{stem}.md").read_text(encoding="utf-8")
+        assert re.findall(r"\{(?:numref|eq)\}`", text) == [], stem
+
+
+def test_the_numbers_are_those_of_the_built_book(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The book's own, too: they are counted here as Sphinx counts them."""
+    if not (HTML / "index.html").is_file():
+        pytest.skip("the book has not been made")
+    known = tool("references", monkeypatch).numbers()
+    built = {}
+    for page in [*HTML.glob("*.html"), *(HTML / "chapters").glob("*.html")]:
+        soup = BeautifulSoup(page.read_text(encoding="utf-8"), "html.parser")
+        for number in soup.select("span.caption-number, span.eqno"):
+            holder = number.find_parent(lambda tag: tag.get("id") and tag.name != "span")
+            found = re.search(r"N?\d+[a-z]?", number.get_text())
+            built[holder["id"].removeprefix("equation-")] = found and found[0]
+    ids = {label.replace(":", "-"): number for label, number in known.items()}
+    assert len(ids) > 100
+    theorems = {name for name in ids if name.startswith("thm-")}
+    assert {name: built.get(name) for name in ids.keys() - theorems} == {
+        name: ids[name] for name in ids.keys() - theorems
+    }
+
+
+def test_a_readers_copy_carries_numbers_and_captions(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    script = tool("workbook", monkeypatch)
+    assert script.main([str(tmp_path)]) == 0
+    copies = sorted(tmp_path.iterdir())
+    assert [copy.stem for copy in copies] == [chapter.stem for chapter in CHAPTERS]
+    text = ""
+    for copy in copies:
+        notebook = nbformat.read(copy, as_version=4)
+        nbformat.validate(notebook)
+        assert notebook.cells[0].source.startswith("---\nnumbering:")
+        text += "\n".join(c.source for c in notebook.cells if c.cell_type == "markdown")
+    assert not re.search(r"\{(numref|eq|cite(:\w)?)\}`", text)
+    assert "\\tag{31}\n$$ (eq:31)" in text
+    assert "**Figure 5.** " in text
+    assert ":label: thm:2\n:enumerator: 2\n" in text
+
+
+def test_a_readers_work_is_left_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    script = tool("workbook", monkeypatch)
+    mine = tmp_path / f"{CHAPTERS[0].stem}.ipynb"
+    mine.write_text("mine")
+    assert script.main([str(tmp_path)]) == 0
+    assert mine.read_text() == "mine"
+
+
+# --- the list of chapters -------------------------------------------------------------------------
+
+
+def test_the_list_of_chapters_is_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert tool("list_chapters", monkeypatch).main(["--check"]) == 0
+
+
+def test_the_list_names_every_chapter_and_every_item_with_the_chapter_that_holds_it() -> None:
+    text = (ROOT / "notebooks" / "README.md").read_text(encoding="utf-8")
+    listed, table = text.split("## By item")
+    assert re.findall(r"^- .*\((\w+)\.ipynb\)$", listed, re.M) == [c.stem for c in CHAPTERS]
+    rows = dict(
+        re.findall(r"^\| ((?:Theorem|Table|Figure) \d+) \|.*\((\w+)\.ipynb\) \|$", table, re.M)
+    )
+    kinds = {"Theorem": ("thm", 2), "Table": ("tab", 6), "Figure": ("fig", 11)}
+    wanted = {f"{kind} {n}" for kind, (_, last) in kinds.items() for n in range(1, last + 1)}
+    assert set(rows) == wanted
+    for item, stem in rows.items():
+        kind, number = item.split()
+        label = f"{kinds[kind][0]}:{number}"
+        chapter = (ROOT / "notebooks" / f"{stem}.md").read_text(encoding="utf-8")
+        assert re.search(rf"(?:name: |label: ){label}$", chapter, re.M), item
+    assert "| Equations (1) to (8) |" in table

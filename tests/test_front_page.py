@@ -1,0 +1,116 @@
+"""The front page and the page on related work: one rule, no dead link, every reference used."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from bs4 import BeautifulSoup
+
+ROOT = Path(__file__).resolve().parents[1]
+BOOK = ROOT / "book"
+FRONT = (BOOK / "index.md").read_text(encoding="utf-8")
+SOURCES = [*sorted(BOOK.glob("*.md")), *sorted((ROOT / "notebooks").glob("*.md"))]
+
+CITED = re.compile(r"\{cite(?::\w+)?\}`([^`]+)`")
+ENTRY = re.compile(r"(?m)^@\w+\{(\w+),")
+RESULT = re.compile(r"\{result\}`(\w+):([^`|\[]+?)\s*(?:\||`)")
+
+NAMED_WITH_ITS_RULE = ("certainty", "clearance.components")
+"""The one number of the front page by another rule: its sentence says which."""
+
+
+def test_every_entry_of_the_bibliography_is_cited_and_every_citation_has_one():
+    listed = ENTRY.findall((BOOK / "references.bib").read_text(encoding="utf-8"))
+    groups = [group for file in SOURCES for group in CITED.findall(file.read_text("utf-8"))]
+    assert sorted(listed) == sorted({key.strip() for group in groups for key in group.split(",")})
+
+
+def test_the_numbers_of_the_front_page_follow_the_papers_rule():
+    wanted = set(RESULT.findall(FRONT)) - {NAMED_WITH_ITS_RULE}
+    assert {rule_of(*one) for one in wanted} == {"paper", "none"}
+    assert {name for file, name in wanted if rule_of(file, name) == "paper"} >= {
+        "largest_scale.area",
+        "workspace.area.paper",
+    }
+    assert 'data-rule="paper"' in FRONT  # and so does the arm above them
+
+
+def rule_of(file: str, name: str) -> str:
+    """Return the rule by which a number was recorded."""
+    content = json.loads((ROOT / "results" / f"{file}.json").read_text(encoding="utf-8"))
+    [rule] = [entry["rule"] for entry in content["results"] if entry["id"] == name]
+    return rule
+
+
+def test_the_narrow_cover_is_what_its_script_draws(tmp_path):
+    """Each number of the drawing, to a tenth of a point: other systems round differently."""
+    fonts = os.environ | {"MPLCONFIGDIR": str(tmp_path)}  # none but matplotlib's own, listed anew
+    subprocess.run(
+        [sys.executable, BOOK / "cover.py", tmp_path / "cover.svg"], env=fonts, check=True
+    )
+    files = (tmp_path / "cover-narrow.svg", BOOK / "_static" / "cover-narrow.svg")
+    drawn, committed = (file.read_text("utf-8") for file in files)
+    number = r"-?\d+\.\d+"
+    assert re.sub(number, "#", drawn) == re.sub(number, "#", committed)
+    mine, theirs = ([float(x) for x in re.findall(number, t)] for t in (drawn, committed))
+    assert mine == pytest.approx(theirs, abs=0.1)
+
+
+def test_readme_and_front_page_show_the_cover_for_a_wide_page_and_for_a_narrow_one():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for text, folder in ((FRONT, ""), (readme, "book/")):
+        assert f'srcset="{folder}_static/cover-narrow.svg"' in text
+        assert f'src="{folder}_static/cover.svg"' in text
+
+
+# --- the PDF --------------------------------------------------------------------------------------
+
+INDEX = "# Trial\n\nRead {pdf}`the whole book`\n"
+
+
+def built(folder: Path, builder: str = "html") -> str:
+    """Build a front page with the real extension; return it."""
+    book = folder / "book"
+    book.mkdir(exist_ok=True)
+    extensions = f"import sys\nsys.path.insert(0, {str(BOOK / '_ext')!r})\n"
+    configuration = extensions + "extensions = ['myst_parser', 'front_page']\n"
+    configuration += "exclude_patterns = ['_build']\n"
+    (book / "conf.py").write_text(configuration, encoding="utf-8")
+    (book / "index.md").write_text(INDEX, encoding="utf-8")
+    target = book / "_build" / builder
+    sphinx = [sys.executable, "-m", "sphinx", "-q", "-W", "-b", builder]
+    subprocess.run([*sphinx, "-d", f"{target}-doctrees", book, target], check=True)
+    return (target / "index.html").read_text(encoding="utf-8")
+
+
+def words(page: str) -> str:
+    """Return the text of a page; each word of a command has a tag of its own."""
+    return BeautifulSoup(page, "html.parser").get_text()
+
+
+def test_without_a_printed_book_the_front_page_names_the_command_and_links_nothing(tmp_path):
+    page = built(tmp_path)
+    assert "python3 run.py pdf" in words(page)
+    assert ".pdf" not in page
+
+
+def test_a_printed_book_is_offered_by_the_next_build_and_carried_with_it(tmp_path):
+    built(tmp_path)
+    (tmp_path / "book/_build/qbound.pdf").write_bytes(b"%PDF-1.7 trial")
+    page = built(tmp_path)
+    [address] = re.findall(r'href="([^"]+\.pdf)"', page)
+    assert (tmp_path / "book/_build/html" / address).read_bytes() == b"%PDF-1.7 trial"
+    (tmp_path / "book/_build/qbound.pdf").unlink()
+    assert ".pdf" not in built(tmp_path)
+
+
+def test_the_printed_page_does_not_offer_itself(tmp_path):
+    built(tmp_path)
+    (tmp_path / "book/_build/qbound.pdf").write_bytes(b"%PDF-1.7 trial")
+    page = built(tmp_path, "singlehtml")
+    assert ".pdf" not in page
+    assert "run.py pdf" not in words(page)

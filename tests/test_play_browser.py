@@ -1,0 +1,362 @@
+"""The figures that a reader moves in the chapters, in a browser: what hands, keys and words do."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+from lizarraga2025 import closed_form
+from qbound import circle_roots, clearance, find_region, load_robot
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import engine_script, engine_style
+from qbound.geometry import polygon
+from qbound.measures import bodies, scaling
+from qbound.region import paper_rule
+from qbound.sampling import keeps_clear
+from support.browser import in_every_family, refuse_remote, settle
+
+STATIC = Path(__file__).resolve().parents[1] / "book" / "_static"
+RULES = {"circle": "clearance", "switches": "paper", "scale": "paper", "bodies": "clearance"}
+WIDTHS = {"wide screen": 900, "phone": 340}
+ROBOT = load_robot("minervabot-v2")
+PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width"><title>A figure</title>
+<style>:root {{ color-scheme: {theme} }}
+body {{ background: light-dark(#fff, #12181b); margin: 8px }}
+{style}</style><main><h1>A figure</h1>
+<div class="play" data-figure="{kind}" data-rule="{rule}"></div></main><script>{script}</script>"""
+
+LOST = """() => [...document.querySelectorAll(".play *:not(svg *)")]
+  .filter((part) => part.getBoundingClientRect().right > innerWidth + 1)
+  .map((part) => part.outerHTML)"""
+
+
+def page_of(kind, theme):
+    """Write the page that the book's extension makes of one hook, in one file."""
+    rule = RULES[kind]
+    key = "minervabot-v2" + ("" if rule == "clearance" else f"-{rule}")
+    robots = {key: explorer_data(find_region(ROBOT, rule=rule))}
+    files = [STATIC / "play" / f"{name}.js" for name in ("parts", kind, "play")]
+    script = engine_script() + f"window.qboundRobots = {json.dumps(robots)};\n"
+    script += "".join(file.read_text(encoding="utf-8") for file in files)
+    style = engine_style() + (STATIC / "play" / "play.css").read_text(encoding="utf-8")
+    return PAGE.format(kind=kind, rule=rule, theme=theme, style=style, script=script)
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    written = {}
+    for kind in RULES:
+        for theme in ("light", "dark"):
+            written[kind, theme] = folder / f"{kind}-{theme}.html"
+            written[kind, theme].write_text(page_of(kind, theme), encoding="utf-8")
+    return written
+
+
+@pytest.fixture
+def open_figure(browser, files):
+    """Open figures; at the end none has complained or asked for anything."""
+    pages, complaints, requests = [], [], []
+
+    def open_one(kind, theme="light", width=900, **options):
+        page = browser.new_page(viewport={"width": width, "height": 1000}, **options)
+        refuse_remote(page, requests)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
+        page.goto(files[kind, theme].as_uri())
+        settle(page)
+        pages.append(page)
+        return page
+
+    yield open_one
+    for page in pages:
+        page.close()
+    assert complaints == []
+    assert requests == []
+
+
+def words(page, selector=".status"):
+    return page.locator(selector).inner_text()
+
+
+def numbers(text):
+    return [float(n.replace("−", "-")) for n in re.findall(r"−?\d+(?:\.\d+)?", text)]
+
+
+def middle(page, selector, n=0):
+    box = page.locator(selector).nth(n).bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def drag(page, start, end, steps=12):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=steps)
+    page.mouse.up()
+    settle(page)
+
+
+def fill(page, label, value):
+    page.get_by_label(label, exact=True).fill(str(value))
+    settle(page)
+
+
+# --- every figure ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", RULES)
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
+def test_a_figure_is_accessible_and_fits(open_figure, kind, theme, width):
+    page = open_figure(kind, theme, width)
+    assert page.locator(".play svg[role=img]").count() >= 1
+    assert page.locator("[role=status]").count() == 1
+    for _ in in_every_family(page) if theme == "light" else [""]:
+        lost = page.evaluate(LOST)
+        assert lost == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    found = Axe().run(page, options={"rules": {"color-contrast": {"enabled": True}}})
+    assert [v["id"] for v in found.response["violations"]] == []
+
+
+@pytest.mark.parametrize("kind", ["circle", "scale", "bodies"])
+def test_a_step_of_a_drag_takes_less_than_a_frame(open_figure, kind):
+    page = open_figure(kind)
+    times = page.evaluate("""() => {
+      const range = document.querySelector(".play input[type=range]");
+      const [low, high] = [Number(range.min), Number(range.max)];
+      const step = (i) => {
+        const begun = performance.now();
+        range.value = String(low + ((high - low) * (i % 50)) / 50);
+        range.dispatchEvent(new Event("input"));
+        document.body.getBoundingClientRect(); // the layout, too
+        return performance.now() - begun;
+      };
+      return Array.from({ length: 150 }, (_, i) => step(i)).sort((a, b) => a - b);
+    }""")
+    assert times[75] < 1000 / 60
+
+
+@pytest.mark.parametrize("kind", ["circle", "scale", "bodies"])
+@pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
+def test_nothing_moves_under_a_hand_that_drags(open_figure, kind, width):
+    page = open_figure(kind, width=width)
+    moved = page.evaluate("""() => {
+      const top = () => document.querySelector(".play svg").getBoundingClientRect().top;
+      const found = new Set();
+      for (const range of document.querySelectorAll(".play input[type=range]"))
+        for (let i = 0; i <= 20; i += 1) {
+          range.value = String(Number(range.min) + ((range.max - range.min) * i) / 20);
+          range.dispatchEvent(new Event("input"));
+          found.add(top());
+        }
+      return found.size;
+    }""")
+    assert moved == 1
+
+
+# --- Theorem 2 ------------------------------------------------------------------------------------
+
+
+def rows_of(page):
+    return [numbers(text) for text in page.locator("tbody tr").all_inner_texts()]
+
+
+def test_the_circle_opens_with_a_component_and_shows_that_the_theorem_bounds_nothing(open_figure):
+    page = open_figure("circle")
+    roots = np.degrees(circle_roots(-1.5, 12.41, -7.5).q)
+    assert numbers(words(page))[:2] == pytest.approx(roots, abs=0.006)
+    length = roots[1] - roots[0]
+    own, _, printed = (row[-3:] for row in rows_of(page))
+    assert own == pytest.approx([*roots, length], abs=0.006)
+    assert printed[2] == pytest.approx(length + 360, abs=0.006)
+    assert "excludes no angle" in words(page)
+    assert "not even roots" in words(page)
+
+
+def test_read_as_atan2_and_shortened_the_theorem_is_the_arc(open_figure):
+    page = open_figure("circle")
+    page.get_by_label("Leave out −2π in the second line").check()
+    assert "wrong side" in words(page)
+    page.get_by_label("Read the arctangent of b/a as atan2(b, a)").check()
+    assert "the arc itself" in words(page)
+    own, _, printed = (row[-3:] for row in rows_of(page))
+    assert own == printed
+
+
+def test_the_cases_of_the_theorem_are_named(open_figure):
+    page = open_figure("circle")
+    fill(page, "a in cm, as a number", 3)
+    fill(page, "b in cm, as a number", 4)
+    for c, text in ((6, "no angle is allowed"), (-6, "every angle is allowed"), (2, "Two roots")):
+        fill(page, "c in cm, as a number", c)
+        assert text in words(page)
+    for button, angle in (("c = d", 53.13), ("c = −d", 233.13)):
+        page.get_by_role("button", name=button, exact=True).click()
+        assert "double root" in words(page)
+        assert numbers(words(page))[0] == pytest.approx(angle, abs=0.006)
+    fill(page, "a in cm, as a number", 0)
+    fill(page, "c in cm, as a number", 1)
+    assert "does not exist" in words(page)
+    fill(page, "b in cm, as a number", 0)
+    fill(page, "c in cm, as a number", 0)
+    assert "every angle is a root" in words(page)
+
+
+def test_arrow_line_and_point_can_be_dragged(open_figure):
+    page = open_figure("circle")
+    x, y = middle(page, ".picture svg")
+    size = page.locator(".picture svg").bounding_box()["width"]
+    unit = (size - 8) / 3.6
+    drag(page, middle(page, ".reach-me", 0), (x + 0.5 * unit, y))  # the arrow to (8, 0)
+    values = [float(page.get_by_label(f"{n} in cm, as a number").input_value()) for n in "abc"]
+    assert values[:2] == pytest.approx([8, 0], abs=0.4)
+    drag(page, middle(page, ".reach-me", 1), (x + 0.5 * unit, y + 3))
+    assert float(page.get_by_label("c in cm, as a number").input_value()) == pytest.approx(
+        4, abs=0.3
+    )
+    drag(page, middle(page, ".reach-me", 1), (x + 1.01 * unit, y))  # as good as tangent: it snaps
+    assert "double root" in words(page)
+    drag(page, middle(page, ".reach-me", 2), (x, y - unit))
+    q = float(page.get_by_label("q in degrees, as a number").input_value())
+    assert q == pytest.approx(90, abs=1)
+
+
+# --- Figure 4 -------------------------------------------------------------------------------------
+
+
+def colours_inside(page):
+    """Ask on a grid which places of the square lie in the fill that is left."""
+    return page.evaluate("""() => {
+      const svg = document.querySelector(".picture svg");
+      const fill = svg.querySelector(".region .home");
+      const matrix = svg.getScreenCTM();
+      const [left, top, right, bottom] = [62, 12, 18, 38];
+      const size = svg.viewBox.baseVal.width;
+      const [w, h] = [size - left - right, svg.viewBox.baseVal.height - top - bottom];
+      const side = Math.min(w, h);
+      const found = [];
+      for (let i = 0; i < 24; i += 1)
+        for (let k = 0; k < 24; k += 1) {
+          const [s, t] = [(i + 0.41) / 24, (k + 0.37) / 24];
+          const x = left + (w - side) / 2 + s * side;
+          const y = top + (h - side) / 2 + (1 - t) * side;
+          const at = new DOMPoint(x, y).matrixTransform(matrix);
+          found.push([(2 * s - 1) * Math.PI, (2 * t - 1) * Math.PI,
+            document.elementsFromPoint(at.x, at.y).includes(fill)]);
+        }
+      return found;
+    }""")
+
+
+def test_the_fill_is_the_region_of_the_papers_rule(open_figure):
+    page = open_figure("switches")
+    assert "Home is inside" in words(page)
+    found = np.array(colours_inside(page))
+    feasible = paper_rule.feasible(ROBOT, found[:, :2])
+    assert np.array_equal(found[:, 2].astype(bool), feasible)
+    page.get_by_label(re.compile("β₅,₁,₁")).check()
+    page.get_by_label(re.compile("β₅,₁,₂")).check()
+    found = np.array(colours_inside(page))
+    wall = clearance(ROBOT, ROBOT.boundary("B5"))(found[:, :2]) >= 0
+    assert np.array_equal(found[:, 2].astype(bool), feasible & wall)
+
+
+def test_switching_a_side_off_moves_it_to_the_next_bound(open_figure):
+    page = open_figure("switches")
+    assert numbers(words(page))[-2:] == pytest.approx([-162.30, 44.38], abs=0.006)
+    page.get_by_label(re.compile("β₃,₃,₁")).uncheck()
+    assert numbers(words(page))[-1] == pytest.approx(44.41, abs=0.006)
+    page.get_by_role("button", name="None").click()
+    assert words(page).count("edge of the square") == 4
+    page.get_by_role("button", name="Only the six of the region").click()
+    assert numbers(words(page))[-2:] == pytest.approx([-162.30, 44.38], abs=0.006)
+
+
+def test_readings_of_the_arctangent_move_the_box(open_figure):
+    page = open_figure("switches")
+    page.get_by_label("arctan(b/a)", exact=True).check()
+    assert "−135.62°" in words(page)
+    assert "Home is inside" in words(page)
+    page.get_by_label("arctan(b/a) + π where a < 0").check()
+    assert "Home is cut off by β₃,₃,₂" in words(page)
+    page.get_by_role("button", name="As it opens").click()
+    assert "Home is inside" in words(page)
+    assert page.get_by_label("atan2(b, a)").is_checked()
+
+
+# --- Figure 6 -------------------------------------------------------------------------------------
+
+
+def test_depth_and_edges_at_a_scale_are_the_librarys(open_figure):
+    page = open_figure("scale")
+    corners = np.array([v.q for v in closed_form.vertices(ROBOT)])
+    centre = polygon.centroid(corners)
+    floor = clearance(ROBOT, ROBOT.boundary("B7"))
+    for scale in (0.95, 1, 0.97, 0.8):
+        fill(page, "Scale of the polygon, as a number", scale)
+        scaled = polygon.scaled(corners, scale, centre)
+        edges = np.stack([scaled, np.roll(scaled, -1, axis=0)], axis=1)
+        values = np.array([scaling.least_along_edges(floor, edge)[0] for edge in edges])
+        assert numbers(words(page))[1] == pytest.approx(abs(values.min()), abs=6e-4)
+        assert ("below its limit" in words(page)) == (values.min() < 0)
+        lit = page.evaluate("""() => [...document.querySelectorAll(".polygons .arc")].map((edge) =>
+          edge.classList.contains("lit"))""")
+        assert lit == (values < -1e-9).tolist()  # two corners lie on the limit
+    page.get_by_role("button", name=re.compile("largest safe")).click()
+    assert numbers(words(page))[1] == pytest.approx(0, abs=6e-4)
+    assert "0.964038" in page.get_by_role("button", name=re.compile("largest safe")).inner_text()
+
+
+def test_the_scale_has_keys(open_figure):
+    page = open_figure("scale")
+    page.get_by_label("Scale of the polygon", exact=True).focus()
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+    assert "Scale 0.955" in words(page)
+
+
+# --- bodies ---------------------------------------------------------------------------------------
+
+
+def test_each_region_but_home_says_safe_by_points_and_overlap_by_bodies(open_figure):
+    page = open_figure("bodies")
+    for i, component in enumerate(find_region(ROBOT).components, start=1):
+        page.get_by_role("button", name=f"Region {i}").click()
+        gaps = bodies.gaps(ROBOT, component.centroid)
+        worst = min(map(float, gaps.values()))
+        points, whole = page.locator(".verdicts tr").all_inner_texts()
+        assert keeps_clear(ROBOT, np.array([component.centroid]))[0]
+        assert "not safe" not in points
+        assert ("overlap" in whole) == (worst < 0) == (i > 1)
+        if worst < 0:
+            assert numbers(whole)[-1] == pytest.approx(-worst, abs=0.006)
+            assert page.locator("path.overlap").get_attribute("d").startswith("M")
+
+
+def test_dragging_the_dot_the_tool_and_the_elbow_moves_the_arm(open_figure):
+    page = open_figure("bodies")
+    fill(page, "q1 in degrees, as a number", 0)
+    fill(page, "q2 in degrees, as a number", 0)
+
+    def pose():
+        return [
+            float(page.get_by_label(f"q{k} in degrees, as a number").input_value()) for k in (1, 2)
+        ]
+
+    tool, elbow = middle(page, ".reach-me", 2), middle(page, ".reach-me", 1)
+    drag(page, tool, (elbow[0], elbow[1] + tool[0] - elbow[0]))  # from ahead to straight down
+    assert pose() == pytest.approx([0, 90], abs=1.5)
+    x, y = middle(page, ".axle")
+    drag(page, middle(page, ".reach-me", 1), (x + 60, y))
+    assert pose()[0] == pytest.approx(60, abs=1.5)  # link 1 lay 30 degrees off the vertical
+    x, y = middle(page, ".reach-me", 0)
+    drag(page, (x, y), (x - 40, y))
+    assert pose()[0] < 40
+    assert pose()[1] == pytest.approx(90, abs=2)

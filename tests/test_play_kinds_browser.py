@@ -1,0 +1,328 @@
+"""Figures 7 to 11, the regions and the front page's arm, in a browser: hands, keys, words."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+from lizarraga2025 import closed_form
+from qbound import find_region, load_robot
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import engine_script, engine_style
+from support.browser import eventually, refuse_remote, settle
+
+PLAY = Path(__file__).resolve().parents[1] / "book" / "_static" / "play"
+HOOKS = {
+    "front": ("traversals", "paper", "data-small"),
+    "traversals": ("traversals", "paper", 'data-start="right"'),
+    "mirror": ("traversals", "paper", 'data-start="mirror"'),
+    "postures": ("postures", "clearance", ""),
+    "regions": ("regions", "clearance", ""),
+}
+WIDTHS = {"wide screen": 900, "phone": 340}
+REGIONS = {
+    rule: find_region(load_robot("minervabot-v2"), rule=rule) for rule in ("clearance", "paper")
+}
+KEEP = (
+    "const mount = qboundEngine.mount; qboundEngine.mount = (...a) => (window.arm = mount(...a));"
+)
+PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>A figure</title>
+<meta name="viewport" content="width=device-width">
+<style>:root {{ color-scheme: {theme} }}
+body {{ background: light-dark(#fff, #12181b); margin: 8px }}
+{style}</style><main><h1>A figure</h1>
+<div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
+<script>{script}</script>"""
+
+
+def page_of(name, theme):
+    """Write the page that the book's extension makes of one hook, in one file."""
+    kind, rule, options = HOOKS[name]
+    key = "minervabot-v2" + ("" if rule == "clearance" else f"-{rule}")
+    robots = {key: explorer_data(REGIONS[rule], closed_form.PATHS)}
+    files = [PLAY / f"{file}.js" for file in ("parts", kind, "play")]
+    script = engine_script() + f"window.qboundRobots = {json.dumps(robots)};\n{KEEP}\n"
+    script += "".join(file.read_text(encoding="utf-8") for file in files)
+    style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
+    return PAGE.format(
+        kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
+    )
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    written = {}
+    for name in HOOKS:
+        for theme in ("light", "dark"):
+            written[name, theme] = folder / f"{name}-{theme}.html"
+            written[name, theme].write_text(page_of(name, theme), encoding="utf-8")
+    return written
+
+
+@pytest.fixture
+def open_figure(browser, files):
+    """Open figures; at the end none has complained or asked for anything."""
+    pages, complaints, requests = [], [], []
+
+    def open_one(name, theme="light", width=900, **options):
+        options = {"reduced_motion": "reduce"} | options
+        page = browser.new_page(viewport={"width": width, "height": 1000}, **options)
+        refuse_remote(page, requests)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
+        page.goto(files[name, theme].as_uri())
+        settle(page)
+        pages.append(page)
+        return page
+
+    yield open_one
+    for page in pages:
+        page.close()
+    assert complaints == []
+    assert requests == []
+
+
+def words(page):
+    return page.locator(".status").inner_text()
+
+
+def pair(page):
+    return page.evaluate("arm.pair()")
+
+
+def region_of(page, rule="clearance"):
+    found = REGIONS[rule].component_of(pair(page))
+    return None if found is None else found + 1
+
+
+def place(page, values, picture="joints"):
+    """Where joint values, or a place of the plane, stand on the page."""
+    return page.evaluate(
+        """([name, values]) => {
+          const { svg, at } = arm[name];
+          const box = svg.getBoundingClientRect();
+          const [x, y] = at(values);
+          const scale = box.width / svg.viewBox.baseVal.width;
+          return [box.left + x * scale, box.top + y * scale];
+        }""",
+        [picture, list(values)],
+    )
+
+
+def drag(page, start, end, steps=12):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=steps)
+    page.mouse.up()
+    settle(page)
+
+
+# --- every figure ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", HOOKS)
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
+def test_a_figure_is_accessible_and_fits(open_figure, name, theme, width):
+    page = open_figure(name, theme, width)
+    lost = page.evaluate("""() => [...document.querySelectorAll(".play *")]
+      .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest("svg"))
+      .map((e) => e.outerHTML)""")
+    assert lost == []
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert [v["id"] for v in Axe().run(page).response["violations"]] == []
+
+
+@pytest.mark.parametrize("name", HOOKS)
+def test_a_step_of_a_drag_takes_less_than_a_frame(open_figure, name):
+    page = open_figure(name)
+    times = page.evaluate("""() => {
+      const [a, b] = arm.pair();
+      const step = (i) => {
+        const begun = performance.now();
+        arm.move([a + 0.3 * Math.sin(i / 5), b - 0.3 * Math.cos(i / 7)]);
+        document.body.getBoundingClientRect(); // the layout, too
+        return performance.now() - begun;
+      };
+      return Array.from({ length: 150 }, (_, i) => step(i)).sort((a, b) => a - b);
+    }""")
+    assert times[75] < 1000 / 60
+
+
+@pytest.mark.parametrize("name", HOOKS)
+def test_a_figure_drawn_anew_keeps_its_pose_and_its_words(open_figure, name):
+    page = open_figure(name)
+    before = pair(page), words(page)
+    page.set_viewport_size({"width": 620, "height": 900})
+    settle(page)
+    settle(page)
+    assert (pair(page), words(page)) == before
+
+
+# --- the front page -------------------------------------------------------------------------------
+
+
+def test_the_front_pages_arm_moves_by_itself_until_a_reader_presses_pause(open_figure):
+    page = open_figure("front", reduced_motion="no-preference")
+    start = pair(page)
+    eventually(page, lambda: pair(page) != start)
+    page.get_by_role("button", name="Pause").click()
+    rest = pair(page)
+    page.wait_for_timeout(300)
+    assert pair(page) == rest
+    page.get_by_role("button", name="Play").click()
+    eventually(page, lambda: pair(page) != rest)
+
+
+def test_the_front_pages_arm_gives_way_to_a_hand(open_figure):
+    page = open_figure("front", reduced_motion="no-preference")
+    eventually(page, lambda: page.get_by_role("button", name="Pause").count() == 1)
+    drag(page, place(page, pair(page)), place(page, [0, -0.5]))
+    rest = pair(page)
+    page.wait_for_timeout(300)
+    assert pair(page) == rest == pytest.approx([0, -0.5], abs=0.05)
+    assert page.get_by_role("button", name="Play").count() == 1
+
+
+def test_where_no_motion_is_wanted_the_front_pages_arm_rests(open_figure):
+    page = open_figure("front")
+    rest = pair(page)
+    page.wait_for_timeout(400)
+    assert pair(page) == rest
+    assert page.get_by_role("button", name="Play").count() == 1
+
+
+# --- traversals -----------------------------------------------------------------------------------
+
+
+def move_along(page, value):
+    page.get_by_label("Along the path").fill(str(value))
+    settle(page)
+
+
+def test_a_traversal_is_gone_along_by_its_slider(open_figure):
+    page = open_figure("traversals")
+    assert words(page).startswith("From point 6 to point 1.")
+    move_along(page, 1)
+    assert words(page).startswith("At point 4, the end.")
+    move_along(page, 0.5)
+    done = page.evaluate("""() => [...document.querySelectorAll(".way.done.right")]
+      .map((path) => path.getTotalLength())""")
+    whole = page.evaluate("""() => [...document.querySelectorAll(".way.right:not(.done)")]
+      .map((path) => path.getTotalLength())""")
+    assert all(0.2 < a / b < 0.8 for a, b in zip(done, whole, strict=True))
+    assert len(done) == 2
+
+
+def test_both_traversals_stand_beside_each_other_and_the_mirrored_one_on_request(open_figure):
+    page = open_figure("traversals")
+    assert page.locator(".way.left").count() >= 2
+    assert page.locator(".way.mirrored").count() == 0
+    page.get_by_label("The right-hand path, mirrored").check()
+    assert page.locator(".way.mirrored").count() == 1
+    page.get_by_role("button", name="On the left").click()
+    assert words(page).startswith("From point 3 to point 4.")
+    page.get_by_role("button", name="All six points").click()
+    assert page.locator(".way.left").count() == 0
+    assert not page.get_by_label("The right-hand path, mirrored").is_visible()
+
+
+def test_the_way_to_the_mirror_image_leads_through_the_stretched_pose(open_figure):
+    page = open_figure("mirror")
+    seen = []
+    for value in np.linspace(0, 1, 41):
+        move_along(page, round(float(value), 3))
+        seen.append("det J = 0" in words(page))
+    assert not seen[0]
+    assert any(seen)
+    assert not seen[-1]
+    assert words(page).startswith("At its mirror image, the end.")
+
+
+def test_where_no_motion_is_wanted_a_path_leaps_from_stop_to_stop(open_figure):
+    page = open_figure("traversals")
+    page.evaluate("""() => { window.seen = [];
+      arm.root.addEventListener("qbound-pose", () => window.seen.push(arm.pair().join())); }""")
+    page.get_by_role("button", name="Play").click()
+    eventually(page, lambda: words(page).startswith("At point 4, the end."))
+    assert page.evaluate("new Set(window.seen).size") == 4
+
+
+def test_a_hand_stops_the_path(open_figure):
+    page = open_figure("traversals", reduced_motion="no-preference")
+    page.get_by_role("button", name="Play").click()
+    page.locator("svg[role=application]").first.focus()
+    page.keyboard.press("ArrowUp")
+    assert words(page).startswith("You moved the arm.")
+    rest = pair(page)
+    page.wait_for_timeout(300)
+    assert pair(page) == rest
+
+
+# --- regions --------------------------------------------------------------------------------------
+
+
+def test_the_arm_stops_at_the_wall_which_lights_up_and_is_named(open_figure):
+    page = open_figure("regions")
+    drag(page, place(page, pair(page)), place(page, [-0.5, 2.0]), steps=25)
+    assert region_of(page) == 1
+    assert words(page).startswith("B3 stops the arm: points")
+    assert "lies region 2" in words(page)
+    assert page.locator(".arc.lit[data-boundary=B3]").count() >= 1
+    assert page.locator(".barred").get_attribute("d")
+    drag(page, place(page, pair(page)), place(page, [-0.5, -1.0]))
+    assert words(page).startswith("Region 1, that of the home pose.")
+    assert page.locator(".arc.lit").count() == 0
+
+
+def test_the_keyboard_meets_the_same_wall(open_figure):
+    page = open_figure("regions")
+    page.locator("svg[role=application]").first.focus()
+    for _ in range(8):
+        page.keyboard.press("Shift+ArrowUp")
+    assert region_of(page) == 1
+    assert words(page).startswith("B3 stops the arm")
+
+
+@pytest.mark.parametrize("region", [1, 2, 3, 4, 5])
+def test_the_arm_can_be_lifted_into_every_region(open_figure, region):
+    page = open_figure("regions")
+    page.get_by_role("button", name=str(region), exact=True).click()
+    assert region_of(page) == region
+    assert f"region {region}" in words(page)
+    assert page.locator(".region.here").count() == 1
+
+
+# --- postures -------------------------------------------------------------------------------------
+
+
+def test_a_pressed_dot_shows_both_its_postures(open_figure):
+    page = open_figure("postures")
+    dots = page.evaluate("arm.state.sample.slice(0, 300).map(({ pair, tool }) => [pair, tool])")
+    robot = REGIONS["clearance"]
+    inner = [(q, at) for q, at in dots if robot.component_of(q) == 0]
+    wanted, at = inner[0]
+    page.mouse.click(*place(page, at, "plane"))
+    settle(page)
+    assert pair(page) == pytest.approx(wanted, abs=1e-9)
+    assert "safe, in region 1 with home" in words(page)
+    assert "The pale one is" in words(page)
+    assert (
+        page.locator(".arm.second .body").count() == page.locator(".arm:not(.second) .body").count()
+    )
+
+
+@pytest.mark.parametrize(
+    ("button", "safe"),
+    [("A dot with one safe posture", 1), ("with two", 2), ("with none", 0)],
+)
+def test_a_dot_of_each_sort_can_be_asked_for(open_figure, button, safe):
+    page = open_figure("postures")
+    page.get_by_role("button", name=button, exact=True).click()
+    settle(page)
+    assert words(page).count("safe") - words(page).count("not safe") == safe
