@@ -62,7 +62,8 @@ function picture(svg, ranges, margin, equal) {
 function largestHeight(svg) {
   const stage = svg.closest(".stage");
   const stacked = stage !== null && stage.clientWidth <= STACKED;
-  return stacked ? Math.max(200, (window.innerHeight - 200) / 2) : Infinity;
+  const screen = Math.min(window.innerHeight, window.screen.height); // a frame may be taller
+  return stacked ? Math.max(200, (screen - 200) / 2) : Infinity;
 }
 
 /** @type {(points: Point[], closed?: boolean) => string} */
