@@ -184,6 +184,18 @@ def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
     assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
 
 
+def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
+    path = traverse(MINERVA, SIX[:4])
+    artists = figures.draw_path(
+        ax, path.tool[:, [0, 2]], path.stops, legs={1: {"color": figures.COLLIDING, "ls": "--"}}
+    )
+    lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
+    assert [line.get_linestyle() for line in lines] == ["-", "--", "-"]
+    assert lines[1].get_color() == figures.COLLIDING
+    drawn = np.concatenate([lines[0].get_xydata(), *(line.get_xydata()[1:] for line in lines[1:])])
+    assert_allclose(drawn, path.tool[:, [0, 2]])
+
+
 def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
     places = np.arange(10.0).reshape(5, 2)
     free = [True, False, True, True, False]

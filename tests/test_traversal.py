@@ -4,6 +4,7 @@ from itertools import pairwise, permutations
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
@@ -13,6 +14,7 @@ from qbound import load_robot
 from qbound.geometry.polygon import centroid, scaled
 from qbound.geometry.polylines import self_crossings
 from qbound.model.robotfile import parse_robot
+from qbound.paths.asymmetry import asymmetry
 from qbound.paths.traversal import simple_orders, traverse
 from support.oracles import (
     crosses_itself,
@@ -232,3 +234,26 @@ def test_a_deviation_that_is_not_above_zero_is_refused(bad) -> None:
 def test_one_vertex_is_no_path() -> None:
     with pytest.raises(ValueError, match="two vertices"):
         traverse(MINERVA, SIX[:1])
+
+
+# --- one path and the mirror image of another -----------------------------------------------------
+
+
+@pytest.mark.parametrize("error", [0.1, 0.02])
+def test_the_asymmetry_is_the_hausdorff_distance_of_dense_polylines(error) -> None:
+    right, left = SMALL[[5, 0, 1, 2, 3]], SMALL[[2, 3, 4, 5, 0]]
+    one, other = (traverse(MINERVA, q, step=2e-3).tool[:, [0, 2]] for q in (right, left))
+    mirrored, line = shapely.LineString(one * [-1, 1]), shapely.LineString(other)
+    expected = line.hausdorff_distance(mirrored)  # of the rows, which are a millimetre apart
+    assert asymmetry(MINERVA, right, left, error) == pytest.approx(expected, abs=2 * error + 0.05)
+
+
+def test_paths_of_a_symmetric_arm_are_mirror_images() -> None:
+    arm = load_robot("minervabot-v2-symmetric")
+    six = np.array([vertex.q for vertex in vertices(arm)])
+    assert asymmetry(arm, six[[5, 0, 1, 2, 3]], six[[2, 3, 4, 5, 0]], 0.1) < 0.2
+
+
+def test_the_asymmetry_of_an_arm_that_slides_is_refused() -> None:
+    with pytest.raises(ValueError, match="joints that slide"):
+        asymmetry(load_robot("pp-portal"), [[0, 0], [1, 1]], [[0, 0], [1, 1]])

@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
-from qbound.forms.angles import TURN, first_from, turns_within
+from qbound.forms.angles import TURN, first_from, nearest_turn, turns_within
 from qbound.forms.circle import CircleRoots, circle_roots
 from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry import polygon
 from qbound.geometry.polylines import tangent_corners
 from qbound.model.robot import HalfSpace, Robot
+from qbound.region.arcs import legendre
 from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
 from qbound.tolerances import ON_BOUNDARY
 
@@ -125,6 +127,37 @@ def refined(robot: Robot, n: int, *, tangents: bool) -> Floats:
             normal = clearance(robot, robot.boundary(bound.boundary)).gradient(curve)
             result += list(tangent_corners(curve, normal) if tangents else curve[1:-1])
     return np.array(result)
+
+
+def area(robot: Robot, nodes: int) -> float:
+    """Return the area of the region of two joints: its polygon less the slivers under its arcs.
+
+    Parameters
+    ----------
+    nodes : int
+        Gauss nodes on each arc of a half-space, one solution of Theorem 2 each; at least 1.
+
+    Returns
+    -------
+    float
+        rad^2; errors as in `vertices`.
+    """
+    corners = vertices(robot)
+    result = polygon.area([corner.q for corner in corners])
+    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
+        (bound,) = set(one.bounds) & set(other.bounds)
+        if _is_half_space(robot, bound):
+            result -= _sliver(robot, bound, one.q, other.q, nodes)
+    return result
+
+
+def _sliver(robot: Robot, bound: Bound, start: Floats, end: Floats, nodes: int) -> float:
+    """Integral of the curve's height over its chord, from start to end."""
+    x, weight = legendre(nodes)
+    chord = start + (x[:, None] + 1) / 2 * (end - start)
+    lower, upper = geometric_bounds(robot, bound.boundary, chord)
+    curve = nearest_turn(upper if bound.k == UPPER else lower, chord[:, 1])
+    return float(weight @ (curve - chord[:, 1]) * (end - start)[0] / 2)
 
 
 def _curve_between(robot: Robot, bound: Bound, start: Floats, end: Floats, n: int) -> Floats:

@@ -2,6 +2,6 @@
 
 `arms`: the paper's robot and its variants.  `joint_region`: its regions and the scaled polygon.
 `tool_paths`: traversals and the workspace.  `effort`: what an area costs by each method.
-`proofs`: identities.  `rounding`: how far printed digits may be off.  `hausdorff`: how far two
-curves are apart.  `third_components`: where those of eq. (9) are positive.
+`proofs`: identities.  `rounding`: how far printed digits may be off.
+`third_components`: where those of eq. (9) are positive.
 """

@@ -13,12 +13,9 @@ from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, robot
-from lizarraga2025.evidence.joint_region import by_windows, share_of_square, vertices
-from qbound.forms.angles import nearest_turn
+from lizarraga2025.evidence.joint_region import by_windows, share_of_square
 from qbound.geometry import polygon
-from qbound.model.robot import HalfSpace
 from qbound.region import paper_rule
-from qbound.region.arcs import legendre
 
 Floats = NDArray[np.float64]
 
@@ -75,19 +72,4 @@ def closed_form_error(nodes: int) -> float:
 
 def closed_form_area(nodes: int) -> float:
     """Return the polygon's area less the slivers between its edges and the arcs of B7."""
-    corners = closed_form.vertices(robot())
-    area = polygon.area(vertices())
-    for one, other in zip(corners, corners[1:] + corners[:1], strict=True):
-        (bound,) = set(one.bounds) & set(other.bounds)
-        if isinstance(robot().boundary(bound.boundary), HalfSpace):
-            area -= _sliver(bound, one.q, other.q, nodes)
-    return area
-
-
-def _sliver(bound: paper_rule.Bound, start: Floats, end: Floats, nodes: int) -> float:
-    """Integral of the curve's height over its chord, from start to end."""
-    x, weight = legendre(nodes)
-    chord = start + (x[:, None] + 1) / 2 * (end - start)
-    lower, upper = closed_form.geometric_bounds(robot(), bound.boundary, chord)
-    curve = nearest_turn(upper if bound.k == paper_rule.UPPER else lower, chord[:, 1])
-    return float(weight @ (curve - chord[:, 1]) * (end - start)[0] / 2)
+    return closed_form.area(robot(), nodes)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import count, pairwise, product
 from typing import TYPE_CHECKING, Any, Final
 
@@ -269,16 +269,28 @@ def draw_path(
     *,
     labels: Iterable[object] | None = None,
     distance: float = 12,
+    legs: Mapping[int, Mapping[str, Any]] | None = None,
     **style: Any,
 ) -> list[Artist]:
-    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and labelled stops."""
+    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and labelled stops.
+
+    Parameters
+    ----------
+    stops : sequence of int
+        Rows of the path at which legs begin and end.
+    legs : mapping of int to mapping, optional
+        Styles of single legs, by number from 0, on top of `style`.
+    """
     p = np.asarray(path)
     look: dict[str, Any] = {"color": FEASIBLE, "lw": 1.8} | style
-    artists: list[Artist] = list(ax.plot(*p.T, **look))
-    arrow = {"arrowstyle": "-|>", "color": look["color"], "lw": 1.5, "mutation_scale": 14}
-    for start, end in pairwise(int(stop) for stop in stops):
+    artists: list[Artist] = [] if legs else list(ax.plot(*p.T, **look))
+    for i, (start, end) in enumerate(pairwise(int(stop) for stop in stops)):
+        own = look | dict((legs or {}).get(i, {}))
+        if legs:
+            artists += ax.plot(*p[start : end + 1].T, **own)
         middle = (start + end) // 2
         ends = tuple(p[middle + 1]), tuple(p[middle])
+        arrow = {"arrowstyle": "-|>", "color": own["color"], "lw": 1.5, "mutation_scale": 14}
         artists.append(ax.annotate("", *ends, arrowprops=arrow))
     closed = len(stops) > 2 and np.allclose(p[stops[0]], p[stops[-1]])
     marked = p[list(stops[: len(stops) - closed])]
@@ -295,6 +307,7 @@ def draw_traversal(
     ranges: ArrayLike,
     window: ArrayLike,
     labels: Iterable[object] | None = None,
+    legs: Mapping[int, Mapping[str, Any]] | None = None,
 ) -> list[Artist]:
     """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
 
@@ -307,15 +320,18 @@ def draw_traversal(
         Limits of the joint plane, rad, and of the plane of motion.
     labels : iterable, optional
         Names of the stops, in the order of the visit.
+    legs : mapping of int to mapping, optional
+        Styles of single legs, as in `draw_path`.
     """
     joints, space = axes
+    look: dict[str, Any] = {"labels": labels, "legs": legs}
     joint_axes(joints, robot, ranges)
     artists = draw_region(joints, region, lw=0)
-    artists += draw_path(joints, np.degrees(path.q), path.stops, labels=labels, distance=-13)
+    artists += draw_path(joints, np.degrees(path.q), path.stops, distance=-13, **look)
     plane_axes(space, robot, window)
     artists.append(space.axhline(0, color=INK, lw=1))
     artists += draw_robot(space, robot, path.final_pose, alpha=0.6)
-    return artists + draw_path(space, path.tool[:, [0, 2]], path.stops, labels=labels)
+    return artists + draw_path(space, path.tool[:, [0, 2]], path.stops, **look)
 
 
 def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:

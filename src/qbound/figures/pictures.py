@@ -234,8 +234,7 @@ def _name_line(ax: Axes, window: tuple[Limits, Limits], line: Line, names: list[
     if abs(up) > 0.5 and bottom <= (height := (offset - across * right) / up) <= top:
         text = "\n".join(map(figures.as_text, names))
         look: Any = {"ha": "right", "va": "bottom", "color": figures.COLLIDING}
-        label = ax.annotate(
+        ax.annotate(
             text, (right, height), (-3, 3), textcoords="offset points", annotation_clip=False,
             **look,
         )  # fmt: skip
-        figures._halo(label)
