@@ -12,6 +12,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from numpy.testing import assert_allclose
 
+from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
@@ -50,7 +51,7 @@ def files(tmp_path_factory):
     for i, (name, make) in enumerate((ROBOTS | SPATIAL | WALLS).items()):
         robot, held = make()
         written[name] = folder / f"{i}.html"
-        page = explorer_page(find_region(robot, held))
+        page = explorer_page(find_region(robot, held), closed_form.PATHS)
         written[name].write_text(page, encoding="utf-8")
     return written
 

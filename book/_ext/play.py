@@ -31,7 +31,7 @@ from sphinx.util.typing import ExtensionMetadata
 
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
-from qbound.explorer.page import engine_script, engine_style
+from qbound.explorer.page import engine_script, engine_style, shorter_script
 from qbound.files import write_whole
 
 HERE = Path(__file__).resolve().parent
@@ -81,8 +81,14 @@ def region_of(robot: str, rule: str) -> Region:
     return find_region(load_robot(robot), rule=rule)  # type: ignore[arg-type]
 
 
-def scripts_of(hook: Options) -> Iterator[tuple[str, str | None]]:
-    """Yield the scripts that a hook needs: address below ``_static``, text if it is made here."""
+def own_script(name: str) -> tuple[str, str]:
+    """Return one of our scripts as pages load it: address below ``_static``, shortened text."""
+    text = (SCRIPTS / f"{name}.js").read_text(encoding="utf-8")
+    return f"play/short/{name}.js", shorter_script(text)
+
+
+def scripts_of(hook: Options) -> Iterator[tuple[str, str]]:
+    """Yield the scripts that a hook needs: address below ``_static``, text."""
     kind, key = hook.get("figure", ""), robot_key(hook)
     if kind != "explorer" and not (SCRIPTS / f"{kind}.js").is_file():
         LOGGER.warning("no figure kind %r: there is no book/_static/play/%s.js", kind, kind)
@@ -95,7 +101,7 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str | None]]:
         data = importlib.import_module(f"play_data.{kind}").data(region)
         yield f"play/data/{kind}-{key}.js", table_entry("qboundData", f"{kind}-{key}", data)
     if kind != "explorer":
-        yield f"play/{kind}.js", None
+        yield own_script(kind)
 
 
 def table_entry(table: str, key: str, value: Any) -> str:
@@ -115,14 +121,13 @@ def add_scripts(
     found = hooks(doctree)
     if not found:
         return
-    files: dict[str, str | None] = {"play/engine.js": engine_script()}
+    files = {"play/engine.js": engine_script()}
     if any(hook.get("figure") not in WITHOUT_PARTS for hook in found):
-        files["play/parts.js"] = None
-    files |= {address: text for hook in found for address, text in scripts_of(hook)}
-    files |= {"play/play.js": None}
+        files |= [own_script("parts")]
+    files |= [script for hook in found for script in scripts_of(hook)]
+    files |= [own_script("play")]
     for address, text in files.items():
-        if text is not None:
-            write_static(app, address, text)
+        write_static(app, address, text)
         app.add_js_file(address, loading_method="defer")
     write_static(app, "play/engine.css", engine_style())
     for address in ("play/engine.css", "play/play.css"):

@@ -29,7 +29,7 @@
   /** The first dot of the sample with one safe posture, to begin with.
    * @type {(robot: Robot) => Pair} */
   function firstMixed(robot) {
-    const mixed = robot.sample.find((pair) => {
+    const mixed = qboundEngine.randomPairs(robot).find((pair) => {
       const other = otherPosture(robot, pair);
       return other && judge(robot, pair).safe && !judge(robot, other).safe;
     });

@@ -28,8 +28,6 @@ from qbound.version import __version__
 Floats = NDArray[np.float64]
 Data = dict[str, Any]
 
-SAMPLES: Final = 1500
-SEED: Final = 11
 OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.44])
 """Towards who looks at an arm that keeps to no plane: from the front, a little from above."""
 
@@ -91,7 +89,6 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
         "components": [_component(c, views) for c in region.components],
         "polygon": _polygon(region, walks),
         "workspace": workspace_content(region)["workspace"],
-        "sample": _sample(views),
     }
 
 
@@ -256,10 +253,3 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
 def _walks(m: int, others: Walks) -> list[list[int]]:
     """List orders in which to visit m vertices: once round (Figure 7), and those asked for."""
     return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]
-
-
-def _sample(views: Sequence[Data]) -> list[list[float]]:
-    """Draw random configurations (Figure 11); the page judges each."""
-    low, high = (np.array([view[end] for view in views]) for end in ("low", "high"))
-    drawn = np.random.default_rng(SEED).uniform(low, high, (SAMPLES, 2))
-    return [[float(f"{x:.4g}") for x in pair] for pair in drawn]

@@ -152,7 +152,7 @@ def engine_script() -> str:
     shared, own = ("".join(map(_web, names)) for names in (ENGINE, EXPLORER))
     markup = _embedded(_web("parts.html"))
     mount = f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
-    return _shorter(f"(() => {{\n{shared}const MARKUP = {markup};\n{mount}}})();\n")
+    return shorter_script(f"(() => {{\n{shared}const MARKUP = {markup};\n{mount}}})();\n")
 
 
 def engine_style() -> str:
@@ -160,8 +160,11 @@ def engine_style() -> str:
     return _web("explorer.css")
 
 
-def _shorter(script: str) -> str:
-    """Leave out comments that begin a line, and indentation."""
+def shorter_script(script: str) -> str:
+    """Leave out comments that begin a line, and indentation.
+
+    No string of such a script may go over a line's end.
+    """
     code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
     lines = (line.strip() for line in code.splitlines())
     return "".join(f"{line}\n" for line in lines if line and not line.startswith("//"))

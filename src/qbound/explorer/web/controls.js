@@ -184,7 +184,7 @@ function buildShow() {
   const words = {
     workspace: "Where the tool can go (geometric workspace)",
     polygon: "Polygon of the vertices",
-    sample: `${robot.sample.length} random poses`,
+    sample: "1500 random poses",
     names: "Names of all points",
   };
   const names = shownNames().filter((name) => name !== "polygon" || robot.polygon);

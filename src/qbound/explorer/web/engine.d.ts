@@ -104,6 +104,7 @@ interface Engine {
     factor: number,
     centre: Pair,
   ): Least;
+  randomPairs(robot: Robot): Pair[];
   pieceLengths(robot: Robot, stops: Pair[]): number[];
   alongPath(robot: Robot, stops: Pair[], fraction: number): Pair;
 }

@@ -58,6 +58,7 @@ const engine = {
   outline,
   scaledPolygon,
   smallestClearance,
+  randomPairs,
   pieceLengths,
   alongPath,
 };

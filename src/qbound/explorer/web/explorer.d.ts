@@ -33,7 +33,6 @@ interface Robot {
   components: Component[];
   polygon: VertexPolygon | null;
   workspace: { area: number; covered_twice: number } | null;
-  sample: Pair[];
 }
 
 interface Joint {

@@ -41,6 +41,20 @@ function lengthOf(wall, value) {
   return Math.sqrt(Math.max(0, value + wall.required * wall.required)) - wall.required;
 }
 
+/** Random values of the free joints within what is drawn, the same every time (a congruential
+    generator: next = 1664525 last + 1013904223, modulo 2^32).
+ * @type {(robot: Robot) => Pair[]} */
+function randomPairs(robot) {
+  let last = 11;
+  const next = () => {
+    last = (Math.imul(last, 1664525) + 1013904223) >>> 0;
+    return last / 2 ** 32;
+  };
+  return Array.from({ length: 1500 }, () =>
+    robot.views.map(({ low, high }) => low + next() * (high - low)),
+  );
+}
+
 /** Length of each straight piece of a path: the largest change of a joint, in views' widths.
  * @type {(robot: Robot, stops: Pair[]) => number[]} */
 function pieceLengths(robot, stops) {

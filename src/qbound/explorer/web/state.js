@@ -119,7 +119,7 @@ function largestDeterminant(map) {
 
 /** @type {() => SamplePose[]} */
 function judgeSample() {
-  return robot.sample.map((pair) => {
+  return randomPairs(robot).map((pair) => {
     const q = withPair(robot, state.q, pair);
     const home = slice.home === null || pieceAt(slice.cells, pair) === slice.home;
     return { pair, safe: isSafe(margins(robot, q)), home, tool: toolAt(slice.map, pair) };
