@@ -130,6 +130,7 @@ NOT_PROSE = [
     r"(?m)^:::.*$|^:label:.*$|^(?:# )?\d+\. ",  # directives, numbered items and titles
     r"`[^`]*`",  # code and the targets of roles
     r"<div[^>]*>",  # places of the moving figures
+    r"\[\d+\]\(#[^)]*\)",  # a reference, such as the second one of "Figures 6 to 10"
     r"\]\([^)]*\)",  # targets of links
     r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b|\bN\d\b|SO\(3\)|3-D",  # the ledger's ids, own numbers
 ]
