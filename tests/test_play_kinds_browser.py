@@ -91,6 +91,14 @@ def words(page):
     return page.locator(".status").inner_text()
 
 
+def frames(page, count):
+    """Let the page draw so many frames: time enough for what moves to have moved."""
+    page.evaluate(
+        "async (n) => { while (n--) await new Promise((next) => requestAnimationFrame(next)); }",
+        count,
+    )
+
+
 def pair(page):
     return page.evaluate("arm.pair()")
 
@@ -173,7 +181,7 @@ def test_the_front_pages_arm_moves_by_itself_until_a_reader_presses_pause(open_f
     eventually(page, lambda: pair(page) != start)
     page.get_by_role("button", name="Pause").click()
     rest = pair(page)
-    page.wait_for_timeout(300)
+    frames(page, 30)
     assert pair(page) == rest
     page.get_by_role("button", name="Play").click()
     eventually(page, lambda: pair(page) != rest)
@@ -184,7 +192,7 @@ def test_the_front_pages_arm_gives_way_to_a_hand(open_figure):
     eventually(page, lambda: page.get_by_role("button", name="Pause").count() == 1)
     drag(page, place(page, pair(page)), place(page, [0, -0.5]))
     rest = pair(page)
-    page.wait_for_timeout(300)
+    frames(page, 30)
     assert pair(page) == rest == pytest.approx([0, -0.5], abs=0.05)
     assert page.get_by_role("button", name="Play").count() == 1
 
@@ -192,7 +200,7 @@ def test_the_front_pages_arm_gives_way_to_a_hand(open_figure):
 def test_where_no_motion_is_wanted_the_front_pages_arm_rests(open_figure):
     page = open_figure("front")
     rest = pair(page)
-    page.wait_for_timeout(400)
+    frames(page, 30)
     assert pair(page) == rest
     assert page.get_by_role("button", name="Play").count() == 1
 
@@ -260,7 +268,7 @@ def test_a_hand_stops_the_path(open_figure):
     page.keyboard.press("ArrowUp")
     assert words(page).startswith("You moved the arm.")
     rest = pair(page)
-    page.wait_for_timeout(300)
+    frames(page, 30)
     assert pair(page) == rest
 
 

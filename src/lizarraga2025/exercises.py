@@ -36,7 +36,7 @@ def check(answer: Any, expected: Any, *, within: float = 0.0) -> str:
     --------
     >>> check(..., 6)
     'Not filled in yet: put your answer in place of the three dots and run the cell again.'
-    >>> check(0.96, 0.964038, within=0.005)
+    >>> check(0.96, 0.964038, within=0.01)
     'Right.'
     >>> check(7, 6)
     'Not yet: too large.'
