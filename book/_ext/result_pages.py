@@ -6,6 +6,7 @@ each citation gets a button.
 
 from __future__ import annotations
 
+import json
 from html import escape
 from itertools import groupby
 from pathlib import Path
@@ -29,7 +30,14 @@ class ResultTables(SphinxDirective):
         folder = Path(self.env.app.confdir).parent / "results"
         for file in folder.glob("*.json"):
             self.env.note_dependency(str(file))
-        return [section(*chapter) for chapter in chapters()]
+        return [section(chapter, self.title(chapter), entries) for chapter, entries in chapters()]
+
+    def title(self, chapter: str) -> str:
+        """Return the title of a chapter, as its own page has it."""
+        file = Path(self.env.srcdir, "chapters", f"{recorded.file_stem(chapter)}.ipynb")
+        self.env.note_dependency(str(file))
+        first = json.loads(file.read_text(encoding="utf-8"))["cells"][0]["source"]
+        return "".join(first).partition("\n")[0].removeprefix("# ")
 
 
 def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
@@ -38,10 +46,8 @@ def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
     return [(name, list(own)) for name, own in groupby(entries, lambda entry: entry["chapter"])]
 
 
-def section(chapter: str, entries: list[dict[str, Any]]) -> nodes.section:
+def section(chapter: str, title: str, entries: list[dict[str, Any]]) -> nodes.section:
     """Return the section of a chapter."""
-    number = recorded.CHAPTERS.index(chapter) + 1
-    title = f"{number}. {chapter.replace('_', ' ').capitalize()}"
     part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
     part += [nodes.title("", title), nodes.raw("", table(entries), format="html")]
     return part
