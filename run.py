@@ -23,6 +23,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -84,6 +85,11 @@ PORT = 8000  # of the author's local page
 OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
 # The extras of the library; the others are tools, of which the newest will do.
 LIBRARY = ["symbolic", "figures", "proofs", "files"]
+
+# A cell of code in a chapter's text: its source, without the fence and the metadata.
+CELL = re.compile(
+    r"^```\{code-cell\}[^\n]*\n(?:---\n.*?^---\n|(?::[^\n]*\n)*)(.*?)^```$", re.M | re.S
+)
 
 Command = list[str | Path]
 
@@ -346,6 +352,11 @@ def make_chapters() -> None:
     notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
     if not notebooks:
         raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
+    apart = [text for text in sorted((ROOT / "notebooks").glob("[0-9]*_*.md")) if is_apart(text)]
+    if apart:
+        names = " ".join(text.relative_to(ROOT).as_posix() for text in apart)
+        advice = f"{in_venv('jupytext').relative_to(ROOT)} --sync {names} takes the newer of each."
+        raise Failed(f"The text and the notebook of a chapter differ: {names}.\n{advice}")
     now = settings()
     in_next(CHAPTERS).mkdir()
     old, left = (CHAPTERS, RESULTS), (LEFT / CHAPTERS.name, LEFT / RESULTS.name)
@@ -362,6 +373,20 @@ def make_chapters() -> None:
     changed = [notebook for notebook in notebooks if notebook.stem not in kept]
     if changed:
         execute(changed, now)
+
+
+def is_apart(text: Path) -> bool:
+    """Tell whether a chapter's text has other lines than its notebook, or no notebook at all."""
+
+    def lines(source: str) -> list[str]:
+        return [line.rstrip() for line in source.splitlines() if line.strip() and line != "+++"]
+
+    notebook = text.with_suffix(".ipynb")
+    if not notebook.exists():
+        return True
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    body = text.read_text(encoding="utf-8").partition("\n---\n")[2]
+    return lines(CELL.sub(r"\1", body)) != lines("\n".join("".join(c["source"]) for c in cells))
 
 
 def execute(notebooks: list[Path], now: dict[str, str]) -> None:

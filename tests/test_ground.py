@@ -392,6 +392,31 @@ def test_the_cells_that_did_not_run_are_named(run: ModuleType, tmp_path: Path) -
     assert run.unrun_cells(path) == [3, 5]
 
 
+def test_a_text_without_its_notebook_stops_the_book_before_anything_is_executed(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The book is made from the notebooks: an edit of the text alone would not be seen."""
+    titles = fake_steps(run, monkeypatch)
+    text = house / "notebooks/01_a.md"
+    cell = "```{code-cell} ipython3\n---\ntags: [hide-input]\n---\n{}\n```\n"
+    head = "---\nkernelspec:\n  name: python3\n---\n\n"
+    text.write_text(head + cell.replace("{}", "1 + 1"))
+    run.make_book()
+    text.write_text(head + cell.replace("{}", "1 + 2"))
+    with pytest.raises(run.Failed, match=r"differ: notebooks/01_a\.md\.\n.*jupytext --sync"):
+        run.make_book()
+    text.rename(house / "notebooks/02_new.md")
+    with pytest.raises(run.Failed, match=r"differ: notebooks/02_new\.md"):
+        run.make_book()
+    assert titles == [EXECUTE_ONE, BUILD]
+
+
+def test_every_chapter_of_the_book_is_in_step(run: ModuleType) -> None:
+    texts = sorted((ROOT / "notebooks").glob("[0-9]*_*.md"))
+    assert len(texts) > 10
+    assert [text.name for text in texts if run.is_apart(text)] == []
+
+
 def test_a_source_that_changes_meanwhile_is_noticed(
     run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
