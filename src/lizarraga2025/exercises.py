@@ -10,7 +10,17 @@ import numpy as np
 UNFILLED = "Not filled in yet: put your answer in place of the three dots and run the cell again."
 
 
-def check(answer: Any, expected: Any, *, within: float = 0.0) -> str:
+class Reply(str):
+    """What a reader hears: a cell that ends with it shows the words, without quotation marks."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Be the words themselves."""
+        return str(self)
+
+
+def check(answer: Any, expected: Any, *, within: float = 0.0) -> Reply:
     """Say whether an answer is right.
 
     Parameters
@@ -24,7 +34,7 @@ def check(answer: Any, expected: Any, *, within: float = 0.0) -> str:
 
     Returns
     -------
-    str
+    Reply
         "Right.", or "Not yet" with a hint on what differs: it never gives the answer away.
 
     Raises
@@ -35,19 +45,19 @@ def check(answer: Any, expected: Any, *, within: float = 0.0) -> str:
     Examples
     --------
     >>> check(..., 6)
-    'Not filled in yet: put your answer in place of the three dots and run the cell again.'
+    Not filled in yet: put your answer in place of the three dots and run the cell again.
     >>> check(0.96, 0.964038, within=0.01)
-    'Right.'
+    Right.
     >>> check(7, 6)
-    'Not yet: too large.'
+    Not yet: too large.
     """
     if not (np.isfinite(within) and within >= 0):
         raise ValueError(f"within: {within} is no tolerance")
     if isinstance(answer, EllipsisType):
-        return UNFILLED
+        return Reply(UNFILLED)
     if isinstance(expected, str | bool | set | frozenset):
-        return "Right." if answer == expected else "Not yet."
-    return _compared(answer, np.asarray(expected, dtype=float), within)
+        return Reply("Right." if answer == expected else "Not yet.")
+    return Reply(_compared(answer, np.asarray(expected, dtype=float), within))
 
 
 def _compared(answer: Any, expected: np.ndarray[Any, Any], within: float) -> str:

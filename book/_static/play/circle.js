@@ -197,7 +197,7 @@
       }
       place(drawn.names[2], at(d / ARROW + 0.14, 0.1));
       const lean = 90 - (theta * 180) / Math.PI; // of the line, so that its name is not upside down
-      const [lineX, lineY] = at(height - (uy < 0 ? -0.06 : 0.12), uy < 0 ? -0.1 : 0.1);
+      const [lineX, lineY] = at(height - (uy < 0 ? -0.12 : 0.2), uy < 0 ? -0.1 : 0.1);
       place(drawn.names[3], [lineX, lineY]);
       const turned = lean - 180 * Math.round(lean / 180);
       drawn.names[3].setAttribute("transform", `rotate(${turned} ${lineX} ${lineY})`);

@@ -239,7 +239,7 @@
       element(
         "p",
         { className: "hint" },
-        "Switch bounds on and off, and choose a reading. Shaded is exactly what they leave.",
+        "Switch bounds on and off, and choose a reading. Shaded is exactly what they leave, bent sides and all.",
       ),
       status.seen,
       status.spoken,
