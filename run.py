@@ -19,9 +19,11 @@ docs/decisions/0001-one-command.md says why this is one file of the standard lib
 """
 
 import argparse
+import contextlib
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -49,6 +51,7 @@ PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
 NEXT = ROOT / ".next"  # the book is made here, and takes the place of the old one when it is whole
 WHOLE = "whole"  # a file of NEXT: all is made
+LEFT = NEXT / "left"  # the executed chapters of a build that did not come to its end
 WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = VENV / "javascript" / "node_modules"
@@ -82,6 +85,11 @@ PORT = 8000  # of the author's local page
 OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
 # The extras of the library; the others are tools, of which the newest will do.
 LIBRARY = ["symbolic", "figures", "proofs", "files"]
+
+# A cell of code in a chapter's text: its source, without the fence and the metadata.
+CELL = re.compile(
+    r"^```\{code-cell\}[^\n]*\n(?:---\n.*?^---\n|(?::[^\n]*\n)*)(.*?)^```$", re.M | re.S
+)
 
 Command = list[str | Path]
 
@@ -270,12 +278,27 @@ def in_next(place: Path) -> Path:
 
 
 def copy_sources() -> None:
-    """Start over in NEXT: what an interrupted build has left there is worth nothing."""
-    remove(NEXT)
+    """Start over in NEXT; of a build that did not come to its end, executed chapters are kept."""
+    set_aside()
     for name in source_hashes(ROOT):
         (NEXT / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, NEXT / name)
     in_next(RESULTS).mkdir()
+
+
+def set_aside() -> None:
+    """Empty NEXT, but for the chapters that a build which did not come to its end executed."""
+    if in_next(CHAPTERS).exists():
+        collect_executed()
+        remove(LEFT)
+        for place in [CHAPTERS, RESULTS]:
+            (LEFT / place.name).parent.mkdir(exist_ok=True)
+            in_next(place).rename(LEFT / place.name)
+    for path in NEXT.glob("*"):
+        if path.is_file():
+            path.unlink()
+        elif path != LEFT:
+            remove(path)
 
 
 def take_over() -> None:
@@ -329,26 +352,52 @@ def make_chapters() -> None:
     notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
     if not notebooks:
         raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
-    in_next(CHAPTERS).mkdir()
+    apart = [text for text in sorted((ROOT / "notebooks").glob("[0-9]*_*.md")) if is_apart(text)]
+    if apart:
+        names = " ".join(text.relative_to(ROOT).as_posix() for text in apart)
+        advice = f"{in_venv('jupytext').relative_to(ROOT)} --sync {names} takes the newer of each."
+        raise Failed(f"The text and the notebook of a chapter differ: {names}.\n{advice}")
     now = settings()
-    current = [notebook for notebook in notebooks if is_current(notebook.stem, now)]
-    for notebook in current:
-        keep(notebook.stem)
-    changed = [notebook for notebook in notebooks if notebook not in current]
-    if current:
-        say(f"-- {len(current)} of {len(notebooks)} notebooks, and what they read, are unchanged")
+    in_next(CHAPTERS).mkdir()
+    old, left = (CHAPTERS, RESULTS), (LEFT / CHAPTERS.name, LEFT / RESULTS.name)
+    kept = {}
+    for stem in (notebook.stem for notebook in notebooks):
+        current = [place for place in (old, left) if is_current(stem, now, *place)]
+        if current:
+            kept[stem] = current[0]
+            keep(stem, *current[0])
+    if kept:
+        say(f"-- {len(kept)} of {len(notebooks)} notebooks, and what they read, are unchanged")
+    if left in kept.values():
+        say(f"   ({list(kept.values()).count(left)} of them from a build that did not end)")
+    changed = [notebook for notebook in notebooks if notebook.stem not in kept]
     if changed:
         execute(changed, now)
+
+
+def is_apart(text: Path) -> bool:
+    """Tell whether a chapter's text has other lines than its notebook, or no notebook at all."""
+
+    def lines(source: str) -> list[str]:
+        return [line.rstrip() for line in source.splitlines() if line.strip() and line != "+++"]
+
+    notebook = text.with_suffix(".ipynb")
+    if not notebook.exists():
+        return True
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    body = text.read_text(encoding="utf-8").partition("\n---\n")[2]
+    return lines(CELL.sub(r"\1", body)) != lines("\n".join("".join(c["source"]) for c in cells))
 
 
 def execute(notebooks: list[Path], now: dict[str, str]) -> None:
     """Execute copies of the notebooks; the committed ones stay without outputs."""
     for cache in list((ROOT / "src").rglob("__pycache__")):
         remove(cache)  # a compiled module is found current by the time and size of its source alone
-    chapters = [Path(shutil.copy(notebook, in_next(CHAPTERS))) for notebook in notebooks]
+    chapters = [Path(shutil.copy(in_next(nb), in_next(CHAPTERS))) for nb in notebooks]
     nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
     pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
     ours = ["-c", ROOT / "pyproject.toml", "-p", "per_chapter"]
+    (NEXT / "settings.json").write_text(json.dumps(now), encoding="utf-8")
     must(
         f"Executing {len(chapters)} notebooks",
         [*pytest, *ours, *nbmake, *chapters],
@@ -359,6 +408,16 @@ def execute(notebooks: list[Path], now: dict[str, str]) -> None:
         if unrun_cells(chapter):
             raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
         collect(chapter, now)
+
+
+def collect_executed() -> None:
+    """Collect the chapters of NEXT that ran to their end, where the build itself did not."""
+    for chapter in in_next(CHAPTERS).glob("*.ipynb"):
+        ran = (NEXT / "made" / chapter.stem / "ran").exists()
+        if ran and not in_next(record(chapter.stem)).exists() and not unrun_cells(chapter):
+            with contextlib.suppress(Failed, OSError, ValueError):  # then it is executed again
+                now = json.loads((NEXT / "settings.json").read_text(encoding="utf-8"))
+                collect(chapter, now)
 
 
 def collect(chapter: Path, now: dict[str, str]) -> None:
@@ -377,8 +436,8 @@ def collect(chapter: Path, now: dict[str, str]) -> None:
     if any(name.startswith(f"{RESULTS.name}/") for name in files):
         raise Failed(f"{chapter.name} reads results, which other chapters write: they run at once.")
     if programs - HARMLESS:  # they may have read anything
-        files |= {name.as_posix(): total for name, total in source_hashes(ROOT).items()}
-    files[f"notebooks/{chapter.name}"] = hash_of(ROOT / "notebooks" / chapter.name)
+        files |= {name.as_posix(): total for name, total in source_hashes(NEXT).items()}
+    files[f"notebooks/{chapter.name}"] = hash_of(NEXT / "notebooks" / chapter.name)
     made = {"settings": now, "files": files, "folders": folders, "programs": sorted(programs)}
     made |= {"copy": hash_of(chapter), "results": results}
     content = json.dumps(made, indent=1, sort_keys=True)
@@ -390,13 +449,13 @@ def record(stem: str) -> Path:
     return CHAPTERS / f"{stem}.made-from.json"
 
 
-def is_current(stem: str, now: dict[str, str]) -> bool:
-    """Tell whether executing a chapter again would do the same again, and its work is here."""
+def is_current(stem: str, now: dict[str, str], chapters: Path, results: Path) -> bool:
+    """Tell whether executing a chapter again would do the same again, and its work is there."""
     try:
-        made = json.loads(record(stem).read_text(encoding="utf-8"))
-        results = {RESULTS / name: total for name, total in made["results"].items()}
-        files = {ROOT / name: total for name, total in made["files"].items()} | results
-        files[CHAPTERS / f"{stem}.ipynb"] = made["copy"]
+        made = json.loads((chapters / record(stem).name).read_text(encoding="utf-8"))
+        files = {ROOT / name: total for name, total in made["files"].items()}
+        files |= {results / name: total for name, total in made["results"].items()}
+        files[chapters / f"{stem}.ipynb"] = made["copy"]
         same = all(hash_of(file) == total for file, total in files.items())
         listed = all(names_in(ROOT / name) == total for name, total in made["folders"].items())
         return made["settings"] == now and same and listed
@@ -404,13 +463,13 @@ def is_current(stem: str, now: dict[str, str]) -> bool:
         return False  # there is no record, or it is none
 
 
-def keep(stem: str) -> None:
+def keep(stem: str, chapters: Path, results: Path) -> None:
     """Take a chapter that is current, with its results, into the next book."""
-    made = json.loads(record(stem).read_text(encoding="utf-8"))
-    for file in [record(stem), CHAPTERS / f"{stem}.ipynb"]:
-        shutil.copy2(file, in_next(CHAPTERS))
+    made = json.loads((chapters / record(stem).name).read_text(encoding="utf-8"))
+    for name in [record(stem).name, f"{stem}.ipynb"]:
+        shutil.copy2(chapters / name, in_next(CHAPTERS))
     for name in made["results"]:
-        shutil.copy2(RESULTS / name, in_next(RESULTS))
+        shutil.copy2(results / name, in_next(RESULTS))
 
 
 def hash_of(file: Path) -> str | None:

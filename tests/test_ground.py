@@ -58,6 +58,7 @@ def house(run: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
         "PDF": book / "_build/qbound.pdf",
         "RESULTS": tmp_path / "results",
         "NEXT": tmp_path / ".next",
+        "LEFT": tmp_path / ".next/left",
         "WORKBOOK": tmp_path / "workbook",
         "CHECKERS": tmp_path / "tests/javascript",
         "NODE_MODULES": tmp_path / ".venv/javascript/node_modules",
@@ -329,6 +330,7 @@ def fake_steps(
             for kind, name in reads
         ]
         (folder / "reads").write_text("".join(json.dumps(line) + "\n" for line in lines))
+        (folder / "ran").touch()
 
     monkeypatch.setattr(run, "must", must)
     monkeypatch.setattr(run, "settings", lambda: {"python": "3.13"})
@@ -388,6 +390,31 @@ def test_the_cells_that_did_not_run_are_named(run: ModuleType, tmp_path: Path) -
         )
     )
     assert run.unrun_cells(path) == [3, 5]
+
+
+def test_a_text_without_its_notebook_stops_the_book_before_anything_is_executed(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The book is made from the notebooks: an edit of the text alone would not be seen."""
+    titles = fake_steps(run, monkeypatch)
+    text = house / "notebooks/01_a.md"
+    cell = "```{code-cell} ipython3\n---\ntags: [hide-input]\n---\n{}\n```\n"
+    head = "---\nkernelspec:\n  name: python3\n---\n\n"
+    text.write_text(head + cell.replace("{}", "1 + 1"))
+    run.make_book()
+    text.write_text(head + cell.replace("{}", "1 + 2"))
+    with pytest.raises(run.Failed, match=r"differ: notebooks/01_a\.md\.\n.*jupytext --sync"):
+        run.make_book()
+    text.rename(house / "notebooks/02_new.md")
+    with pytest.raises(run.Failed, match=r"differ: notebooks/02_new\.md"):
+        run.make_book()
+    assert titles == [EXECUTE_ONE, BUILD]
+
+
+def test_every_chapter_of_the_book_is_in_step(run: ModuleType) -> None:
+    texts = sorted((ROOT / "notebooks").glob("[0-9]*_*.md"))
+    assert len(texts) > 10
+    assert [text.name for text in texts if run.is_apart(text)] == []
 
 
 def test_a_source_that_changes_meanwhile_is_noticed(
@@ -518,7 +545,7 @@ def test_a_change_of_one_chapter_executes_that_one(
     assert not run.book_is_fresh() or "copy" in what or "record" in what
     run.make_book()
     assert two == [EXECUTE_ONE, BUILD]
-    assert run.is_current("01_a", run.settings())
+    assert run.is_current("01_a", run.settings(), run.CHAPTERS, run.RESULTS)
     assert (run.ROOT / "results/a.json").read_text() == "TURN = 6.28\n"
 
 
@@ -615,6 +642,79 @@ def test_a_build_that_is_interrupted_leaves_the_old_book(
     run.make_book()
     assert run.book_is_fresh()
     assert run.FRONT_PAGE.read_text() == "TURN = 7\n" * 2
+
+
+def stop_at(
+    run: ModuleType, context: pytest.MonkeyPatch, step: str, failure: BaseException, left: list[str]
+) -> None:
+    """Let a step end badly; of the chapters that it executes only those named have run."""
+    whole = run.must
+
+    def must(title: str, *arguments: object, **settings: object) -> None:
+        whole(title, *arguments, **settings)
+        if title.startswith(step):
+            for ran in (run.NEXT / "made").glob("*/ran"):
+                if ran.parent.name not in left:
+                    ran.unlink()
+            raise failure
+
+    context.setattr(run, "must", must)
+
+
+@pytest.mark.parametrize("failure", ["a failing step", "Ctrl-C", "a kill"])
+@pytest.mark.parametrize(
+    ("step", "ran", "again"),
+    [
+        ("Executing", ["01_a"], [EXECUTE_ONE, BUILD]),
+        ("Executing", [], ["Executing 2 notebooks", BUILD]),
+        ("Building", ["01_a", "02_b"], [BUILD]),
+    ],
+)
+def test_what_a_broken_build_has_executed_is_not_executed_again(
+    run: ModuleType,
+    two: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    failure: str,
+    step: str,
+    ran: list[str],
+    again: list[str],
+) -> None:
+    (run.ROOT / PAGE).write_text("TURN = 7\n")
+    kinds = {"a failing step": run.Failed("one"), "Ctrl-C": KeyboardInterrupt(), "a kill": Killed()}
+    with monkeypatch.context() as context:
+        stop_at(run, context, step, kinds[failure], ran)
+        with pytest.raises(type(kinds[failure])):
+            run.make_book()
+    two.clear()
+    with monkeypatch.context() as context:  # once more, before anything is executed
+        context.setattr(run, "settings", lambda: {}["no"])
+        with pytest.raises(KeyError):
+            run.make_book()
+    run.make_book()
+    assert two == again
+    assert run.book_is_fresh()
+    assert run.FRONT_PAGE.read_text() == "TURN = 7\n" * 2
+    assert not run.NEXT.exists()
+
+
+class Killed(BaseException):
+    """Nothing is done after it."""
+
+
+@pytest.mark.parametrize("change", [PAGE, "notebooks/01_a.ipynb"])
+def test_what_a_broken_build_has_executed_is_old_where_a_source_changed_since(
+    run: ModuleType, two: list[str], monkeypatch: pytest.MonkeyPatch, change: str
+) -> None:
+    (run.ROOT / "notebooks/01_a.ipynb").write_text(notebook({"source": ["3"]}))
+    with monkeypatch.context() as context:
+        stop_at(run, context, "Executing", Killed(), ["01_a"])
+        with pytest.raises(Killed):
+            run.make_book()
+    two.clear()
+    (run.ROOT / change).write_text(notebook({"source": ["4"]}))
+    run.make_book()
+    assert two == [f"Executing {2 if change == PAGE else 1} notebooks", BUILD]
+    assert run.book_is_fresh()
 
 
 def test_a_kill_while_the_books_change_places_is_mended_by_the_next_command(

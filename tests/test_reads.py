@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 from types import ModuleType
 
@@ -119,3 +120,25 @@ def test_without_a_file_to_write_to_nothing_is_watched(tmp_path: Path) -> None:
     command = [sys.executable, "-c", lines]
     subprocess.run(command, cwd=ROOT, env=own | {"PYTHONPATH": str(READS)}, check=True)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a process keeps its parent's number there")
+def test_the_run_that_executes_the_chapters_ends_with_the_one_that_started_it() -> None:
+    """Whoever kills run.py and starts it again would have two runs that write the same files."""
+    child = "import per_chapter as p; print(flush=True); p.end_with(p.os.getppid())"
+    parent = f"""
+import subprocess, sys
+child = subprocess.Popen([sys.executable, "-c", {child!r}], stdout=subprocess.PIPE)
+child.stdout.readline()
+print(child.pid)
+"""
+    own = os.environ | {"PYTHONPATH": str(READS)}
+    command = [sys.executable, "-c", parent]
+    found = subprocess.run(command, env=own, capture_output=True, text=True, check=True)
+    for _ in range(100):
+        try:
+            os.kill(int(found.stdout), 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    pytest.fail("it goes on")

@@ -1,9 +1,12 @@
 """For pytest, in the run that executes the chapters: each gets a folder of its own.
 
-It holds the results that the chapter writes and, in ``reads``, what its process read.
+It holds the results that the chapter writes, in ``reads`` what its process read, and ``ran`` when
+all is done and written. If ``run.py`` is killed, this run ends too.
 """
 
 import os
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,3 +21,23 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     os.environ["QBOUND_RESULTS"] = str(folder)
     os.environ["QBOUND_READS"] = str(folder / "reads")
     return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """Mark a chapter that has run to its end; what it became is written by then."""
+    yield
+    Path(os.environ["QBOUND_MADE"], item.path.stem, "ran").touch()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Watch the process that started this one; the workers and kernels end with it."""
+    if not hasattr(config, "workerinput"):
+        threading.Thread(target=end_with, args=[os.getppid()], daemon=True).start()
+
+
+def end_with(parent: int) -> None:
+    """End this process as soon as it has another parent."""
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)
