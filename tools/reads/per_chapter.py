@@ -30,10 +30,9 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     Path(os.environ["QBOUND_MADE"], item.path.stem, "ran").touch()
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    """Watch the process that started this one; the workers and kernels end with it."""
-    if not hasattr(config, "workerinput"):
-        threading.Thread(target=end_with, args=[os.getppid()], daemon=True).start()
+def pytest_configure() -> None:
+    """Watch the process that started this one: run.py, or for a worker the run; kernels do so."""
+    threading.Thread(target=end_with, args=[os.getppid()], daemon=True).start()
 
 
 def end_with(parent: int) -> None:
