@@ -130,13 +130,13 @@ function brokenWords() {
     .filter(Boolean);
 }
 
-// A picture of panels side by side is whole where there is room; on a phone each panel has the page.
+// A picture of panels side by side is whole where there is room; on a phone each panel has the page, as a picture of one column has.
 function smallPanels() {
   const page = document.querySelector(".bd-article")?.clientWidth ?? 0;
   return [...document.images]
     .filter((image) => image.matches(".wide-figure img, .panels img") && image.checkVisibility())
     .filter(({ parentElement, width }) => {
-      return width < (parentElement?.closest(".panels") ? 0.8 * page : 30 * 16);
+      return width < (parentElement?.closest(".panels, .one-column") ? 0.8 * page : 30 * 16);
     })
     .map((image) => image.alt.slice(0, 60));
 }

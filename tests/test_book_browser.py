@@ -23,6 +23,10 @@ from support.trial_book import build_trial
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
+API = [page for page in PAGES if page.startswith("generated/")]
+# Pages of the API are all made in one way, of docstrings: the longest have whatever one can have.
+LONGEST = sorted(API, key=lambda page: (HTML / page).stat().st_size)[-16:]
+PAGES = [page for page in PAGES if page not in API or page in LONGEST]
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
@@ -233,8 +237,7 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     inside = page.frame_locator("iframe.explorer")
     before = inside.locator("#plane .handle-group").get_attribute("transform")
     inside.locator("#joints").focus()
-    for _ in range(5):
-        page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
     after = inside.locator("#plane .handle-group").get_attribute("transform")
     assert after != before
     inside.locator("#task-go").click()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from copy import copy
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -76,7 +77,7 @@ def test_the_evidence_of_an_entry_is_in_the_book_and_leads_back(one) -> None:
 
 def test_an_id_in_the_text_is_a_link() -> None:
     for page in sorted((HTML / "chapters").glob("*.html")):
-        for paragraph in read(f"chapters/{page.name}").select("article p"):
+        for paragraph in map(copy, read(f"chapters/{page.name}").select("article p")):
             for link in paragraph.select("a"):
                 link.extract()
             for code in paragraph.select("code"):

@@ -57,14 +57,16 @@ class WidePictures(SphinxPostTransform):
             file = Path(self.app.srcdir, image["uri"])
             if width_in_points(file) > WIDEST_PANEL:
                 shown = image.parent if isinstance(image.parent, nodes.reference) else image
-                shown.replace_self(boxes(image, shown, panels_of(file)))
+                shown.replace_self(boxes(image, shown, file))
 
 
-def boxes(image: nodes.image, shown: nodes.Element, views: list[Box]) -> list[nodes.Element]:
+def boxes(image: nodes.image, shown: nodes.Element, file: Path) -> list[nodes.Element]:
     """Return the box of the whole picture and, with several views, the box of its panels."""
     whole = nodes.container(classes=["wide-figure"])
     whole += shown.deepcopy()
+    views = panels_of(file)
     if not views:
+        whole["classes"] += ["one-column"] * (len(columns_of(axes_in(file))) < 2)
         return [whole]
     whole["classes"].append("has-panels")
     stacked = nodes.container(classes=["panels"])
@@ -91,10 +93,8 @@ def panels_of(file: Path) -> list[Box]:
     """Return the parts that lie between cuts through a drawing; none where no cut is free."""
     root = root_of(file)
     _, _, width, height = map(float, root.get("viewBox", "0 0 0 0").split())
-    drawn = root.findall(f".//{SVG}g[@id='figure_1']/{SVG}g")
-    axes = [box_of(axes_of(g)) for g in drawn if g.get("id", "").startswith("axes_")]
-    loose = [box_of(texts_in(g)) for g in drawn if g.get("id", "").startswith(("text_", "legend_"))]
-    columns = columns_of(axes)
+    loose = [box_of(texts_in(part)) for part in drawn_parts(root, "text_", "legend_")]
+    columns = columns_of(axes_in(file))
     cuts = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
     if not cuts or any(part.left < cut < part.right for part in [*columns, *loose] for cut in cuts):
         return []
@@ -103,6 +103,17 @@ def panels_of(file: Path) -> list[Box]:
         Box(left, max(0.0, column.top - ABOVE), right, min(height, column.bottom + ABOVE))
         for (left, right), column in zip(edges, columns, strict=True)
     ]
+
+
+def drawn_parts(root: ElementTree.Element, *kinds: str) -> list[ElementTree.Element]:
+    """Return the parts of a drawing whose ids begin in one of these ways."""
+    drawn = root.findall(f".//{SVG}g[@id='figure_1']/{SVG}g")
+    return [part for part in drawn if part.get("id", "").startswith(kinds)]
+
+
+def axes_in(file: Path) -> list[Box]:
+    """Return what each axes of a drawing takes, with the texts around it."""
+    return [box_of(axes_of(part)) for part in drawn_parts(root_of(file), "axes_")]
 
 
 def axes_of(group: ElementTree.Element) -> Iterator[Box]:

@@ -140,7 +140,7 @@ def area(robot: Robot, nodes: int) -> float:
     Returns
     -------
     float
-        rad^2; errors as in `vertices`.
+        In rad²; errors as in `vertices`.
     """
     corners = vertices(robot)
     result = polygon.area([corner.q for corner in corners])

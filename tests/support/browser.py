@@ -66,7 +66,7 @@ WEAR = """(family) => {
   const { style } = document.documentElement;
   const faces = ["--book-serif", "--book-sans", "font-family"];
   for (const name of faces) style.setProperty(name, family);
-  window.explorer?.redraw(); // an explorer's pictures are drawn for the letters that it finds
+  window.explorer?.redraw?.(); // an explorer's pictures are drawn for the letters that it finds
 }"""
 
 
