@@ -45,13 +45,13 @@ class Explorer:
         Of the robot.
     html : str
         The page.
-    picture : str or None
-        The region as SVG, which stands in a notebook where no script runs.
+    region : Region
+        Drawn where a notebook runs no script.
     """
 
     name: str
     html: str = field(repr=False)
-    picture: str | None = field(default=None, repr=False)
+    region: Region = field(repr=False)
 
     def __repr__(self) -> str:
         """Say whose page it is, and how large."""
@@ -68,9 +68,9 @@ class Explorer:
         frame = Template(_web("frame.html")).substitute(
             page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
         )
-        picture = ""
-        if self.picture is not None:
-            content = b64encode(self.picture.encode()).decode()
+        picture, drawn = "", self.region._repr_svg_()
+        if drawn is not None:
+            content = b64encode(drawn.encode()).decode()
             picture = Template(_web("picture.html")).substitute(content=content, name=name)
         return f"<div>\n{picture}{frame}</div>"
 
@@ -102,7 +102,7 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region.robot.name, explorer_page(region), region._repr_svg_())
+    return Explorer(region.robot.name, explorer_page(region), region)
 
 
 def explorer_page(region: Region, walks: Walks = ()) -> str:
