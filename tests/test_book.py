@@ -304,7 +304,7 @@ def panels(file: Path) -> list[Any]:
     """Return what the book's extension makes of a drawing."""
     sys.path.insert(0, str(BOOK / "_ext"))
     try:
-        return list(importlib.import_module("panels").panels_of(file))
+        return list(importlib.import_module("panels").panels_of(ElementTree.parse(file).getroot()))
     finally:
         sys.path.pop(0)
 

@@ -28,6 +28,7 @@ pytestmark = pytest.mark.filterwarnings(
 
 CONF = f"""
 extensions = ["myst_parser", "play"]
+source_suffix = {{".md": "markdown"}}  # Sphinx keeps what another book of this process set
 html_theme = "basic"
 html_static_path = [{str(BOOK / "_static")!r}]
 """

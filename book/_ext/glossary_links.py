@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from docutils import nodes
+from ledger_links import parent_of
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.nodes import make_refnode
@@ -116,13 +117,6 @@ def is_prose(text: nodes.Text) -> bool:
 
 def section_of(node: nodes.Node) -> Any:
     return parent_of(node, (nodes.section,))
-
-
-def parent_of(node: nodes.Node | None, kinds: tuple[type[nodes.Element], ...]) -> Any:
-    """Return the node of one of the kinds that holds another, if there is one."""
-    while node is not None and not isinstance(node, kinds):
-        node = node.parent
-    return node
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:

@@ -42,7 +42,7 @@ class LedgerLinks(SphinxPostTransform):
 
     def link_ids(self, known: set[str], page: str) -> None:
         for text in list(self.document.findall(nodes.Text)):
-            if not is_inside(text, NO_TEXT) and ID.search(text):
+            if parent_of(text, NO_TEXT) is None and ID.search(text):
                 text.parent.replace(text, with_links(text, known, page))
 
     def name_entries(self, ledger: Iterable[dict[str, Any]], page: str) -> None:
@@ -63,12 +63,11 @@ def read_ledger(app: Sphinx) -> list[dict[str, Any]]:
     return json.loads(file.read_text(encoding="utf-8"))["claims"] if file.is_file() else []
 
 
-def is_inside(node: nodes.Node, kinds: tuple[type[nodes.Node], ...]) -> bool:
-    while node is not None:
-        if isinstance(node, kinds):
-            return True
+def parent_of(node: nodes.Node | None, kinds: tuple[type[nodes.Element], ...]) -> Any:
+    """Return the nearest node of one of the kinds that is this one or holds it, if there is one."""
+    while node is not None and not isinstance(node, kinds):
         node = node.parent
-    return False
+    return node
 
 
 def with_links(text: nodes.Text, known: set[str], page: str) -> list[nodes.Node]:
@@ -96,10 +95,8 @@ def line(names: list[str], page: str) -> nodes.paragraph:
 def section_of(document: nodes.document, anchor: str) -> nodes.section | None:
     """Return the section that an anchor names or lies in."""
     found = (n for n in document.findall(nodes.Element) if anchor in n.get("ids", ()))
-    node: nodes.Node | None = next(found, None)
-    while node is not None and not isinstance(node, nodes.section):
-        node = node.parent
-    return node
+    section: nodes.section | None = parent_of(next(found, None), (nodes.section,))
+    return section
 
 
 def end_of_own_text(section: nodes.section) -> int:

@@ -55,18 +55,22 @@ class WidePictures(SphinxPostTransform):
     def run(self, **kwargs: Any) -> None:
         for image in list(self.document.findall(nodes.image)):
             file = Path(self.app.srcdir, image["uri"])
-            if width_in_points(file) > WIDEST_PANEL:
-                shown = image.parent if isinstance(image.parent, nodes.reference) else image
-                shown.replace_self(boxes(image, shown, file))
+            if file.suffix == ".svg" and file.is_file():
+                drawing = ElementTree.parse(file).getroot()
+                if width_in_points(drawing) > WIDEST_PANEL:
+                    shown = image.parent if isinstance(image.parent, nodes.reference) else image
+                    shown.replace_self(boxes(image, shown, drawing))
 
 
-def boxes(image: nodes.image, shown: nodes.Element, file: Path) -> list[nodes.Element]:
+def boxes(
+    image: nodes.image, shown: nodes.Element, drawing: ElementTree.Element
+) -> list[nodes.Element]:
     """Return the box of the whole picture and, with several views, the box of its panels."""
     whole = nodes.container(classes=["wide-figure"])
     whole += shown.deepcopy()
-    views = panels_of(file)
+    views = panels_of(drawing)
     if not views:
-        whole["classes"] += ["one-column"] * (len(columns_of(axes_in(file))) < 2)
+        whole["classes"] += ["one-column"] * (len(columns_of(axes_in(drawing))) < 2)
         return [whole]
     whole["classes"].append("has-panels")
     stacked = nodes.container(classes=["panels"])
@@ -79,22 +83,17 @@ def boxes(image: nodes.image, shown: nodes.Element, file: Path) -> list[nodes.El
     return [whole, stacked]
 
 
-def width_in_points(file: Path) -> float:
-    """Return the width that an SVG file states in points, else 0."""
-    stated = root_of(file).get("width", "") if file.suffix == ".svg" and file.is_file() else ""
+def width_in_points(drawing: ElementTree.Element) -> float:
+    """Return the width that a drawing states in points, else 0."""
+    stated = drawing.get("width", "")
     return float(stated.removesuffix("pt")) if stated.endswith("pt") else 0.0
 
 
-def root_of(file: Path) -> ElementTree.Element:
-    return ElementTree.parse(file).getroot()
-
-
-def panels_of(file: Path) -> list[Box]:
+def panels_of(drawing: ElementTree.Element) -> list[Box]:
     """Return the parts that lie between cuts through a drawing; none where no cut is free."""
-    root = root_of(file)
-    _, _, width, height = map(float, root.get("viewBox", "0 0 0 0").split())
-    loose = [box_of(texts_in(part)) for part in drawn_parts(root, "text_", "legend_")]
-    columns = columns_of(axes_in(file))
+    _, _, width, height = map(float, drawing.get("viewBox", "0 0 0 0").split())
+    loose = [box_of(texts_in(part)) for part in drawn_parts(drawing, "text_", "legend_")]
+    columns = columns_of(axes_in(drawing))
     cuts = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
     if not cuts or any(part.left < cut < part.right for part in [*columns, *loose] for cut in cuts):
         return []
@@ -105,15 +104,15 @@ def panels_of(file: Path) -> list[Box]:
     ]
 
 
-def drawn_parts(root: ElementTree.Element, *kinds: str) -> list[ElementTree.Element]:
+def drawn_parts(drawing: ElementTree.Element, *kinds: str) -> list[ElementTree.Element]:
     """Return the parts of a drawing whose ids begin in one of these ways."""
-    drawn = root.findall(f".//{SVG}g[@id='figure_1']/{SVG}g")
+    drawn = drawing.findall(f".//{SVG}g[@id='figure_1']/{SVG}g")
     return [part for part in drawn if part.get("id", "").startswith(kinds)]
 
 
-def axes_in(file: Path) -> list[Box]:
+def axes_in(drawing: ElementTree.Element) -> list[Box]:
     """Return what each axes of a drawing takes, with the texts around it."""
-    return [box_of(axes_of(part)) for part in drawn_parts(root_of(file), "axes_")]
+    return [box_of(axes_of(part)) for part in drawn_parts(drawing, "axes_")]
 
 
 def axes_of(group: ElementTree.Element) -> Iterator[Box]:

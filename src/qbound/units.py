@@ -74,7 +74,8 @@ def amount(value: float, unit: str, rounding: float = 0.0, digits: int = 6) -> s
     """
     if 0 < rounding >= abs(value):
         return f"0 {unit} (within {rounding:.0e} {unit})"
-    return f"{value:.{digits}g} {unit}"
+    space = "" if unit == "°" else " "
+    return f"{value:.{digits}g}{space}{unit}"
 
 
 def limited_joints(robot: Robot) -> dict[str, Joint]:
@@ -83,7 +84,14 @@ def limited_joints(robot: Robot) -> dict[str, Joint]:
 
 
 def margin_text(
-    robot: Robot, boundary: str, margin: float, limited: Mapping[str, Joint], rounding: float = 0.0
+    robot: Robot,
+    boundary: str,
+    margin: float,
+    limited: Mapping[str, Joint],
+    rounding: float = 0.0,
+    *,
+    degree: str = "deg",
+    digits: int = 6,
 ) -> str:
     """Write a margin with its unit: a length, or of a limit that of its joint, degrees if it turns.
 
@@ -93,11 +101,13 @@ def margin_text(
         The joint of each boundary that is a limit.
     rounding : float
         A margin no larger is rounding; in the library's unit, as the margin.
+    degree : {"deg", "°"}
+        As it is written.
     """
     if (joint := limited.get(boundary)) is None:
-        return amount(margin, robot.length_unit, rounding)
-    scale = joint.shown_scale
-    return amount(margin * scale, joint.unit(robot.length_unit, "deg"), rounding * scale)
+        return amount(margin, robot.length_unit, rounding, digits)
+    scale, unit = joint.shown_scale, joint.unit(robot.length_unit, degree)
+    return amount(margin * scale, unit, rounding * scale, digits)
 
 
 def counted(number: int, one: str, many: str | None = None) -> str:

@@ -13,10 +13,9 @@ from qbound.cli.values import held
 from qbound.export.document import home_content
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
-from qbound.model.robot import Joint
 from qbound.model.robotfile import load_robot
 from qbound.region import Region
-from qbound.units import counted, limited_joints, margin_text
+from qbound.units import counted, margin_text
 
 
 def add_to(commands: Any) -> None:
@@ -65,7 +64,7 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 
 def _lines(region: Region) -> Iterator[str]:
-    unit, robot, limited = region.area_unit, region.robot, _limited(region)
+    unit, robot, limited = region.area_unit, region.robot, region.limited
     home = home_content(region)
     for item in home["violated"]:
         margin = margin_text(robot, item["boundary"], item["margin"], limited)
@@ -87,13 +86,6 @@ def _home(region: Region) -> str:
     problem, home = region.problem, region.robot.home
     elsewhere = any(value != home[j] for j, value in problem.held.items())
     return "home's values of these joints" if elsewhere else "the home pose"
-
-
-def _limited(region: Region) -> dict[str, Joint]:
-    """Return the joint of each limit; by the paper's rule limits are windows of boundaries."""
-    problem, joints = region.problem, region.robot.joints
-    windows = zip(problem.joints, problem.limits, strict=True)
-    return limited_joints(region.robot) | {name: joints[j] for j, ends in windows for name in ends}
 
 
 def _draw(region: Region) -> bytes:

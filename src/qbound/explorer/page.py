@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64encode
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from hashlib import sha256
 from html import escape
 from importlib import resources
@@ -41,21 +41,18 @@ class Explorer:
 
     Attributes
     ----------
-    name : str
-        Of the robot.
-    html : str
-        The page.
     region : Region
         Drawn where a notebook runs no script.
+    html : str
+        The page.
     """
 
-    name: str
-    html: str = field(repr=False)
-    region: Region = field(repr=False)
+    region: Region
+    html: str
 
     def __repr__(self) -> str:
         """Say whose page it is, and how large."""
-        return f"Explorer({self.name!r}, {len(self.html.encode()) // 1000} kB of HTML)"
+        return f"Explorer({self.region.robot.name!r}, {len(self.html.encode()) // 1000} kB of HTML)"
 
     def _repr_html_(self) -> str:
         """Show the page in a frame that shares nothing with the notebook around it.
@@ -64,7 +61,7 @@ class Explorer:
         not trusted, or a site shows it without running anything, there is no frame: the picture
         stays.
         """
-        name = escape(printable(self.name))
+        name = escape(printable(self.region.robot.name))
         frame = Template(_web("frame.html")).substitute(
             page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
         )
@@ -102,7 +99,7 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region.robot.name, explorer_page(region), region)
+    return Explorer(region, explorer_page(region))
 
 
 def explorer_page(region: Region, walks: Walks = ()) -> str:

@@ -384,12 +384,16 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
     require("IPython")
     from IPython.display import Markdown
 
-    minus = re.compile(r"(`[^`]*`|\$[^$]*\$)|(?<!\w)-(?=\d)")
-    plain = [[str(x).replace("|", r"\|") for x in row] for row in rows]
-    cells = [[minus.sub(lambda m: m[1] or "\N{MINUS SIGN}", x) for x in row] for row in plain]
+    cells = [[_in_a_cell(str(x).replace("|", r"\|")) for x in row] for row in rows]
     lines = [header, ["---"] * len(header), *cells]
     text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
     return Markdown(text)  # type: ignore[no-untyped-call]
+
+
+def _in_a_cell(text: str) -> str:
+    """Write minus signs, but leave code and formulas, every second part, as they are."""
+    parts = re.split(r"(`[^`]*`|\$[^$]*\$)", text)
+    return "".join(part if i % 2 else minus_signs(part) for i, part in enumerate(parts))
 
 
 def minus_signs(text: str) -> str:

@@ -71,7 +71,9 @@ def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
     tool = position(robot, robot.tool)
     half = 0.5 / 16
     middle = np.arange(half, len(stops) - 1, 2 * half)
-    speed = _reach(robot) * np.abs(np.diff(stops, axis=0)).sum(axis=1).max()
+    # No joint moves the tool faster per radian than the links in line, from the first joint on.
+    reach = robot.stretched(robot.tool) - np.linalg.norm(robot.joints[0].origin)
+    speed = reach * np.abs(np.diff(stops, axis=0)).sum(axis=1).max()
     best = 0.0
     while len(middle):
         distance = shapely.distance(shapely.points(tool(path.at(middle))[:, [0, 2]]), line)
@@ -80,9 +82,3 @@ def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
         half /= 2
         middle = np.concatenate([middle - half, middle + half])
     return best
-
-
-def _reach(robot: Robot) -> float:
-    """Return the length of all links in line: no joint moves the tool faster per radian."""
-    links = [*(joint.origin for joint in robot.joints[1:]), robot.point(robot.tool).at]
-    return float(sum(np.linalg.norm(link) for link in links))

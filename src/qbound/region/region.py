@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
@@ -10,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.evaluator import evaluator, limit_names
-from qbound.model.robot import Held, Robot, refuse_no_robot
+from qbound.boundary.evaluator import evaluator
+from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
@@ -19,6 +20,7 @@ from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import Decomposition, Plane, decompose
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.problem import Problem, Rule, clearance_problem
+from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -82,6 +84,13 @@ class Region:
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
         home = "with home" if self.home is not None else "home in none"
         return f"<Region{of}: {count}, {home}, area {self.area:.6g} {self.area_unit}>"
+
+    @property
+    def limited(self) -> dict[str, Joint]:
+        """The joint of each limit; by the paper's rule limits are windows of boundaries."""
+        joints, problem = self.robot.joints, self.problem
+        windows = zip(problem.joints, problem.limits, strict=True)
+        return limited_joints(self.robot) | {n: joints[j] for j, ends in windows for n in ends}
 
     @property
     def home(self) -> Component | None:
@@ -409,23 +418,10 @@ def _why_no_home(region: Region) -> str:
     if problem.home is None or problem.robot is None:
         return "it lies in none of them"
     found = dict(zip(region.boundaries, region.margins(problem.home).tolist(), strict=True))
-    lost = [
-        f"{name} is violated by {_shown(region, name, -m)}" for name, m in found.items() if m < 0
-    ]
+    written = partial(margin_text, problem.robot, limited=region.limited, degree="°", digits=4)
+    lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
-
-
-def _shown(region: Region, boundary: str, margin: float) -> str:
-    """Write a margin with its unit: a length, or of a limit that of its joint."""
-    robot, problem = region.robot, region.problem
-    limited = {name: joint for joint in robot.joints for name in limit_names(joint.name)}
-    for j, ends in zip(problem.joints, problem.limits, strict=True):
-        limited |= dict.fromkeys(ends, robot.joints[j])  # by the paper's rule windows are limits
-    if (joint := limited.get(boundary)) is None:
-        return f"{margin:.4g} {robot.length_unit}"
-    space = "" if joint.turns else " "
-    return f"{margin * joint.shown_scale:.4g}{space}{joint.unit(robot.length_unit, '°')}"
 
 
 def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
