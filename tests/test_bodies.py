@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from qbound import clearance, load_robot
 from qbound.measures import bodies
-from qbound.model.robot import Body, Prismatic
+from qbound.model.robot import Body, Polygon, Prismatic
 from qbound.region import paper_rule, solve, state
 from support.oracles import PACKAGED, frame_matrix
 
@@ -58,7 +58,7 @@ def test_an_overlap_is_as_deep_as_its_shortest_way_out(one, other) -> None:
 
 
 def test_a_gap_is_the_same_whichever_way_round_the_corners_go() -> None:
-    one, other = (body.polygon for body in PRINTED.bodies[:2])
+    one, other = (body.shape.corners[:, [0, 2]] for body in PRINTED.bodies[:2])
     assert bodies.gap(one, other) == pytest.approx(bodies.gap(one[::-1], other), abs=1e-12)
     assert bodies.gap(one, other) == bodies.gap(other, one)
 
@@ -137,13 +137,17 @@ def test_room_of_a_slide_is_the_distance_between_the_bodies() -> None:
     )
     robot = replace(
         PRINTED, joints=(slide,), home=np.zeros(1), points=(),
-        bodies=(Body("0", box), Body("1", box + np.array([2.0, 0.5]))),
+        bodies=(
+            Body("0", "0", Polygon.of(box)),
+            Body("1", "1", Polygon.of(box + np.array([2.0, 0.5]))),
+        ),
     )  # fmt: skip
     assert bodies.contact_free_interval(robot, 0) == pytest.approx((-1.0, 5.0), abs=1e-12)
 
 
 def test_room_is_a_full_turn_to_either_side_where_nothing_is_in_the_way() -> None:
-    far = replace(PRINTED.bodies[0], polygon=PRINTED.bodies[0].polygon - [0, 500])
+    shape = Polygon(PRINTED.bodies[0].shape.corners - [0, 0, 500])
+    far = replace(PRINTED.bodies[0], shape=shape)
     low, high = bodies.contact_free_interval(replace(PRINTED, bodies=(far, *PRINTED.bodies[1:])), 0)
     assert (low, high) == pytest.approx((-2 * np.pi, 2 * np.pi))
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import arms, joint_region
+from qbound.model.robot import Polygon
 from qbound.paths.traversal import Traversal, traverse
 from support.worlds import World, robot_file, with_boundaries, world
 from worlds.sentences import linear_places
@@ -47,7 +48,7 @@ def with_tool_on_link_1() -> World:
 def with_a_wider_base() -> World:
     """Return the world in which the body of the base is wider than its points."""
     base, *others = robot_file().bodies
-    wider = replace(base, polygon=base.polygon * [1.2, 1.0])
+    wider = replace(base, shape=Polygon(base.shape.corners * [1.2, 1.0, 1.0]))
     return world(robots={"minervabot-v2": replace(robot_file(), bodies=(wider, *others))})
 
 

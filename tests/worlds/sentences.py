@@ -17,7 +17,7 @@ from qbound import HarmonicForm, load_robot
 from qbound.boundary.functions import position
 from qbound.geometry import polygon
 from qbound.model import frames
-from qbound.model.robot import Body, Prismatic, Robot
+from qbound.model.robot import Body, Polygon, Prismatic, Robot
 from qbound.sampling import Sample
 from support.worlds import (
     World,
@@ -67,8 +67,9 @@ def without_bounds() -> Robot:
 def with_bodies(of: Robot, factor: float) -> Robot:
     """Return a robot whose bodies are shrunk about their middles."""
     bodies = tuple(
-        replace(body, polygon=polygon.scaled(body.polygon, factor, body.polygon.mean(axis=0)))
+        replace(body, shape=Polygon(polygon.scaled(corners, factor, corners.mean(axis=0))))
         for body in of.bodies
+        for corners in [body.shape.corners]
     )
     return replace(of, bodies=bodies)
 
@@ -207,7 +208,7 @@ WORLDS: dict[str, World] = {
         replace(
             ARM,
             bodies=(
-                Body("0", np.array([(-40.0, 0.0), (40.0, 0.0), (40.0, 2.0), (-40.0, 2.0)])),
+                Body("0", "0", Polygon.of([(-40, 0), (40, 0), (40, 2), (-40, 2)])),
                 *ARM.bodies[1:],
             ),
         )

@@ -101,7 +101,7 @@ def gap_of_base_and_link_2(n: int = 121) -> tuple[float, float]:
     q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     between = float(bodies.gaps(arm, q)["0", "2"].min())
     last = next(body for body in arm.bodies if body.frame == "2")
-    length = float(np.linalg.norm(last.polygon, axis=-1).max())
+    length = float(np.linalg.norm(last.shape.places, axis=-1).max())
     radii = np.array([np.linalg.norm(arm.joints[1].origin) + length, length])
     return between, float(radii @ (box.upper - box.lower) / (n - 1) / 2)
 

@@ -248,7 +248,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     >>> evaluator(robot) is evaluator(robot)
     True
     """
-    used = [boundary for boundary in robot.boundaries if boundary.used]
+    used = robot.used
     return compiled(
         stacked(robot, used),
         [boundary.name for boundary in used],

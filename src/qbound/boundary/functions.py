@@ -15,7 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
-from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Point, Robot, refuse_no_robot
+from qbound.model.robot import (
+    BodyPair,
+    Boundary,
+    HalfSpace,
+    Joint,
+    Pair,
+    Point,
+    Robot,
+    refuse_no_robot,
+)
 from qbound.printable import printable
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -227,14 +236,32 @@ def _(boundary: Pair, robot: Robot) -> HarmonicForm:
 
 
 @_clearance.register
+def _(boundary: BodyPair, robot: Robot) -> HarmonicForm:
+    raise ValueError(_of_bodies(boundary))
+
+
+@_components.register
+def _(boundary: BodyPair, robot: Robot) -> HarmonicForm:
+    raise ValueError(_of_bodies(boundary))
+
+
+@_clearance.register
 def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
+    if boundary.body is not None:
+        raise ValueError(_of_bodies(boundary))
     radius = robot.point(boundary.point).radius
     return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
 
 
 @_components.register
 def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
+    if boundary.body is not None:
+        raise ValueError(_of_bodies(boundary))
     return geometric_vector(robot, boundary)
+
+
+def _of_bodies(boundary: Boundary) -> str:
+    return f"{printable(boundary.name)} is about whole bodies: it has no single boundary function"
 
 
 # --- a point carried along the chain --------------------------------------------------------------

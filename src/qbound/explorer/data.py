@@ -18,6 +18,7 @@ from qbound.export.document import vertex_content, workspace_content
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
+from qbound.measures.bodies import outline_in_frame
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
 from qbound.region import Component, Region
@@ -76,8 +77,8 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
         "joints": [_joint(joint) for joint in robot.joints],
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": [
-            {"frame": robot.depth(b.frame), "outline": np.insert(b.polygon, 1, 0, 1).tolist()}
-            for b in robot.bodies
+            {"frame": robot.depth(b.frame), "outline": outline_in_frame(robot, b).tolist()}
+            for b in (*robot.bodies, *robot.obstacles)
         ],
         "boundaries": [_boundary(robot, b, problem.rule) for b in robot.boundaries],
         "limits": _limits(region, free),

@@ -1,7 +1,7 @@
 """Whole links instead of points: convex outlines in the plane of motion and the gap between them.
 
 Not in the paper, which prints points. The points are corners of bodies, so its region can be held
-against a check of the bodies themselves. For arms that move in the plane of x and z.
+against a check of the bodies themselves. For arms that move in a plane.
 """
 
 from __future__ import annotations
@@ -13,26 +13,45 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry.polylines import cross
-from qbound.model.robot import Body, Robot
+from qbound.model.robot import Body, Polygon, Robot
 from qbound.tolerances import CONTACT, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 
 
-def outline(robot: Robot, body: Body, q: ArrayLike) -> Floats:
-    """Return a body's corners at configurations of shape (..., n): x and z from the base.
+def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = None) -> Floats:
+    """Return a body's outline at configurations of shape (..., n), in the plane of motion.
+
+    Parameters
+    ----------
+    deviation : float, optional
+        Largest distance of a chord from a round end, length; default: one that no eye can see.
 
     Returns
     -------
     ndarray, shape (..., m, 2)
-        Length; for a body of the base, shape (m, 2) whatever `q` is.
+        Coordinates of `Robot.plane`, or x and z of a robot without one; length. For a body of the
+        base, shape (m, 2) whatever `q` is.
     """
     frames = robot.frames(np.asarray(q, dtype=float))
-    corners = np.insert(body.polygon, 1, 0.0, axis=1)
     turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
     origin = np.asarray(frames.position(robot.base, body.frame, robot.base), dtype=float)
+    corners = outline_in_frame(robot, body, deviation)
     seen = corners @ np.swapaxes(turn, -1, -2) + origin[..., None, :]
-    return np.asarray(seen[..., [0, 2]])
+    try:
+        across = robot.plane.across
+    except ValueError:
+        across = np.eye(3)[[0, 2]]
+    return np.asarray(seen @ across.T)
+
+
+def outline_in_frame(robot: Robot, body: Body, deviation: float | None = None) -> Floats:
+    """Return a body's outline seen from its frame, shape (m, 3); `deviation` as in `outline`."""
+    try:
+        normal = robot.plane.normal_seen_from(body.frame)
+    except ValueError:
+        normal = np.eye(3)[1]
+    return np.asarray(body.shape.outline(deviation, normal))
 
 
 def gap(one: ArrayLike, other: ArrayLike) -> Floats:
@@ -57,18 +76,24 @@ def gap(one: ArrayLike, other: ArrayLike) -> Floats:
 
 
 def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
-    """Return the gap of every pair of bodies by their frames, each of shape (...).
+    """Return the gap of every two bodies on different frames by their names, each of shape (...).
 
     Parameters
     ----------
     q : array_like, shape (..., n)
+
+    Raises
+    ------
+    ValueError
+        If a body is no convex polygon.
     """
     q = np.asarray(q, dtype=float)
     return {
-        (one.frame, other.frame): np.broadcast_to(
-            gap(outline(robot, one, q), outline(robot, other, q)), q.shape[:-1]
+        (one.name, other.name): np.broadcast_to(
+            gap(_corners(robot, one, q), _corners(robot, other, q)), q.shape[:-1]
         )
-        for one, other in combinations(robot.bodies, 2)
+        for one, other in combinations((*robot.bodies, *robot.obstacles), 2)
+        if one.frame != other.frame
     }
 
 
@@ -91,7 +116,7 @@ def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        If either link has no body.
+        If either link has no body, or several, or one that is no convex polygon.
     """
     moved = robot.joints[joint]
     near, far = (_body(robot, frame) for frame in (moved.parent, moved.frame))
@@ -109,7 +134,7 @@ def _advance(robot: Robot, near: Body, far: Body, joint: int, sense: int, most: 
     speed = _largest_motion(robot, near, far, joint)
     start = q[joint]
     while abs(q[joint] - start) < most:
-        apart = float(gap(outline(robot, near, q), outline(robot, far, q)))
+        apart = float(gap(_corners(robot, near, q), _corners(robot, far, q)))
         if apart <= CONTACT * speed:
             break
         q[joint] += sense * apart / speed
@@ -121,16 +146,25 @@ def _largest_motion(robot: Robot, near: Body, far: Body, joint: int) -> float:
     if not robot.joints[joint].turns:
         return 1.0
     frames = robot.frames(robot.home)
-    axis = frames.position(robot.base, robot.joints[joint].frame, robot.base)[[0, 2]]
+    axis = robot.plane.across @ frames.position(robot.base, robot.joints[joint].frame, robot.base)
     corners = [outline(robot, body, robot.home) for body in (near, far)]
     return float(np.linalg.norm(np.concatenate(corners) - axis, axis=-1).max())
 
 
 def _body(robot: Robot, frame: str) -> Body:
-    for body in robot.bodies:
-        if body.frame == frame:
-            return body
-    raise ValueError(f"{robot.name} has no body in frame {frame!r}")
+    found = [body for body in robot.bodies if body.frame == frame]
+    if len(found) != 1:
+        count = f"{len(found)} bodies" if found else "no body"
+        raise ValueError(f"{robot.name} has {count} in frame {frame!r}; one is wanted")
+    return found[0]
+
+
+def _corners(robot: Robot, body: Body, q: ArrayLike) -> Floats:
+    """Return the corners of a body that is a polygon, as `outline` does."""
+    if not isinstance(body.shape, Polygon):
+        text = f"body {body.name!r} is a {body.shape.key}; gaps are of convex polygons alone"
+        raise ValueError(text)
+    return outline(robot, body, q)
 
 
 def _anticlockwise(outline: ArrayLike) -> Floats:

@@ -84,7 +84,7 @@ def largest_safe_scale(
     >>> from qbound import clearance, find_region, load_robot
     >>> from qbound.geometry import polygon
     >>> robot = load_robot("minervabot-v2")
-    >>> used = [boundary for boundary in robot.boundaries if boundary.used]
+    >>> used = robot.used
     >>> forms = [clearance(robot, boundary) for boundary in used]
     >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
     >>> centre = polygon.centroid(vertices)
@@ -159,7 +159,7 @@ def worst_margins(
         Boundary name to margin (a length, ``|B| - d_min`` or the depth inside a wall) and joint
         values, shape (2,).
     """
-    used = [boundary for boundary in robot.boundaries if boundary.used]
+    used = robot.used
     return {b.name: _worst(robot, b, vertices, centre) for b in used}
 
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
-from msgspec import Meta
+from msgspec import UNSET, Meta, UnsetType
 from numpy.typing import NDArray
 
 from qbound.model.frames import whole_numbers
-from qbound.model.rows import Direction, Label, Number, Row, Size, unit_vector
+from qbound.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from qbound.model.shapes import Point
 
 Array = NDArray[Any]
@@ -84,14 +84,48 @@ class Pair(Boundary):
         return PairRow.of(self)
 
 
+@dataclass(frozen=True)
+class BodyPair(Boundary):
+    """Two bodies: feasible where they are at least the clearance apart. It has no single form."""
+
+    bodies: tuple[str, str]
+    clearance: float = 0.0
+    used: bool = True
+
+    def least_distance(self, point: Find) -> None:
+        """Return None: its margin is a length."""
+
+    def with_extra_clearance(self, length: float) -> BodyPair:
+        """Ask for more between the bodies."""
+        return replace(self, clearance=self.clearance + length)
+
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> BodyPair:
+        """Convert the clearance."""
+        return replace(self, clearance=number(source.get("clearance", 0)))
+
+    def row(self) -> BodyPairRow:
+        """Return its table [[boundary]]."""
+        return BodyPairRow.of(self)
+
+
 @dataclass(frozen=True, eq=False)
 class HalfSpace(Boundary):
-    """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12)."""
+    """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12).
+
+    It keeps a point on its side, or every place of a body: then `body` is its name and `point` is
+    empty, and it has no single form.
+    """
 
     point: str
     normal: Array
     offset: float
     used: bool = True
+    body: str | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what bounds both a point and a body, or neither."""
+        if bool(self.point) == (self.body is not None):
+            raise ValueError(f"{self.name}: a half-space keeps one point or one body on its side")
 
     def least_distance(self, point: Find) -> None:
         """Return None: its form is the height over the wall."""
@@ -112,10 +146,13 @@ class HalfSpace(Boundary):
 
     def row(self) -> HalfSpaceRow:
         """Return its table [[boundary]]."""
-        return HalfSpaceRow.of(self)
+        what = {"point": self.point} if self.body is None else {"body": self.body}
+        normal, offset = plain(self.normal), plain(self.offset)
+        return HalfSpaceRow(name=self.name, normal=normal, offset=offset, used=self.used, **what)
 
 
 TWO_POINTS = "a list of the names of 2 different points"
+TWO_BODIES = "a list of the names of 2 different bodies"
 
 
 class PairRow(Row, kw_only=True, tag_field="type", tag="pair"):
@@ -145,14 +182,39 @@ class HalfSpaceRow(Row, kw_only=True, tag_field="type", tag="half-space"):
 
     name: Label
     used: bool = True
-    point: Label
+    point: Label | UnsetType = UNSET
     normal: Direction
     offset: Number
+    body: Label | UnsetType = UNSET
 
     def boundary(self) -> HalfSpace:
         """Return the boundary."""
-        return HalfSpace(self.name, self.point, unit_vector(self.normal), self.offset, self.used)
+        normal = unit_vector(self.normal)
+        body = None if self.body is UNSET else self.body
+        return HalfSpace(self.name, self.point or "", normal, self.offset, self.used, body)
 
 
-BoundaryRow = PairRow | HalfSpaceRow
+class BodyPairRow(Row, kw_only=True, tag_field="type", tag="bodies"):
+    """A table [[boundary]] of type "bodies"."""
+
+    name: Label
+    used: bool = True
+    bodies: Annotated[
+        list[Label],
+        Meta(
+            min_length=2,
+            max_length=2,
+            description=TWO_BODIES,
+            extra_json_schema={"uniqueItems": True},
+        ),
+    ]
+    clearance: Size = 0.0
+
+    def boundary(self) -> BodyPair:
+        """Return the boundary."""
+        first, second = self.bodies
+        return BodyPair(self.name, (first, second), self.clearance, self.used)
+
+
+BoundaryRow = PairRow | HalfSpaceRow | BodyPairRow
 """Every table [[boundary]]."""

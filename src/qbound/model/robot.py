@@ -2,33 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.model.boundaries import Boundary, HalfSpace, Pair
+from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
 from qbound.model.joints import JOINT_TYPES, Joint, Kind, Prismatic, Revolute
+from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
-from qbound.model.shapes import Body, Point
+from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
 from qbound.model.values import joint_values
 
 __all__ = [
     "JOINT_TYPES",
     "Body",
+    "BodyPair",
     "Boundary",
+    "Capsule",
+    "Disc",
     "HalfSpace",
     "Held",
     "Joint",
     "Kind",
     "Pair",
+    "Part",
+    "PlaneOfMotion",
     "Point",
+    "Polygon",
     "Prismatic",
     "Revolute",
     "Robot",
+    "Shape",
 ]
 
 Array = NDArray[Any]
@@ -67,10 +77,14 @@ class Robot:
     length_unit: str
     angle_unit: str
     bodies: tuple[Body, ...] = ()
+    obstacles: tuple[Body, ...] = ()
+    collisions: bool = False
+    clearance: float = 0.0
+    allowed: tuple[frozenset[str], ...] = ()
 
     def __repr__(self) -> str:
         """Fit a line: name, joints with their kinds, number of boundaries."""
-        count = len(self.boundaries)
+        count = len({b.name for b in (*self.boundaries, *self.used)})
         joints = one_line(", ".join(f"{joint.name} ({joint.type_name})" for joint in self.joints))
         bounds = f"{count} boundar{'y' if count == 1 else 'ies'}"
         return f"<Robot {one_line(self.name)}: {joints}; {bounds}>"
@@ -84,6 +98,31 @@ class Robot:
     def kinds(self) -> tuple[Kind, ...]:
         """Kind of each joint."""
         return tuple(joint.kind for joint in self.joints)
+
+    @cached_property
+    def plane(self) -> PlaneOfMotion:
+        """The plane in which the arm moves; ValueError if it leaves every plane."""
+        return plane_of_motion(self)
+
+    @cached_property
+    def used(self) -> tuple[Boundary, ...]:
+        """Every boundary that bounds the region.
+
+        Those of the file that are in use, in its order; then, where `collisions` asks for them,
+        the pairs of bodies: the body nearer to the base first, obstacles last.
+        """
+        used = [boundary for boundary in self.boundaries if boundary.used]
+        return (*used, *(self._colliding() if self.collisions else ()))
+
+    def _colliding(self) -> Iterator[BodyPair]:
+        """Yield a pair for every two bodies that can meet, may not, and that no boundary names."""
+        links = sorted(self.bodies, key=lambda body: self.depth(body.frame))
+        settled = {frozenset(b.bodies) for b in self.boundaries if isinstance(b, BodyPair)}
+        settled |= set(self.allowed)
+        for one, other in combinations([*links, *self.obstacles], 2):
+            names = (one.name, other.name)
+            if one.frame != other.frame and frozenset(names) not in settled:
+                yield BodyPair(", ".join(names), names, self.clearance)
 
     @property
     def reach(self) -> float:
@@ -103,9 +142,13 @@ class Robot:
         """Return the point of that name."""
         return _named("point", {p.name: p for p in self.points}, name)
 
+    def body(self, name: str) -> Body:
+        """Return the body, of a link or an obstacle, of that name."""
+        return _named("body", {b.name: b for b in (*self.bodies, *self.obstacles)}, name)
+
     def boundary(self, name: str) -> Boundary:
-        """Return the boundary of that name."""
-        return _named("boundary", {b.name: b for b in self.boundaries}, name)
+        """Return the boundary of that name, one of the file or a pair of bodies in use."""
+        return _named("boundary", {b.name: b for b in (*self.boundaries, *self.used)}, name)
 
     def required_distance(self, pair: Pair) -> float:
         r"""Return :math:`d_{\min}` of eq. (11): both radii plus the clearance asked for; length."""

@@ -12,13 +12,13 @@ from functools import cache
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import msgspec
-from msgspec import Meta, field
+from msgspec import UNSET, Meta, UnsetType, field
 
-from qbound.model.boundaries import TWO_POINTS, BoundaryRow
+from qbound.model.boundaries import TWO_BODIES, TWO_POINTS, BoundaryRow
 from qbound.model.joints import JOINT_TYPES, JointRow
-from qbound.model.rows import LARGEST, Label, Number, Row
+from qbound.model.rows import LARGEST, Label, Number, Row, Size
 from qbound.model.schema import JsonPath, explained, one_line, place, shown
-from qbound.model.shapes import BodyRow, PointRow
+from qbound.model.shapes import SHAPES, BodyRow, ObstacleRow, PointRow, default_names
 from qbound.printable import printable
 
 Table = Mapping[str, Any]
@@ -30,6 +30,9 @@ TURN = {"deg": 360.0, "rad": math.tau}
 
 LengthUnit = Literal["m", "cm", "mm"]
 AngleUnit = Literal["deg", "rad"]
+
+MOST_BODIES = 1000
+"""Bodies, and obstacles, of a file at most: `collisions` pairs each with each."""
 
 
 class RobotFileError(ValueError):
@@ -70,9 +73,18 @@ class RobotFile(Row, kw_only=True):
     boundary: Annotated[list[BoundaryRow], Meta(description="a list of tables [[boundary]]")] = (
         field(default_factory=list)
     )
-    body: Annotated[list[BodyRow], Meta(description="a list of tables [[body]]")] = field(
-        default_factory=list
-    )
+    body: Annotated[
+        list[BodyRow], Meta(max_length=MOST_BODIES, description="a list of tables [[body]]")
+    ] = field(default_factory=list)
+    collisions: Literal["all"] | UnsetType = UNSET
+    clearance: Size = 0.0
+    allowed: Annotated[
+        list[Annotated[list[Label], Meta(min_length=2, max_length=2, description=TWO_BODIES)]],
+        Meta(description="a list of pairs of names of bodies"),
+    ] = field(default_factory=list)
+    obstacle: Annotated[
+        list[ObstacleRow], Meta(max_length=MOST_BODIES, description="a list of tables [[obstacle]]")
+    ] = field(default_factory=list)
 
 
 def read_table(table: Table) -> RobotFile:
@@ -93,6 +105,8 @@ def read_table(table: Table) -> RobotFile:
         _check_chain,
         _check_references,
         _check_pairs,
+        _check_shapes,
+        _check_half_spaces,
         _check_home,
         _check_directions,
         _check_limits,
@@ -170,7 +184,7 @@ def _check_chain(table: Table) -> None:
 
 def _check_references(table: Table) -> None:
     """Refuse a name that nothing has, under whatever key of a row names a frame or points."""
-    points = [p["name"] for p in table["point"]]
+    points, bodies = [p["name"] for p in table["point"]], [name for *_, name in _bodies(table)]
     _check_known(table, ("tool",), "point", points)
     for kind, i, row in _rows(table, "point", "boundary", "body"):
         if "frame" in row:
@@ -179,6 +193,13 @@ def _check_references(table: Table) -> None:
             _check_known(table, (kind, i, "point"), "point", points)
         for k in range(len(row.get("points", ()))):
             _check_known(table, (kind, i, "points", k), "point", points)
+        if "body" in row:
+            _check_known(table, (kind, i, "body"), "body", bodies)
+        for k in range(len(row.get("bodies", ()))):
+            _check_known(table, (kind, i, "bodies", k), "body", bodies)
+    for i in range(len(table.get("allowed", ()))):
+        for k in range(2):
+            _check_known(table, ("allowed", i, k), "body", bodies)
 
 
 def _check_pairs(table: Table) -> None:
@@ -187,6 +208,25 @@ def _check_pairs(table: Table) -> None:
         if len(set(names)) < len(names):
             text = f"{shown(names)} names one thing twice; wanted: {TWO_POINTS}"
             raise _fault(table, ("boundary", i, "points"), text)
+
+
+def _check_shapes(table: Table) -> None:
+    """Refuse a body that has not exactly one shape."""
+    for kind, i, row in _rows(table, "body", "obstacle"):
+        if len(keys := [key for key in SHAPES if key in row]) != 1:
+            found = " and ".join(keys) or "none"
+            text = f"{found} found; wanted: exactly one of {', '.join(SHAPES)}"
+            raise _fault(table, (kind, i), text)
+
+
+def _check_half_spaces(table: Table) -> None:
+    """Refuse a half-space that keeps neither a point nor a body on its side, or both."""
+    for kind, i, row in _rows(table, "boundary"):
+        keys = [key for key in ("point", "body") if key in row]
+        if row["type"] == "half-space" and len(keys) != 1:
+            found = " and ".join(keys) or "none"
+            text = f"{found} found; wanted: exactly one of point, body"
+            raise _fault(table, (kind, i), text)
 
 
 def _check_known(table: Table, path: JsonPath, what: str, names: Sequence[str]) -> None:
@@ -233,6 +273,14 @@ def _listed(names: Sequence[str]) -> str:
 
 def _frames(table: Table) -> list[str]:
     return [table["joint"][0]["parent"], *(j["frame"] for j in table["joint"])]
+
+
+def _bodies(table: Table) -> list[tuple[str, int, str, str]]:
+    """Return every body and obstacle: its list, its place there, its frame, its name."""
+    rows = list(_rows(table, "body", "obstacle"))
+    frames = [row.get("frame", table["joint"][0]["parent"]) for *_, row in rows]
+    names = zip(rows, frames, default_names(frames), strict=True)
+    return [(kind, i, frame, row.get("name", name)) for (kind, i, row), frame, name in names]
 
 
 def _rows(table: Table, *kinds: str) -> Iterator[tuple[str, int, Table]]:

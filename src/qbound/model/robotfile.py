@@ -7,19 +7,23 @@ from __future__ import annotations
 
 import tomllib
 import warnings
+from dataclasses import replace
 from datetime import date, datetime, time
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec import UNSET
 
 from qbound.extras import require
 from qbound.files import write_whole
-from qbound.model.robot import Robot
+from qbound.model.robot import Body, Robot
 from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
 from qbound.model.rows import quotient
 from qbound.model.schema import place
+from qbound.model.shapes import BodyRow, ObstacleRow, default_names, row_shape
 from qbound.printable import printable
 
 __all__ = [
@@ -172,7 +176,7 @@ def robot_text(source: str | Path) -> tuple[str, str]:
 def _built(file: RobotFile) -> Robot:
     angle = ANGLE[file.angle_unit]
     joints = tuple(row.joint(angle) for row in file.joint)
-    return Robot(
+    robot = Robot(
         name=file.name,
         joints=joints,
         points=tuple(row.point() for row in file.point),
@@ -181,8 +185,27 @@ def _built(file: RobotFile) -> Robot:
         tool=file.tool,
         length_unit=file.length_unit,
         angle_unit=file.angle_unit,
-        bodies=tuple(row.body() for row in file.body),
+        collisions=file.collisions == "all",
+        clearance=file.clearance,
+        allowed=tuple(frozenset(pair) for pair in file.allowed),
     )
+    rows: list[BodyRow | ObstacleRow] = [*file.body, *file.obstacle]
+    frames = [*(row.frame for row in file.body), *(robot.base for _ in file.obstacle)]
+    bodies = []
+    for row, frame, name in zip(rows, frames, default_names(frames), strict=True):
+        shape = row_shape(row, _flat_coordinate(robot, frame))
+        bodies.append(Body(name if row.name is UNSET else row.name, frame, shape))
+    count = len(file.body)
+    return replace(robot, bodies=tuple(bodies[:count]), obstacles=tuple(bodies[count:]))
+
+
+def _flat_coordinate(robot: Robot, frame: str) -> int:
+    """Return the coordinate of a frame that two numbers leave out: y where none is across."""
+    try:
+        along = robot.plane.flat_coordinate(frame)
+    except ValueError:
+        along = None
+    return 1 if along is None else along
 
 
 def _table(robot: Robot) -> Table:
@@ -196,10 +219,34 @@ def _table(robot: Robot) -> Table:
         "angle_unit": robot.angle_unit,
         "home": {joint.name: quotient(value, joint.scale(angle)) for joint, value in home},
         "tool": robot.tool,
+        **_collisions(robot),
         "joint": [joint.row(angle) for joint in robot.joints],
         "point": [point.row() for point in robot.points],
         "boundary": [boundary.row() for boundary in robot.boundaries],
-        "body": [body.row() for body in robot.bodies],
+        **_bodies(robot),
     }
     table: Table = msgspec.to_builtins(file)
     return table
+
+
+def _collisions(robot: Robot) -> dict[str, object]:
+    """Return the keys that say which bodies are kept apart."""
+    keys = {
+        "collisions": "all" if robot.collisions else None,
+        "clearance": robot.clearance,
+        "allowed": [sorted(pair) for pair in robot.allowed],
+    }
+    return {key: value for key, value in keys.items() if value}
+
+
+def _bodies(robot: Robot) -> dict[str, object]:
+    """Return the tables of bodies and obstacles; a default name is left out."""
+    bodies = [*robot.bodies, *robot.obstacles]
+    rows: list[BodyRow | ObstacleRow] = []
+    for body, default in zip(bodies, default_names([b.frame for b in bodies]), strict=True):
+        keys: dict[str, Any] = {} if body.name == default else {"name": body.name}
+        keys[body.shape.key] = body.shape.value(_flat_coordinate(robot, body.frame))
+        link = len(rows) < len(robot.bodies)
+        rows.append(BodyRow(frame=body.frame, **keys) if link else ObstacleRow(**keys))
+    tables: dict[str, object] = {"body": rows[: len(robot.bodies)]}
+    return tables | ({"obstacle": rows[len(robot.bodies) :]} if robot.obstacles else {})

@@ -1,20 +1,33 @@
-"""What has a place in a frame? Points (with a radius, spheres), and outlines of bodies.
+"""What has a place in a frame? Points (with a radius, spheres), and bodies of a shape.
 
-A new shape of a body is a class here that has a `polygon`: pictures and checks read no more.
+A shape is a class: it has convex `parts`, which is what distances are taken of, and an `outline`,
+which is what is drawn. A new one needs its class and its table here, and a row in `SHAPES`.
 """
 
 from __future__ import annotations
 
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from msgspec import Meta
-from numpy.typing import NDArray
+from msgspec import UNSET, Meta, UnsetType
+from numpy.typing import ArrayLike, NDArray
 
-from qbound.model.rows import Label, Number, Row, Size, Vector
+from qbound.geometry.convex import convex_parts, polygon_fault
+from qbound.model.rows import Label, Number, Row, Size, Vector, plain
+from qbound.tolerances import CHORD
 
 Array = NDArray[Any]
+
+Y: tuple[float, float, float] = (0.0, 1.0, 0.0)
+"""Normal of the plane of x and z, in which an outline is drawn unless another is named."""
+
+MOST_CHORDS = 4096
+"""Chords of a whole circle in an outline, at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,19 +58,246 @@ class PointRow(Row, kw_only=True):
 
 
 @dataclass(frozen=True, eq=False)
+class Part:
+    """A convex core, thickened by a radius: all places within it of the core.
+
+    Attributes
+    ----------
+    corners : ndarray, shape (m, 3)
+        Seen from the body's frame; length. One is a point, two are a segment, three or more a
+        strictly convex polygon in order, either way round.
+    radius : float
+        Length, at least 0.
+    """
+
+    corners: Array
+    radius: float = 0.0
+
+
+class Shape(ABC):
+    """What every shape has; places are seen from the frame of its body, lengths."""
+
+    key: ClassVar[str]
+    """How a file calls it."""
+
+    @property
+    @abstractmethod
+    def places(self) -> Array:
+        """The places that it is made from, shape (m, 3)."""
+
+    @property
+    @abstractmethod
+    def parts(self) -> tuple[Part, ...]:
+        """Convex parts that together are exactly the shape."""
+
+    @property
+    def fault(self) -> str | None:
+        """What is wrong with the shape itself; None: nothing."""
+        return None
+
+    @abstractmethod
+    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+        """Return the closed outline to draw, shape (k, 3), in a plane with that normal.
+
+        Parameters
+        ----------
+        deviation : float, optional
+            Largest distance of a chord from the arc that it stands for, length; more than 0.
+            Default: one that no eye can see.
+        normal : array_like, shape (3,)
+            Of the plane in which a sphere becomes a circle, seen from the frame.
+        """
+
+    @abstractmethod
+    def value(self, flat: int) -> Any:
+        """Return what stands under its key in a file.
+
+        A place is written with two numbers where its coordinate number `flat` is 0.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon(Shape):
+    """A simple polygon, convex or not; `corners` of shape (m, 3) in order, either way round."""
+
+    key: ClassVar[str] = "polygon"
+    corners: Array
+
+    @classmethod
+    def of(cls, corners: Iterable[Sequence[float]], flat: int = 1) -> Polygon:
+        """Make it of corners with three numbers, or two and a 0 for coordinate number `flat`.
+
+        Examples
+        --------
+        >>> Polygon.of([[0, 0], [2, 0], [2, 1]]).corners.tolist()
+        [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, 1.0]]
+        """
+        return cls(np.array([_place(corner, flat) for corner in corners]))
+
+    @property
+    def places(self) -> Array:
+        """The corners."""
+        return self.corners
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:  # computed once
+        """Convex parts; corners in the middle of a straight edge are left out.
+
+        Raises
+        ------
+        ValueError
+            If it crosses itself or has no area (`fault` says so without raising).
+        """
+        return tuple(Part(self.corners[list(loop)]) for loop in convex_parts(self._flat))
+
+    @property
+    def fault(self) -> str | None:
+        """What keeps it from being a simple polygon."""
+        return polygon_fault(self._flat)
+
+    @property
+    def _flat(self) -> Array:
+        """The corners in two of their coordinates, shape (m, 2): its shadow along the third.
+
+        A shadow is convex, or simple, where the polygon is; nothing is computed and so rounded.
+        """
+        still = [k for k in (1, 2, 0) if (self.corners[:, k] == self.corners[0, k]).all()]
+        along = still[0] if still else int(np.argmax(np.abs(_newell(self.corners))))
+        return np.delete(self.corners, along, axis=1)
+
+    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+        """Return the corners: nothing deviates."""
+        return self.corners
+
+    def value(self, flat: int) -> list[list[float]]:
+        """Return the list of corners."""
+        short = not self.corners[:, flat].any()
+        return [_written(corner, flat if short else None) for corner in self.corners]
+
+
+@dataclass(frozen=True, eq=False)
+class Capsule(Shape):
+    """All places within a radius of a segment: a link with round ends."""
+
+    key: ClassVar[str] = "capsule"
+    start: Array
+    end: Array
+    radius: float
+
+    @property
+    def places(self) -> Array:
+        """Both ends of the segment, shape (2, 3)."""
+        return np.array([self.start, self.end])
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The segment with the radius."""
+        return (Part(self.places, self.radius),)
+
+    @property
+    def fault(self) -> str | None:
+        """Both ends at one place."""
+        same = np.array_equal(self.start, self.end)
+        return "'from' and 'to' are one place; a disc has one" if same else None
+
+    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+        """Return two half circles, from `end` to `start`."""
+        along = (self.end - self.start) / np.linalg.norm(self.end - self.start)
+        side = np.cross(np.asarray(normal, dtype=float), along)
+        half = np.linspace(-np.pi / 2, np.pi / 2, 1 + _chords(self.radius, deviation) // 2)
+        bow = self.radius * (np.cos(half)[:, None] * along + np.sin(half)[:, None] * side)
+        return np.concatenate([self.end + bow, self.start - bow])
+
+    def value(self, flat: int) -> CapsuleRow:
+        """Return the table of both ends and the radius."""
+        start, end = (_written(place, flat) for place in (self.start, self.end))
+        return CapsuleRow(start=start, end=end, radius=float(self.radius))
+
+
+@dataclass(frozen=True, eq=False)
+class Disc(Shape):
+    """A disc in the plane of motion, a sphere in space."""
+
+    key: ClassVar[str] = "disc"
+    at: Array
+    radius: float
+
+    @property
+    def places(self) -> Array:
+        """The centre, shape (1, 3)."""
+        return self.at[None]
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The centre with the radius."""
+        return (Part(self.places, self.radius),)
+
+    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+        """Return a circle."""
+        n = np.asarray(normal, dtype=float)
+        one = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
+        one /= np.linalg.norm(one)
+        count = _chords(self.radius, deviation)
+        turn = np.linspace(0, 2 * np.pi, count, endpoint=False)[:, None]
+        other = np.cross(n, one)
+        return np.asarray(self.at + self.radius * (np.cos(turn) * one + np.sin(turn) * other))
+
+    def value(self, flat: int) -> DiscRow:
+        """Return the table of centre and radius."""
+        return DiscRow(at=_written(self.at, flat), radius=float(self.radius))
+
+
+@dataclass(frozen=True, eq=False)
 class Body:
-    """Outline of a link in the plane of motion, shape (m, 2): x and z seen from its frame."""
+    """A body fixed in a frame: of a link, or of the base; an obstacle is one of the base."""
 
+    name: str
     frame: str
-    polygon: Array
+    shape: Shape
 
-    def row(self) -> BodyRow:
-        """Return its table of a file."""
-        return BodyRow.of(self)
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Convex parts of its shape."""
+        return self.shape.parts
 
 
-Corner = Annotated[
-    list[Number], Meta(min_length=2, max_length=2, description="a list of 2 numbers, x and z")
+Place = Annotated[
+    list[Number],
+    Meta(
+        min_length=2,
+        max_length=3,
+        description="a list of 2 numbers in the plane of motion or of 3 in the frame",
+    ),
+]
+"""A place of a body."""
+
+
+class CapsuleRow(Row, rename={"start": "from", "end": "to"}):
+    """What stands under `capsule`."""
+
+    start: Place
+    end: Place
+    radius: Size
+
+    def shape(self, flat: int) -> Capsule:
+        """Return the capsule."""
+        return Capsule(_place(self.start, flat), _place(self.end, flat), self.radius)
+
+
+class DiscRow(Row):
+    """What stands under `disc`."""
+
+    at: Place
+    radius: Size
+
+    def shape(self, flat: int) -> Disc:
+        """Return the disc."""
+        return Disc(_place(self.at, flat), self.radius)
+
+
+Corners = Annotated[
+    list[Place],
+    Meta(min_length=3, max_length=1000, description="a list of 3 to 1000 corners"),
 ]
 
 
@@ -65,10 +305,68 @@ class BodyRow(Row, kw_only=True):
     """A table [[body]]."""
 
     frame: Label
-    polygon: Annotated[
-        list[Corner], Meta(min_length=3, description="a list of 3 or more corners [x, z]")
-    ]
+    polygon: Corners | UnsetType = UNSET
+    name: Label | UnsetType = UNSET
+    capsule: CapsuleRow | UnsetType = UNSET
+    disc: DiscRow | UnsetType = UNSET
 
-    def body(self) -> Body:
-        """Return the body."""
-        return Body(self.frame, np.array(self.polygon, dtype=float))
+
+class ObstacleRow(Row, kw_only=True):
+    """A table [[obstacle]]."""
+
+    polygon: Corners | UnsetType = UNSET
+    name: Label | UnsetType = UNSET
+    capsule: CapsuleRow | UnsetType = UNSET
+    disc: DiscRow | UnsetType = UNSET
+
+
+def row_shape(row: BodyRow | ObstacleRow, flat: int) -> Shape:
+    """Return the one shape of a table; of a place with two numbers coordinate `flat` is 0."""
+    if row.polygon is not UNSET:
+        return Polygon.of(row.polygon, flat)
+    round_one = row.capsule or row.disc
+    assert round_one is not UNSET  # `robotcheck` asks for exactly one
+    return round_one.shape(flat)
+
+
+SHAPES = tuple(cls.key for cls in (Polygon, Capsule, Disc))
+"""Keys of a body of which exactly one must be there."""
+
+
+def default_names(frames: Sequence[str]) -> list[str]:
+    """Return the name of each body without one: its frame's, then frame/2, frame/3 and so on."""
+    earlier = [frames[:i].count(frame) for i, frame in enumerate(frames)]
+    return [f"{f}/{k + 1}" if k else f for f, k in zip(frames, earlier, strict=True)]
+
+
+def _place(numbers: Sequence[float], flat: int) -> Array:
+    """Return a place of the frame, shape (3,)."""
+    place = np.array(numbers, dtype=float)
+    return place if len(place) == 3 else np.insert(place, flat, 0.0)
+
+
+def _written(place: Array, flat: int | None) -> list[float]:
+    """Return a place with the two numbers beside coordinate `flat` if that is 0, else with all."""
+    if flat is not None and place[flat] == 0:
+        place = np.delete(place, flat)
+    numbers: list[float] = plain(place)
+    return numbers
+
+
+def _chords(radius: float, deviation: float | None) -> int:
+    """Return how many chords of a circle stay that near to it: even, at least 8."""
+    if deviation is None:
+        return 2 * math.ceil(math.pi / CHORD)
+    if not deviation > 0:
+        raise ValueError(f"the deviation of an outline is {deviation}; wanted: more than 0")
+    if radius <= deviation:
+        return 8
+    # 1 - cos(half a chord's angle) = deviation / radius
+    half = 2 * math.asin(math.sqrt(deviation / (2 * radius)))
+    return min(max(8, 2 * math.ceil(math.pi / (2 * half))), MOST_CHORDS)
+
+
+def _newell(corners: Array) -> Array:
+    """Return the normal of a polygon, as long as twice its area."""
+    p = corners - corners[0]
+    return np.asarray(np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0))

@@ -173,7 +173,7 @@ def cuts(robot: Robot) -> list[tuple[HalfSpace, HarmonicForm]]:
 
 def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
     """Return the boundaries in use of one type, if the paper's rule knows all of them."""
-    used = [boundary for boundary in robot.boundaries if boundary.used]
+    used = robot.used
     for boundary in used:
         if not isinstance(boundary, Pair | HalfSpace):
             found = type(boundary).__name__

@@ -146,7 +146,7 @@ def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
     """
     values = robot.held_indices(held or {})
     one, other = free_pair(robot, values)
-    used = [boundary for boundary in robot.boundaries if boundary.used]
+    used = robot.used
     joints = [robot.joints[j] for j in (one, other)]
     ranges = [joint.limits for joint in joints]
     return state(robot, used, ranges, [limit_names(joint.name) for joint in joints], values)

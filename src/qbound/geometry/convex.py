@@ -1,0 +1,203 @@
+"""Is this outline a simple polygon, and into which convex parts is it cut? Decided exactly.
+
+Floats are fractions with a power of two below: multiplied by one of them, all coordinates are whole
+numbers, and the side on which a corner lies is a whole number too. Nothing here is rounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations, pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Whole = tuple[int, int]
+Loop = tuple[int, ...]
+"""Corners by their numbers, in order."""
+
+
+def polygon_fault(corners: ArrayLike) -> str | None:
+    """Say why a closed outline is no simple polygon; None: it is one.
+
+    Parameters
+    ----------
+    corners : array_like, shape (m, 2)
+        In order, either way round, the last one joined to the first. One in the middle of a
+        straight edge is no fault.
+
+    Examples
+    --------
+    >>> polygon_fault([[0, 0], [2, 0], [2, 1], [0, 1]]) is None
+    True
+    >>> polygon_fault([[0, 0], [2, 1], [2, 0], [0, 1]])
+    'the edges from corners 0 and 2 cross or touch'
+    >>> polygon_fault([[0, 0], [1, 1], [3, 3]])
+    'all corners lie on one line: it has no area'
+    """
+    p = _whole(corners)
+    n = len(p)
+    first: dict[Whole, int] = {}
+    for i, corner in enumerate(p):
+        if (j := first.setdefault(corner, i)) != i:
+            return f"corners {j} and {i} are one place"
+    if not any(_side(p[0], p[1], corner) for corner in p[2:]):
+        return "all corners lie on one line: it has no area"
+    if _is_convex(p):
+        return None
+    for i in range(n):
+        a, b, c = p[i - 1], p[i], p[(i + 1) % n]
+        if _side(a, b, c) == 0 and _ahead(b, a, c) > 0:
+            return f"it turns back on itself at corner {i}"
+    for i, j in combinations(range(n), 2):
+        if j - i not in (1, n - 1) and _meet(p[i], p[(i + 1) % n], p[j], p[(j + 1) % n]):
+            return f"the edges from corners {i} and {j} cross or touch"
+    return None
+
+
+def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
+    """Cut a simple polygon into strictly convex parts that together are exactly the polygon.
+
+    Ears are cut off one by one; then every cut without which both sides are convex together is
+    undone (Hertel and Mehlhorn): at most four times as many parts as there need be.
+
+    Parameters
+    ----------
+    corners : array_like, shape (m, 2)
+        Of a simple polygon (`polygon_fault` tells), either way round.
+
+    Returns
+    -------
+    tuple of tuple of int
+        The corners of each part by their numbers, anticlockwise. A corner at which a part goes
+        straight on is none of its corners.
+
+    Raises
+    ------
+    ValueError
+        If the polygon is not simple.
+
+    Examples
+    --------
+    >>> convex_parts([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]])
+    ((3, 4, 5, 0), (0, 1, 2, 3))
+    """
+    if (fault := polygon_fault(corners)) is not None:
+        raise ValueError(f"no simple polygon: {fault}")
+    p = _whole(corners)
+    loop = _bends(p, range(len(p)))
+    if _doubled_area([p[i] for i in loop]) < 0:
+        loop = loop[::-1]
+    if all(_turn(p, loop, k) > 0 for k in range(len(loop))):
+        return (loop,)
+    return tuple(_bends(p, part) for part in _merged(p, _triangles(p, loop)))
+
+
+def _whole(corners: ArrayLike) -> list[Whole]:
+    """Return the corners times a power of two that makes them whole numbers."""
+    ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=float).ravel().tolist()]
+    scale = max(denominator for _, denominator in ratios)
+    flat = [numerator * (scale // denominator) for numerator, denominator in ratios]
+    return list(zip(flat[::2], flat[1::2], strict=True))
+
+
+def _side(a: Whole, b: Whole, c: Whole) -> int:
+    """Return a positive number where c lies on the left of a line from a to b, 0 on it."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _ahead(a: Whole, b: Whole, c: Whole) -> int:
+    """Return a positive number where b and c, seen from a, lie within a right angle."""
+    return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1])
+
+
+def _is_convex(p: Sequence[Whole]) -> bool:
+    """Tell whether an outline with an area, without repeated corners, is convex and goes once."""
+    n = len(p)
+    sides = {_sign(_side(p[i - 1], p[i], p[(i + 1) % n])) for i in range(n)}
+    rising = [p[i - 1] < p[i] for i in range(n)]
+    once = sum(rising[i - 1] != rising[i] for i in range(n)) == 2
+    return once and not {1, -1} <= sides
+
+
+def _meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
+    """Tell whether the closed segments a-b and c-d have a point in common."""
+    for k in (0, 1):
+        if max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]):
+            return False
+    across = _sign(_side(a, b, c)) * _sign(_side(a, b, d))
+    return across <= 0 and _sign(_side(c, d, a)) * _sign(_side(c, d, b)) <= 0
+
+
+def _sign(x: int) -> int:
+    return (x > 0) - (x < 0)
+
+
+def _doubled_area(p: Sequence[Whole]) -> int:
+    return sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise([*p, p[0]]))
+
+
+def _turn(p: Sequence[Whole], loop: Sequence[int], k: int) -> int:
+    """Return a positive number where a loop turns left at its k-th corner."""
+    return _side(p[loop[k - 1]], p[loop[k]], p[loop[(k + 1) % len(loop)]])
+
+
+def _bends(p: Sequence[Whole], loop: Iterable[int]) -> Loop:
+    """Return a loop without the corners at which it goes straight on."""
+    loop = tuple(loop)
+    return tuple(corner for k, corner in enumerate(loop) if _turn(p, loop, k))
+
+
+def _triangles(p: Sequence[Whole], loop: Loop) -> Iterator[Loop]:
+    """Cut ears off an anticlockwise loop until a triangle is left.
+
+    An ear holds no other corner, on its edges neither; of a simple polygon there always is one.
+    """
+    left = list(loop)
+    while len(left) > 3:
+        reflex = [left[k] for k in range(len(left)) if _turn(p, left, k) <= 0]
+        k = next(k for k in range(len(left)) if _is_ear(p, left, k, reflex))
+        yield left[k - 1], left[k], left[(k + 1) % len(left)]
+        del left[k]
+    yield tuple(left)
+
+
+def _is_ear(p: Sequence[Whole], loop: Sequence[int], k: int, reflex: Sequence[int]) -> bool:
+    """Tell whether the corner is an ear: what lies in a triangle first is a reflex corner."""
+    ear = (loop[k - 1], loop[k], loop[(k + 1) % len(loop)])
+    if _turn(p, loop, k) <= 0:
+        return False
+    a, b, c = (p[i] for i in ear)
+    return not any(
+        _side(a, b, p[i]) >= 0 and _side(b, c, p[i]) >= 0 and _side(c, a, p[i]) >= 0
+        for i in reflex
+        if i not in ear
+    )
+
+
+def _merged(p: Sequence[Whole], triangles: Iterable[Loop]) -> list[Loop]:
+    """Join parts over every cut at whose ends the whole is convex, one cut after the other."""
+    parts: list[Loop] = []
+    for part in triangles:
+        joined = part
+        while (found := _neighbour(p, joined, parts)) is not None:
+            place, joined = found
+            del parts[place]
+        parts.append(joined)
+    return parts
+
+
+def _neighbour(p: Sequence[Whole], part: Loop, others: Sequence[Loop]) -> tuple[int, Loop] | None:
+    """Find a part that is convex together with this one: its place, and both as one loop."""
+    for i, a in enumerate(part):
+        b = part[(i + 1) % len(part)]
+        for place, other in enumerate(others):
+            if a not in other or other[other.index(a) - 1] != b:
+                continue
+            j = other.index(a)
+            # from b round this part to a, then on from a round the other one back to b
+            whole = (*part[i + 1 :], *part[: i + 1], *other[j + 1 :], *other[: j - 1 if j else -1])
+            ends = (whole.index(a), whole.index(b))
+            if all(_turn(p, whole, k) >= 0 for k in ends):
+                return place, whole
+    return None

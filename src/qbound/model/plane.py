@@ -1,0 +1,155 @@
+"""In which plane does an arm move? Its axes, and what leaves it.
+
+An arm is planar where the axes of all joints that turn are parallel and every slide runs at right
+angles to them. A turn about such an axis keeps its direction, so what holds at all joint values 0
+holds at every configuration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.model.frames import Frames
+from qbound.model.joints import Joint
+from qbound.model.schema import one_line
+from qbound.tolerances import ZERO_AMPLITUDE
+
+Array = NDArray[Any]
+
+COORDINATES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
+"""The two coordinates of a plane by that of its normal: (y, z), (x, z), (x, y)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneOfMotion:
+    """The plane in which a planar arm moves, seen from the base.
+
+    Attributes
+    ----------
+    across : ndarray, shape (2, 3)
+        Its axes, orthonormal: ``across @ r`` are the plane coordinates of a vector of the base;
+        (x, z) for a normal along y, (x, y) for z, (y, z) for x.
+    normal : ndarray, shape (3,)
+        Unit vector, its largest coordinate positive; not always ``cross(*across)``, which is -y
+        for the plane of x and z.
+    senses : tuple of int
+        For each joint +1 or -1: its value turns the frame in the plane, from the first axis to the
+        second or back; 0 for a joint that slides.
+    frames : Frames
+        At all joint values 0.
+    """
+
+    across: Array
+    normal: Array
+    senses: tuple[int, ...]
+    frames: Frames
+
+    def flat(self, frame: str, corners: ArrayLike) -> Array:
+        """Return places of a frame, shape (m, 3), in the plane's axes, shape (m, 2).
+
+        They are seen from the frame's origin and turned as at all joint values 0: at joint values
+        q its pose is a turn by the sum of ``senses * q`` of the joints before it, and a
+        translation.
+        """
+        rotation = np.asarray(self.frames.rotation(self.frames.base, frame), dtype=float)
+        return np.asarray(np.asarray(corners, dtype=float) @ (self.across @ rotation).T)
+
+    def height(self, frame: str, corners: ArrayLike) -> Array:
+        """Return how far places of a frame are above the base's origin, along the normal; (m,)."""
+        base = self.frames.base
+        rotation = np.asarray(self.frames.rotation(base, frame), dtype=float)
+        places = np.asarray(corners, dtype=float) @ rotation.T
+        return np.asarray((places + self.frames.position(base, frame, base)) @ self.normal)
+
+    def normal_seen_from(self, frame: str) -> Array:
+        """Return the normal seen from a frame, shape (3,): at every configuration the same."""
+        rotation = np.asarray(self.frames.rotation(self.frames.base, frame), dtype=float)
+        return np.asarray(self.normal @ rotation)
+
+    def flat_coordinate(self, frame: str) -> int | None:
+        """Return the coordinate of a frame, 0, 1 or 2, that is across the plane.
+
+        None: the normal is along no axis of the frame.
+        """
+        normal = np.abs(self.normal_seen_from(frame))
+        along = int(np.argmax(normal))
+        return along if np.delete(normal, along).max() <= ZERO_AMPLITUDE else None
+
+
+class Chain(Protocol):
+    """What a plane of motion asks of a robot."""
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """Its joints, from the base outwards."""
+
+    @property
+    def base(self) -> str:
+        """Label of the base frame."""
+
+    def frames(self, q: ArrayLike) -> Frames:
+        """Return its frames at joint values."""
+
+
+def plane_of_motion(robot: Chain) -> PlaneOfMotion:
+    """Return the plane in which a robot moves.
+
+    Where joints only slide, and all along one line, it is the plane of x and z if that holds the
+    line, else that of x and y, of y and z, else one that holds it.
+
+    Raises
+    ------
+    ValueError
+        If it is not planar: it names the joint that leaves the plane.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> plane = load_robot("minervabot-v2").plane
+    >>> plane.across.tolist(), plane.senses
+    ([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], (-1, -1))
+    """
+    frames = robot.frames(np.zeros(len(robot.joints)))
+    mounts = [frames.rotation(robot.base, j.parent) @ j.mount for j in robot.joints]
+    axes = [np.asarray(m @ j.axis, dtype=float) for m, j in zip(mounts, robot.joints, strict=True)]
+    normal = _normal(robot.joints, axes)
+    for joint, axis in zip(robot.joints, axes, strict=True):
+        if joint.turns and np.linalg.norm(np.cross(axis, normal)) > ZERO_AMPLITUDE:
+            fault = "turns about an axis that is not parallel to the others'"
+        elif not joint.turns and abs(axis @ normal) > ZERO_AMPLITUDE:
+            fault = "slides out of the plane in which the others move"
+        else:
+            continue
+        text = f"joint {one_line(repr(joint.name))} {fault}: there is no plane of motion"
+        raise ValueError(text)
+    across = _across(normal)
+    over = np.cross(*across)
+    senses = [round(float(a @ over)) * j.turns for a, j in zip(axes, robot.joints, strict=True)]
+    return PlaneOfMotion(across, normal, tuple(senses), frames)
+
+
+def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:
+    """Return a normal that the first joint to settle it allows; its largest coordinate is > 0."""
+    turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
+    candidates = [*turning, *(np.cross(axes[0], axis) for axis in axes[1:])]
+    candidates += [axis for axis in np.eye(3)[[1, 2, 0]] if abs(axis @ axes[0]) <= ZERO_AMPLITUDE]
+    candidates.append(np.cross(axes[0], np.eye(3)[np.argmin(np.abs(axes[0]))]))
+    normal = next(axis for axis in candidates if np.linalg.norm(axis) > ZERO_AMPLITUDE)
+    normal = normal / np.linalg.norm(normal)
+    largest = normal[np.argmax(np.abs(normal))]
+    return np.asarray(normal * np.sign(largest) + 0.0)
+
+
+def _across(normal: Array) -> Array:
+    """Return the plane's axes, shape (2, 3): the base's own ones where the normal is an axis."""
+    one, other = COORDINATES[int(np.argmax(np.abs(normal)))]
+    first = np.eye(3)[one] - normal[one] * normal
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    second *= np.sign(second[other])
+    return np.array([first, second]) + 0.0
