@@ -80,7 +80,7 @@ def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
     Examples
     --------
     >>> convex_parts([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]])
-    ((3, 4, 5, 0), (0, 1, 2, 3))
+    ((2, 3, 0, 1), (3, 4, 5, 0))
     """
     if (fault := polygon_fault(corners)) is not None:
         raise ValueError(f"no simple polygon: {fault}")
@@ -195,8 +195,8 @@ def _neighbour(p: Sequence[Whole], part: Loop, others: Sequence[Loop]) -> tuple[
             if a not in other or other[other.index(a) - 1] != b:
                 continue
             j = other.index(a)
-            # from b round this part to a, then on from a round the other one back to b
-            whole = (*part[i + 1 :], *part[: i + 1], *other[j + 1 :], *other[: j - 1 if j else -1])
+            on = (*other[j + 1 :], *other[:j])  # from behind a round the other one to b
+            whole = (*part[i + 1 :], *part[: i + 1], *on[:-1])
             ends = (whole.index(a), whole.index(b))
             if all(_turn(p, whole, k) >= 0 for k in ends):
                 return place, whole
