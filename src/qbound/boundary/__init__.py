@@ -1,5 +1,7 @@
 """How far is a configuration from contact? Boundary functions, as named harmonic forms.
 
 - `functions`: from a robot's points and boundaries to forms and margins, one boundary at a time;
+- `parts`, `poses`: the bodies that a boundary is about, and where they stand in the plane;
+- `separation`: how far bodies are apart, at millions of configurations; `nearest`: and where;
 - `evaluator`: all of them compiled once, for one configuration or for millions.
 """

@@ -2,14 +2,15 @@
 
 All forms, and the joint limits as two more rows a joint, are one table over the monomials that
 occur in any of them. A configuration costs a sine and a cosine a joint, a product a monomial, and
-its share of one matrix product.
+its share of one matrix product. Boundaries about bodies have no such row: their columns come from
+`separation`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -17,6 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
+from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.separation import Separation
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
@@ -24,6 +27,7 @@ from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.intp]
 Range = tuple[float, float] | None
 Array = NDArray[Any]
 Index = tuple[int, ...]
@@ -31,6 +35,8 @@ Monomial = tuple[Callable[[float], float], Callable[[Floats], Floats]]
 
 BLOCK = 8192
 """Configurations a block: their monomials stay in the cache between the two passes."""
+
+NO_COLUMNS = np.empty(0, dtype=np.intp)
 
 NO_DISTANCE = 2.0**-1000
 """Stands for the distance 0 in a denominator: 0 / 0 would be NaN where two points meet."""
@@ -42,23 +48,28 @@ class Evaluator:
 
     A margin is :math:`|B| - d_{\min}` of a pair (eq. 11), found as :math:`\beta / (|B| + d_{\min})`
     from its form, the value of the form where that is a length already (eq. 12), and the distance
-    to a limit (eq. 10). What rounding alone makes negative is zero, so that ``margin >= 0`` says
-    feasible.
+    to a limit (eq. 10). Bodies have their signed distance less the clearance. What rounding alone
+    makes negative is zero, so that ``margin >= 0`` says feasible.
 
     Attributes
     ----------
     names : tuple of str
         One a column.
-    table : ndarray, shape (columns, monomials)
+    table : ndarray, shape (rows, monomials)
+        One row for each column that is not about bodies.
     products : tuple of (int, int)
         The two earlier monomials, by index, that each one after the factors is the product of.
     factors : tuple of (joint, monomial)
         The first monomials after the constant, of one joint each.
     joints : int
-    distance : ndarray, shape (columns,)
+    distance : ndarray, shape (rows,)
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
-    rounding : ndarray, shape (columns,)
+    rounding : ndarray, shape (rows,)
         A value this little below zero is rounding.
+    bodies : Separation, optional
+        Of the columns about bodies.
+    columns : pair of ndarray of int
+        Which columns are rows of the table, and which are about bodies.
     """
 
     names: tuple[str, ...]
@@ -68,6 +79,8 @@ class Evaluator:
     joints: int
     distance: Floats
     rounding: Floats
+    bodies: Separation | None = None
+    columns: tuple[Indices, Indices] = field(default=(NO_COLUMNS, NO_COLUMNS))
 
     def margins(self, q: ArrayLike) -> Floats:
         """Return the margin of every boundary, shape (..., joints) to (..., columns).
@@ -97,14 +110,9 @@ class Evaluator:
         ValueError: expected 2 joint values on the last axis, found 1
         """
         q = self._checked(q)
-        if q.ndim == 1:
-            return self._lengths(self.table.dot(self._one(q.tolist())))
-        flat = q.reshape(-1, self.joints)
-        result = np.empty((len(flat), len(self.names)))
-        for start in range(0, len(flat), BLOCK):
-            values = self.table @ self._monomials(flat[start : start + BLOCK])
-            result[start : start + BLOCK] = self._lengths(values.T)
-        return result.reshape(*q.shape[:-1], len(self.names))
+        if self.bodies is None:
+            return self._of_forms(q)
+        return self._columns(self._of_forms(q), self.bodies.margins(q))
 
     def feasible(self, q: ArrayLike) -> Bools:
         """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
@@ -114,7 +122,27 @@ class Evaluator:
         for start in range(0, len(flat), BLOCK):
             values = self._lifted @ self._monomials(flat[start : start + BLOCK])
             result[start : start + BLOCK] = (values >= 0).all(axis=0)
+        if self.bodies is not None:
+            result[result] = self.bodies.all_separated(flat[result], -self.bodies.rounding)
         return result.reshape(q.shape[:-1])
+
+    def _of_forms(self, q: Floats) -> Floats:
+        """Return the margins that are not about bodies, shape (..., rows)."""
+        if q.ndim == 1:
+            return self._lengths(self.table.dot(self._one(q.tolist())))
+        flat = q.reshape(-1, self.joints)
+        result = np.empty((len(flat), len(self.table)))
+        for start in range(0, len(flat), BLOCK):
+            values = self.table @ self._monomials(flat[start : start + BLOCK])
+            result[start : start + BLOCK] = self._lengths(values.T)
+        return result.reshape(*q.shape[:-1], len(self.table))
+
+    def _columns(self, rows: Floats, bodies: Floats) -> Floats:
+        """Put what rows and bodies have, shape (..., rows) and (..., bodies), in their columns."""
+        result = np.empty((*rows.shape[:-1], len(self.names)))
+        result[..., self.columns[0]] = rows
+        result[..., self.columns[1]] = bodies
+        return result
 
     def _checked(self, q: ArrayLike) -> Floats:
         q = np.asarray(q, dtype=float)
@@ -129,7 +157,17 @@ class Evaluator:
     @cached_property
     def margin_rounding(self) -> Floats:
         """The margin that rounding alone may leave of none, shape (columns,)."""
-        return self._lengths(self.rounding.copy())
+        of_forms = self._lengths(self.rounding.copy())
+        return of_forms if self.bodies is None else self._columns(of_forms, self.bodies.rounding)
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The lengths or angles that each margin is a difference of, at most; shape (columns,)."""
+        sizes = self.rounding / ROUNDING  # of a pair's form, whose value is a length squared
+        sizes = np.where(np.isnan(self.distance), sizes, np.sqrt(sizes))
+        return (
+            sizes if self.bodies is None else self._columns(sizes, self.bodies.rounding / ROUNDING)
+        )
 
     @cached_property
     def _lifted(self) -> Floats:
@@ -232,6 +270,28 @@ def compiled(
     )
 
 
+def with_bodies(forms: Evaluator, bodies: Separation, order: Sequence[str]) -> Evaluator:
+    """Return an evaluator with columns for boundaries about bodies too.
+
+    Parameters
+    ----------
+    forms : Evaluator
+        Of all that is not about bodies.
+    bodies : Separation
+        Of as many free joints; one without columns changes nothing.
+    order : sequence of str
+        Names of the first columns, of both kinds; what else `forms` has, such as limits, follows.
+    """
+    if not bodies.names:
+        return forms
+    names = (*order, *(name for name in forms.names if name not in order))
+    place = {name: column for column, name in enumerate(names)}
+    rows, about = (
+        np.array([place[n] for n in each], np.intp) for each in (forms.names, bodies.names)
+    )
+    return replace(forms, names=names, bodies=bodies, columns=(rows, about))
+
+
 @lru_cache(maxsize=64)
 def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     """Return the evaluator of a robot: every boundary in use, and the limits of all joints.
@@ -248,14 +308,17 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     >>> evaluator(robot) is evaluator(robot)
     True
     """
-    used = robot.used
-    return compiled(
-        stacked(robot, used),
-        [boundary.name for boundary in used],
-        [robot.least_distance(boundary) for boundary in used],
+    formed = [boundary for boundary in robot.used if not bounds_bodies(boundary)]
+    forms = compiled(
+        stacked(robot, formed),
+        [boundary.name for boundary in formed],
+        [robot.least_distance(boundary) for boundary in formed],
         [joint.limits if limits else None for joint in robot.joints],
         [limit_names(joint.name) for joint in robot.joints],
     )
+    if len(formed) == len(robot.used):
+        return forms
+    return with_bodies(forms, Separation(robot), [boundary.name for boundary in robot.used])
 
 
 def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:

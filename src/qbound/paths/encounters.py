@@ -19,7 +19,7 @@ from qbound.geometry.polylines import crossing_pieces
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import Region
-from qbound.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
+from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.units import joint_units
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
@@ -170,9 +170,8 @@ def boundaries(region: Region) -> list[MarginFunction]:
         compiled, limited = problem.evaluator, zip(problem.units, problem.ranges, strict=True)
     ends = [unit for unit, limits in limited if limits is not None for _ in limits]
     lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
-    sizes = compiled.rounding / ROUNDING  # of a pair's form, whose value is a length squared
-    sizes = np.where(np.isnan(compiled.distance), sizes, np.sqrt(sizes))
-    columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes.tolist(), strict=True))
+    sizes = compiled.sizes.tolist()
+    columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes, strict=True))
     return [
         MarginFunction(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns
     ]
