@@ -21,25 +21,23 @@ Bools = NDArray[np.bool_]
 
 def misses_points(robot: Robot, q: Floats) -> Bools:
     """No pair of points coincides exactly: eq. (17) to the letter."""
-    pairs = [b for b in robot.boundaries if b.used and isinstance(b, Pair)]
+    pairs = [b for b in robot.used if isinstance(b, Pair)]
     return _all_of((np.abs(components(robot, b)(q)).max(axis=-1) > 0 for b in pairs), q)
 
 
 def keeps_components_positive(robot: Robot, q: Floats) -> Bools:
     """No component of a boundary function in use is negative: eq. (9) to the letter."""
-    used = [b for b in robot.boundaries if b.used]
-    return _all_of((components(robot, b)(q).min(axis=-1) >= 0 for b in used), q)
+    return _all_of((components(robot, b)(q).min(axis=-1) >= 0 for b in robot.used), q)
 
 
 def keeps_third_components_positive(robot: Robot, q: Floats) -> Bools:
     """No third (z) component of a boundary function in use is negative: eq. (9) of these alone."""
-    used = [b for b in robot.boundaries if b.used]
-    return _all_of((components(robot, b)(q)[..., 2] >= 0 for b in used), q)
+    return _all_of((components(robot, b)(q)[..., 2] >= 0 for b in robot.used), q)
 
 
 def keeps_geometric(robot: Robot, q: Floats) -> Bools:
     """Every half-space in use is respected; pairs of points are not looked at: eq. (12) alone."""
-    half_spaces = [b for b in robot.boundaries if b.used and isinstance(b, HalfSpace)]
+    half_spaces = [b for b in robot.used if isinstance(b, HalfSpace)]
     return _all_of((clearance(robot, b)(q) >= 0 for b in half_spaces), q)
 
 

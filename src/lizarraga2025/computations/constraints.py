@@ -26,7 +26,7 @@ from qbound.symbols import joint_symbols, with_symbols
 def sign_of_a_component() -> Outcome:
     inside, outside = np.radians([-90.0, 0.0]), np.radians([-140.0, 0.0])
     path = np.linspace(robot().home, inside, 1001)
-    free = all((clearance(robot(), b)(path) > 0).all() for b in robot().boundaries if b.used)
+    free = all((clearance(robot(), b)(path) > 0).all() for b in robot().used)
     allowed = free and bool(paper_rule.feasible(robot(), inside))
     beyond = not paper_rule.feasible(robot(), outside)
     bounding = {label.rpartition(",")[0] + "}" for label in paper.FIGURE_4_BOUNDS}

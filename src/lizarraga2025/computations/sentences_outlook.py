@@ -140,7 +140,7 @@ def slices_are_enough() -> Outcome:
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
     q = np.random.default_rng(8).uniform(-np.pi, np.pi, (200_000, 2))
     three = np.insert(q, 2, held[2], axis=1)
-    used = [clearance(sliding(), b) for b in sliding().boundaries if b.used]
+    used = [clearance(sliding(), b) for b in sliding().used]
     part = float(np.all([form(three) > 0 for form in used], axis=0).mean())
     exact = whole.area / (2 * np.pi) ** 2
     error = np.sqrt(part * (1 - part) / len(q))

@@ -40,6 +40,6 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
     """Find the region of the joints that `--slice` leaves, by `--rule`."""
     if rule == "paper" and values:
         raise ValueError("--slice: the paper's rule knows two joints only")
-    count = sum(boundary.used for boundary in robot.boundaries)
+    count = len(robot.used)
     with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
         return find_region(robot, values, rule)

@@ -80,7 +80,10 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
             {"frame": robot.depth(b.frame), "outline": outline_in_frame(robot, b).tolist()}
             for b in (*robot.bodies, *robot.obstacles)
         ],
-        "boundaries": [_boundary(robot, b, problem.rule) for b in robot.boundaries],
+        "boundaries": [
+            _boundary(robot, b, problem.rule)
+            for b in dict.fromkeys((*robot.boundaries, *robot.used))
+        ],
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],

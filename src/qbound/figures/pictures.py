@@ -213,8 +213,8 @@ def _written(robot: Robot, q: Floats) -> str:
 def _lines(robot: Robot, plane: tuple[int, int]) -> dict[Line, list[str]]:
     """Return the lines at which upright half-spaces cut the plane, each with all of its names."""
     lines: dict[Line, list[str]] = {}
-    for half_space in robot.boundaries:
-        if isinstance(half_space, HalfSpace) and half_space.used:
+    for half_space in robot.used:
+        if isinstance(half_space, HalfSpace):
             across, up = np.asarray(half_space.normal, dtype=float)[list(plane)].tolist()
             if np.hypot(across, up) > 1 - 1e-9:
                 lines.setdefault((across, up, half_space.offset), []).append(half_space.name)

@@ -6,12 +6,13 @@ numbers, and the side on which a corner lies is a whole number too. Nothing here
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations, pairwise
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+Floats = NDArray[np.float64]
 Whole = tuple[int, int]
 Loop = tuple[int, ...]
 """Corners by their numbers, in order."""
@@ -49,8 +50,8 @@ def polygon_fault(corners: ArrayLike) -> str | None:
         a, b, c = p[i - 1], p[i], p[(i + 1) % n]
         if _side(a, b, c) == 0 and _ahead(b, a, c) > 0:
             return f"it turns back on itself at corner {i}"
-    for i, j in combinations(range(n), 2):
-        if j - i not in (1, n - 1) and _meet(p[i], p[(i + 1) % n], p[j], p[(j + 1) % n]):
+    for i, j in _near_edges(np.asarray(corners, dtype=float)):
+        if _meet(p[i], p[(i + 1) % n], p[j], p[(j + 1) % n]):
             return f"the edges from corners {i} and {j} cross or touch"
     return None
 
@@ -120,11 +121,18 @@ def _is_convex(p: Sequence[Whole]) -> bool:
     return once and not {1, -1} <= sides
 
 
+def _near_edges(corners: Floats) -> list[tuple[int, int]]:
+    """Return pairs of edges without a common corner whose upright boxes have a common point."""
+    n, ends = len(corners), np.roll(corners, -1, axis=0)
+    low, high = np.minimum(corners, ends), np.maximum(corners, ends)
+    near = (low[:, None] <= high).all(axis=-1)
+    first, second = np.nonzero(np.triu(near & near.T, 2))
+    apart = second - first != n - 1
+    return list(zip(first[apart].tolist(), second[apart].tolist(), strict=True))
+
+
 def _meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
-    """Tell whether the closed segments a-b and c-d have a point in common."""
-    for k in (0, 1):
-        if max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]):
-            return False
+    """Tell whether closed segments a-b and c-d, with boxes that meet, have a point in common."""
     across = _sign(_side(a, b, c)) * _sign(_side(a, b, d))
     return across <= 0 and _sign(_side(c, d, a)) * _sign(_side(c, d, b)) <= 0
 
@@ -177,27 +185,31 @@ def _is_ear(p: Sequence[Whole], loop: Sequence[int], k: int, reflex: Sequence[in
 
 def _merged(p: Sequence[Whole], triangles: Iterable[Loop]) -> list[Loop]:
     """Join parts over every cut at whose ends the whole is convex, one cut after the other."""
-    parts: list[Loop] = []
+    by_edge: dict[tuple[int, int], Loop] = {}
     for part in triangles:
         joined = part
-        while (found := _neighbour(p, joined, parts)) is not None:
-            place, joined = found
-            del parts[place]
-        parts.append(joined)
-    return parts
+        while (found := _neighbour(p, joined, by_edge)) is not None:
+            other, joined = found
+            for edge in _edges(other):
+                del by_edge[edge]
+        by_edge |= dict.fromkeys(_edges(joined), joined)
+    return list(dict.fromkeys(by_edge.values()))
 
 
-def _neighbour(p: Sequence[Whole], part: Loop, others: Sequence[Loop]) -> tuple[int, Loop] | None:
-    """Find a part that is convex together with this one: its place, and both as one loop."""
-    for i, a in enumerate(part):
-        b = part[(i + 1) % len(part)]
-        for place, other in enumerate(others):
-            if a not in other or other[other.index(a) - 1] != b:
-                continue
-            j = other.index(a)
-            on = (*other[j + 1 :], *other[:j])  # from behind a round the other one to b
-            whole = (*part[i + 1 :], *part[: i + 1], *on[:-1])
-            ends = (whole.index(a), whole.index(b))
-            if all(_turn(p, whole, k) >= 0 for k in ends):
-                return place, whole
+def _neighbour(
+    p: Sequence[Whole], part: Loop, by_edge: Mapping[tuple[int, int], Loop]
+) -> tuple[Loop, Loop] | None:
+    """Find a part that is convex together with this one: that part, and both as one loop."""
+    for i, (a, b) in enumerate(_edges(part)):
+        if (other := by_edge.get((b, a))) is None:
+            continue
+        j = other.index(a)
+        on = (*other[j + 1 :], *other[:j])  # from behind a round the other one to b
+        whole = (*part[i + 1 :], *part[: i + 1], *on[:-1])
+        if all(_turn(p, whole, whole.index(end)) >= 0 for end in (a, b)):
+            return other, whole
     return None
+
+
+def _edges(loop: Loop) -> list[tuple[int, int]]:
+    return list(pairwise((*loop, loop[0])))

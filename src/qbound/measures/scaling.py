@@ -159,8 +159,7 @@ def worst_margins(
         Boundary name to margin (a length, ``|B| - d_min`` or the depth inside a wall) and joint
         values, shape (2,).
     """
-    used = robot.used
-    return {b.name: _worst(robot, b, vertices, centre) for b in used}
+    return {b.name: _worst(robot, b, vertices, centre) for b in robot.used}
 
 
 def _worst(

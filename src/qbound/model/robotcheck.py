@@ -74,7 +74,8 @@ class RobotFile(Row, kw_only=True):
         field(default_factory=list)
     )
     body: Annotated[
-        list[BodyRow], Meta(max_length=MOST_BODIES, description="a list of tables [[body]]")
+        list[BodyRow],
+        Meta(max_length=MOST_BODIES, description="a list of at most 1000 tables [[body]]"),
     ] = field(default_factory=list)
     collisions: Literal["all"] | UnsetType = UNSET
     clearance: Size = 0.0
@@ -83,7 +84,8 @@ class RobotFile(Row, kw_only=True):
         Meta(description="a list of pairs of names of bodies"),
     ] = field(default_factory=list)
     obstacle: Annotated[
-        list[ObstacleRow], Meta(max_length=MOST_BODIES, description="a list of tables [[obstacle]]")
+        list[ObstacleRow],
+        Meta(max_length=MOST_BODIES, description="a list of at most 1000 tables [[obstacle]]"),
     ] = field(default_factory=list)
 
 
@@ -99,7 +101,7 @@ def read_table(table: Table) -> RobotFile:
         file = msgspec.convert(table, RobotFile)
     except ValueError as error:  # also an integer of more digits than Python prints
         _check_finite(table)
-        raise _fault(table, *explained(str(error), table, json_schema())) from None
+        raise fault(table, *explained(str(error), table, json_schema())) from None
     for check in (
         _check_names,
         _check_chain,
@@ -132,7 +134,8 @@ def json_schema() -> dict[str, Any]:
     return {"$schema": draft, **top, "$defs": rows}
 
 
-def _fault(table: Table, path: JsonPath, text: str) -> RobotFileError:
+def fault(table: Table, path: JsonPath, text: str) -> RobotFileError:
+    """Return the error of a fault at a place of a table."""
     where = place(table, path)
     return RobotFileError(f"{where}: {text}" if where else text)
 
@@ -140,10 +143,10 @@ def _fault(table: Table, path: JsonPath, text: str) -> RobotFileError:
 def _check_finite(table: Table) -> None:
     for path, value in _leaves(table):
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
-            raise _fault(table, path, f"{shown(value)} is not a finite number")
+            raise fault(table, path, f"{shown(value)} is not a finite number")
         size = abs(value) if isinstance(value, int | float) else 0
         if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
-            raise _fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
+            raise fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
 
 
 def _check_names(table: Table) -> None:
@@ -152,7 +155,13 @@ def _check_names(table: Table) -> None:
     for kind, i, row in _rows(table, "joint", "point", "boundary"):
         if (j := first.setdefault((kind, row["name"]), i)) != i:
             text = f"{shown(row['name'])} is used twice, first by {kind}[{j}]; names are unique"
-            raise _fault(table, (kind, i, "name"), text)
+            raise fault(table, (kind, i, "name"), text)
+    named: dict[str, str] = {}
+    for kind, i, _, name in _bodies(table):
+        if (other := named.setdefault(name, f"{kind}[{i}]")) != f"{kind}[{i}]":
+            path = (kind, i, "name") if "name" in table[kind][i] else (kind, i)
+            text = f"{shown(name)} is used twice, first by {other}; names of bodies are unique"
+            raise fault(table, path, text)
     limits = [f"{j['name']}.{side}" for j in table["joint"] for side in ("lower", "upper")]
     _check_free(table, "point", "frame", _frames(table))
     _check_free(table, "boundary", "joint limit", limits)
@@ -163,7 +172,7 @@ def _check_free(table: Table, kind: str, other: str, taken: Sequence[str]) -> No
         if row["name"] in taken:
             name = shown(row["name"])
             text = f"{name} is the name of a {other}; a {kind} needs a name of its own"
-            raise _fault(table, (kind, i, "name"), text)
+            raise fault(table, (kind, i, "name"), text)
 
 
 def _check_chain(table: Table) -> None:
@@ -174,11 +183,11 @@ def _check_chain(table: Table) -> None:
         if joint["parent"] != frame:
             found, wanted = shown(joint["parent"]), shown(frame)
             text = f"{found} found, {wanted} wanted; joints form one chain from the base"
-            raise _fault(table, ("joint", i, "parent"), text)
+            raise fault(table, ("joint", i, "parent"), text)
         frame = joint["frame"]
         if frame in seen:
             text = f"{shown(frame)} closes a cycle; every joint moves a frame of its own"
-            raise _fault(table, ("joint", i, "frame"), text)
+            raise fault(table, ("joint", i, "frame"), text)
         seen.add(frame)
 
 
@@ -203,11 +212,30 @@ def _check_references(table: Table) -> None:
 
 
 def _check_pairs(table: Table) -> None:
-    for _, i, row in _rows(table, "boundary"):
-        names = row.get("points", ())
+    """Refuse a pair of one thing with itself, and bodies that cannot move against each other."""
+    for path, names, wanted in _pairs(table):
         if len(set(names)) < len(names):
-            text = f"{shown(names)} names one thing twice; wanted: {TWO_POINTS}"
-            raise _fault(table, ("boundary", i, "points"), text)
+            text = f"{shown(names)} names one thing twice; wanted: {wanted}"
+            raise fault(table, path, text)
+    placed = {name: (frame, kind) for kind, _, frame, name in _bodies(table)}
+    for _, i, row in _rows(table, "boundary"):
+        if "bodies" not in row:
+            continue
+        (frame, kind), (other, its) = (placed[name] for name in row["bodies"])
+        if frame == other:
+            both = "obstacles" if kind == its == "obstacle" else f"fixed in frame {shown(frame)}"
+            text = f"{shown(row['bodies'])} are {both}; wanted: two bodies on different frames"
+            raise fault(table, ("boundary", i, "bodies"), text)
+
+
+def _pairs(table: Table) -> Iterator[tuple[JsonPath, Sequence[str], str]]:
+    """Yield every pair of names, with its place and what is wanted there."""
+    for key, wanted in (("points", TWO_POINTS), ("bodies", TWO_BODIES)):
+        for _, i, row in _rows(table, "boundary"):
+            if key in row:
+                yield ("boundary", i, key), row[key], wanted
+    for i, pair in enumerate(table.get("allowed", ())):
+        yield ("allowed", i), pair, TWO_BODIES
 
 
 def _check_shapes(table: Table) -> None:
@@ -216,7 +244,7 @@ def _check_shapes(table: Table) -> None:
         if len(keys := [key for key in SHAPES if key in row]) != 1:
             found = " and ".join(keys) or "none"
             text = f"{found} found; wanted: exactly one of {', '.join(SHAPES)}"
-            raise _fault(table, (kind, i), text)
+            raise fault(table, (kind, i), text)
 
 
 def _check_half_spaces(table: Table) -> None:
@@ -226,7 +254,7 @@ def _check_half_spaces(table: Table) -> None:
         if row["type"] == "half-space" and len(keys) != 1:
             found = " and ".join(keys) or "none"
             text = f"{found} found; wanted: exactly one of point, body"
-            raise _fault(table, (kind, i), text)
+            raise fault(table, (kind, i), text)
 
 
 def _check_known(table: Table, path: JsonPath, what: str, names: Sequence[str]) -> None:
@@ -234,7 +262,7 @@ def _check_known(table: Table, path: JsonPath, what: str, names: Sequence[str]) 
     for step in path:
         name = name[step]
     if name not in names:
-        raise _fault(table, path, f"no {what} {shown(name)}; there are {_listed(names)}")
+        raise fault(table, path, f"no {what} {shown(name)}; there are {_listed(names)}")
 
 
 def _check_home(table: Table) -> None:
@@ -243,10 +271,10 @@ def _check_home(table: Table) -> None:
     for name in table["home"]:
         if name not in joints:
             text = f"no joint {shown(name)}; there are {_listed(joints)}"
-            raise _fault(table, ("home", name), text)
+            raise fault(table, ("home", name), text)
     for name in joints:
         if name not in table["home"]:
-            raise _fault(table, ("home",), f"{shown(name)} is missing; every joint needs a value")
+            raise fault(table, ("home",), f"{shown(name)} is missing; every joint needs a value")
 
 
 def _check_directions(table: Table) -> None:
@@ -257,14 +285,14 @@ def _check_directions(table: Table) -> None:
             _check_finite(table)
         if not any(vector):
             text = f"{shown(vector)} has no direction; one number must not be 0"
-            raise _fault(table, (kind, i, key), text)
+            raise fault(table, (kind, i, key), text)
 
 
 def _check_limits(table: Table) -> None:
     for _, i, row in _rows(table, "joint"):
         joint_type, turn = JOINT_TYPES[row["type"]], TURN[table["angle_unit"]]
         if text := joint_type.limits_fault(row.get("limits"), turn):
-            raise _fault(table, ("joint", i, "limits"), text)
+            raise fault(table, ("joint", i, "limits"), text)
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ from msgspec import UNSET
 
 from qbound.extras import require
 from qbound.files import write_whole
+from qbound.model.bodycheck import check_bodies
 from qbound.model.robot import Body, Robot
 from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
 from qbound.model.rows import quotient
@@ -107,7 +108,7 @@ def save_robot(robot: Robot, path: str | Path) -> None:
 
     table = _table(robot)
     try:
-        read_table(table)
+        check_bodies(_built(read_table(table)), table)
     except RobotFileError as error:
         raise RobotFileError(f"{path}: not written: {error}") from None
     write_whole(path, tomlkit.dumps(table).encode())
@@ -147,7 +148,10 @@ def _robot(table: Table, label: str) -> Robot:
         raise RobotFileError(f"{label}{error}") from None
     except RecursionError:
         raise RobotFileError(f"{label}tables in tables without end") from None
-    robot = _built(file)
+    try:
+        check_bodies(robot := _built(file), table)
+    except RobotFileError as error:
+        raise RobotFileError(f"{label}{error}") from None
     for i, boundary in enumerate(robot.boundaries):
         if robot.least_distance(boundary) == 0:
             where = place(table, ("boundary", i))

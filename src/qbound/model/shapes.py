@@ -198,7 +198,7 @@ class Capsule(Shape):
     def fault(self) -> str | None:
         """Both ends at one place."""
         same = np.array_equal(self.start, self.end)
-        return "'from' and 'to' are one place; a disc has one" if same else None
+        return "'from' and 'to' are one place: that is a disc" if same else None
 
     def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
         """Return two half circles, from `end` to `start`."""

@@ -299,8 +299,8 @@ def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
     asked = wider(robot, statement)
     return {
         boundary.name: clearance(asked, boundary)
-        for boundary in asked.boundaries
-        if boundary.used and asked.least_distance(boundary) != 0
+        for boundary in asked.used
+        if asked.least_distance(boundary) != 0
     }
 
 

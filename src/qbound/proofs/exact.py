@@ -99,9 +99,8 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
     """
     held = {j: ball(value) for j, value in (held or {}).items()}
     free = [joint for j, joint in enumerate(robot.joints) if j not in held]
-    used = robot.used
     limits = [limit_names(joint.name) for joint in free]
-    return exact_state(robot, used, [joint.limits for joint in free], limits, held)
+    return exact_state(robot, robot.used, [joint.limits for joint in free], limits, held)
 
 
 def exact_state(

@@ -31,7 +31,7 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
     stated = paper_rule.problem(robot)
     with precision(BITS):
         sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]
-    cuts = [b for b in exact.boundaries if isinstance(b, HalfSpace) and b.used]
+    cuts = [b for b in exact.used if isinstance(b, HalfSpace)]
     return exact_state(exact, cuts, sides, stated.limits)
 
 

@@ -276,7 +276,7 @@ def _united(parts: Iterable[Statement]) -> Statement:
 def with_extra_clearance(robot: Robot, length: float) -> Robot:
     """Return a robot whose every boundary asks for some more distance."""
     boundaries = tuple(boundary.with_extra_clearance(length) for boundary in robot.boundaries)
-    return replace(robot, boundaries=boundaries)
+    return replace(robot, boundaries=boundaries, clearance=robot.clearance + length)
 
 
 def wider(robot: Robot, statement: Statement) -> Robot:
@@ -294,7 +294,7 @@ def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
 def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -> None:
     """Refuse an inset that home does not survive, though home itself is feasible."""
     q = robot.with_held(robot.home[robot.free(held or {})], held or {})
-    used = [boundary.name for boundary in robot.boundaries if boundary.used]
+    used = {boundary.name for boundary in robot.used}
     lengths = {name: margin for name, margin in margins(robot, q) if name in used}
     name = min(lengths, key=lambda name: lengths[name], default="")
     if name and 0 <= lengths[name] < inset:

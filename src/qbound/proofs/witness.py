@@ -99,7 +99,7 @@ def witness(
         corners = np.array(cells[evidence["cell"]].corners, dtype=float)
         q = np.array(evidence["weights"], dtype=float) @ corners
     name, asked = evidence["boundary"], wider(robot, statement)
-    if any(boundary.name == name for boundary in asked.boundaries):
+    if any(boundary.name == name for boundary in asked.used):
         form = clearance(asked, asked.boundary(name))
         return Witness(name, tuple(q.tolist()), _depth(asked, name, float(form(q * units(robot)))))
     joint, _, side = name.rpartition(".")

@@ -1,0 +1,117 @@
+"""What bodies must fulfil to keep apart: names, shapes, one plane of motion.
+
+`robotcheck` has looked at types and keys; here the robot itself is asked. A table [[body]] with a
+frame and a polygon and no more, which no boundary is about, is only drawn: its outline may be any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from qbound.model.boundaries import BodyPair, Boundary, HalfSpace
+from qbound.model.plane import PlaneOfMotion
+from qbound.model.robot import Robot
+from qbound.model.robotcheck import fault
+from qbound.model.schema import JsonPath, shown
+from qbound.model.shapes import Body
+from qbound.tolerances import ZERO_AMPLITUDE
+
+Table = Mapping[str, Any]
+
+DRAWN = {"frame", "polygon"}
+"""Keys of a body as files had it before bodies could keep apart."""
+
+
+def check_bodies(robot: Robot, table: Table) -> None:
+    """Refuse a robot whose bodies cannot keep apart as its file asks for.
+
+    Raises
+    ------
+    RobotFileError
+        With the first fault, its place in the table, and what is allowed there.
+    """
+    _check_names(robot, table)
+    part = taking_part(robot)
+    for path, body in _placed(robot):
+        row = table[path[0]][path[1]]
+        told = body.shape.fault if body.name in part or set(row) != DRAWN else None
+        if told:
+            raise fault(table, (*path, body.shape.key), f"no {body.shape.key}: {told}")
+    if part:
+        _check_plane(robot, table, part)
+
+
+def taking_part(robot: Robot) -> dict[str, Boundary]:
+    """Return the names of the bodies that boundaries are about, each with the first of these."""
+    found: dict[str, Boundary] = {}
+    for boundary in (*robot.boundaries, *robot.used):
+        names: Sequence[str] = ()
+        if isinstance(boundary, BodyPair):
+            names = boundary.bodies
+        elif isinstance(boundary, HalfSpace) and boundary.body is not None:
+            names = (boundary.body,)
+        for name in names:
+            found.setdefault(name, boundary)
+    return found
+
+
+def _placed(robot: Robot) -> Iterator[tuple[tuple[str, int], Body]]:
+    """Yield every body with its place in a file."""
+    for kind, bodies in (("body", robot.bodies), ("obstacle", robot.obstacles)):
+        for i, body in enumerate(bodies):
+            yield (kind, i), body
+
+
+def _check_names(robot: Robot, table: Table) -> None:
+    """Refuse a pair that `collisions` makes and that has the name of something else."""
+    places: dict[str, JsonPath] = {b.name: ("boundary", i) for i, b in enumerate(robot.boundaries)}
+    for boundary in robot.used[sum(b.used for b in robot.boundaries) :]:
+        if (path := places.get(boundary.name)) is not None:
+            text = f'{shown(boundary.name)} is what collisions = "all" calls a pair of bodies'
+            raise fault(table, path, f"{text}; names are unique")
+        places[boundary.name] = ("collisions",)
+
+
+def _check_plane(robot: Robot, table: Table, part: Mapping[str, Boundary]) -> None:
+    """Refuse bodies and walls that leave the plane of motion."""
+    first, boundary = next(iter(part.items()))
+    try:
+        plane = robot.plane
+    except ValueError as error:
+        where = _place_of(robot, boundary)
+        raise fault(table, where, f"bodies keep apart in one plane only; {error}") from None
+    height = plane.height(robot.body(first).frame, robot.body(first).shape.places)[0]
+    rounding = ZERO_AMPLITUDE * _size(plane, [robot.body(name) for name in part])
+    for path, body in _placed(robot):
+        if body.name in part:
+            off = np.abs(plane.height(body.frame, body.shape.places) - height)
+            if off.max() > rounding:
+                place = shown(body.shape.places[np.argmax(off)].tolist())
+                text = f"{place} lies {off.max():.6g} off the plane of body {shown(first)}"
+                raise fault(table, (*path, body.shape.key), text)
+    for i, wall in enumerate(robot.boundaries):
+        if isinstance(wall, HalfSpace) and wall.body and _oblique(wall, plane):
+            normal = shown(table["boundary"][i]["normal"])
+            text = f"{normal} leaves the plane in which the arm moves"
+            raise fault(table, ("boundary", i, "normal"), text)
+
+
+def _oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:
+    return bool(abs(wall.normal @ plane.normal) > ZERO_AMPLITUDE)
+
+
+def _place_of(robot: Robot, boundary: Boundary) -> JsonPath:
+    """Return where a file asks for a boundary."""
+    if boundary in robot.boundaries:
+        return "boundary", robot.boundaries.index(boundary)
+    return ("collisions",)
+
+
+def _size(plane: PlaneOfMotion, bodies: Sequence[Body]) -> float:
+    """Return the largest length that goes into a height."""
+    base = plane.frames.base
+    lengths = [np.abs(plane.frames.position(base, name, base)).max() for name in plane.frames.names]
+    return float(max(lengths + [np.abs(body.shape.places).max() for body in bodies]))
