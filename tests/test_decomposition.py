@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
-from qbound.region.decomposition import Plane, critical_values
+from qbound.region.decomposition import critical_values
+from qbound.region.plane import Plane
 from support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, TORUS, forms
 from support.regions import pieces
 

@@ -37,6 +37,23 @@ NEAR_CIRCLE: Final = 0.03
 A double root leaves it by 1e-5 and a fourfold by 1e-2; one too many costs time, a missed one the
 answer."""
 
+CONTACT_SIDE: Final = 1e-10
+"""A side condition (coefficients scaled to 1) that is above minus this is not negative.
+
+A contact too many where two features meet is seen twice, and counted once; one too few is not."""
+
+WALL: Final = 1e-7
+"""Coefficients along the lift this small: the form vanishes on the fibre, as nearly as a double
+root of the base can be known."""
+
+THIN: Final = 1e-6
+"""A gap between contacts this narrow is looked at itself: rounding may have opened it."""
+
+AGREE: Final = 1e-3
+"""Lift values this close at a common base value may be one crossing; one too many costs time.
+
+At a tangency they come apart by the square root of the base's error."""
+
 SAME_CRITICAL: Final = 1e-10
 """Critical base values closer than this are one."""
 

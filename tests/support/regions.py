@@ -11,7 +11,8 @@ from scipy.sparse.csgraph import connected_components
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
 from qbound.region.cells import CellComplex
-from qbound.region.decomposition import Plane, decompose
+from qbound.region.decomposition import decompose
+from qbound.region.plane import Plane
 from support.forms import Piece, Ranges
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.printable import printable
-from qbound.region.decomposition import Plane, Root
+from qbound.region.plane import Plane, Root
 from qbound.tolerances import QUADRATURE, SAME_POINT
 
 Floats = NDArray[np.float64]
@@ -100,17 +100,26 @@ class Arc:
         -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
     pieces : Pieces
         What the arc is made of, the region on its left.
+    feature : str
+        Of two bodies, what touches: "corner 2 on edge 3", the first body's first.
     """
 
     boundary: str
     branch: int | None
     pieces: Pieces
+    feature: str = ""
 
     def __repr__(self) -> str:
         """Say in a line what it is part of and where it runs."""
         branch = "" if self.branch is None else f" ({self.branch:+d})"
         start, end = (", ".join(f"{x:.6g}" for x in q) for q in (self.start, self.end))
-        return printable(f"<Arc of {self.boundary}{branch} from ({start}) to ({end})>")
+        feature = f": {self.feature}" if self.feature else ""
+        return printable(f"<Arc of {self.boundary}{feature}{branch} from ({start}) to ({end})>")
+
+    @property
+    def label(self) -> tuple[str, str]:
+        """Boundary and feature: where they change is a vertex."""
+        return self.boundary, self.feature
 
     @property
     def start(self) -> Floats:

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
-from qbound.region.decomposition import Cell, Decomposition, Plane, Root
-from qbound.tolerances import POSITIVE, SAME_POINT, TOUCH
+from qbound.region.decomposition import Cell, Decomposition
+from qbound.region.plane import Plane, Root
+from qbound.tolerances import SAME_POINT, TOUCH
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -86,6 +87,7 @@ class CellComplex:
     """The cells of a decomposition and how they hang together."""
 
     def __init__(self, decomposition: Decomposition) -> None:
+        self.decomposition = decomposition
         self.plane: Plane = decomposition.plane
         self.abscissae = decomposition.lines
         self.cells: list[Cell] = decomposition.cells
@@ -216,7 +218,7 @@ class CellComplex:
             if line.left[e] is not None and line.right[e] is not None
         ]
         where, low, high = np.array([(i, a, b) for i, _, a, b in shared]).reshape(-1, 3).T
-        free = self.plane.open(self.abscissae[where.astype(np.int64)], low, high, POSITIVE)
+        free = self.decomposition.joined(where.astype(np.int64), low, high)
         for (i, e, *_), joined in zip(shared, free.tolist(), strict=True):
             lines[i].joined[e] = joined
 

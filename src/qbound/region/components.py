@@ -131,7 +131,7 @@ def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
 
     One that goes round a joint is left alone.
     """
-    starts = [i for i, arc in enumerate(loop) if loop[i - 1].boundary != arc.boundary]
+    starts = [i for i, arc in enumerate(loop) if loop[i - 1].label != arc.label]
     closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
     if not starts or not closes:
         return loop
@@ -142,7 +142,7 @@ def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
 def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
     for arcs in loops:
         for before, arc in zip(behind(arcs), arcs, strict=True):
-            if before.boundary != arc.boundary:
+            if before.label != arc.label:
                 yield Vertex(arc.start, (before.boundary, arc.boundary))
 
 

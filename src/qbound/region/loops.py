@@ -18,12 +18,14 @@ from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis, basis_slope
 from qbound.region.arcs import Arc, Pieces
 from qbound.region.cells import CellComplex, Step
-from qbound.region.decomposition import Plane, Root
+from qbound.region.plane import Plane, Root
 from qbound.tolerances import TRANSVERSAL
 
 Floats = NDArray[np.float64]
 Item = TypeVar("Item")
-Label = tuple[str, int | None]
+Label = tuple[str, int | None, int]
+"""Boundary, branch, and which form; -1 of an end of a range."""
+
 BaseLift = tuple[float, float]
 Windings = Mapping[int, tuple[int, int]]
 
@@ -72,7 +74,10 @@ class Layout:
         self, cells: CellComplex, base: int, names: Sequence[str], limits: Sequence[tuple[str, str]]
     ) -> None:
         self.cells, self.plane, self.base = cells, cells.plane, base
-        self.names, self.limits = names, limits
+        contacts = cells.plane.contacts
+        self.names = [*names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
+        self.features = [*[""] * len(names), *contacts.names]
+        self.limits = limits
 
     def arcs(self, loops: Sequence[BoundaryLoop]) -> list[tuple[Arc, ...]]:
         """Return the arcs of each loop, the component on their left."""
@@ -80,8 +85,8 @@ class Layout:
         self._polish(rings)
         return [
             tuple(
-                Arc(*label, ring.pieces[span])
-                for label, span in zip(ring.labels, ring.spans, strict=True)
+                Arc(name, branch, ring.pieces[span], self.features[form] if form >= 0 else "")
+                for (name, branch, form), span in zip(ring.labels, ring.spans, strict=True)
             )
             for ring in rings
         ]
@@ -105,21 +110,21 @@ class Layout:
         cell = self.cells.cells[step.cell]
         root = cell.lower if step.kind == "lower" else cell.upper
         if root.form < 0:
-            return self.limits[1 - self.base][-1 - root.form], None
-        return self.names[root.form], root.branch if self.plane.lift_kind == "revolute" else None
+            return self.limits[1 - self.base][-1 - root.form], None, -1
+        branch = root.branch if self.plane.lift_kind == "revolute" else None
+        return self.names[root.form], branch, root.form
 
     def _line_label(self, step: Step) -> Label:
         """Name a piece of a critical line: a limit of the base, or a form without the lift."""
         plane, t = self.plane, self.cells.abscissae[step.line]
         side = 0 if step.kind == "down" else 1
         if plane.base_range is not None and t == plane.ends[side]:
-            return self.limits[self.base][side], None
+            return self.limits[self.base][side], None, -1
         low, high = self.cells.bounds(self.cells.lines[step.line], step.element)
-        rows = plane.along_lift(np.array([t]))[0]
-        form = int(np.abs(rows @ basis(plane.lift_kind, (low + high) / 2)).argmin())
+        form = plane.vanishing(float(t), (low + high) / 2)
         # A form falls along the base at theta + arccos; there the component lies before it.
         branch = (1 if step.kind == "up" else -1) if plane.base_kind == "revolute" else None
-        return self.names[form], branch
+        return self.names[form], branch, form
 
     # --- places ---------------------------------------------------------------------------------
 
@@ -163,14 +168,13 @@ class Layout:
 
     def _polish(self, rings: Sequence[_Ring]) -> None:
         """Bring the corners where two forms meet onto both, all at once."""
-        known = {name: row for row, name in enumerate(self.names)}
         corners = [
-            (ring.pieces, before.stop - 1, span.start, known[a], known[b])
+            (ring.pieces, before.stop - 1, span.start, a, b)
             for ring in rings
-            for (a, _), (b, _), before, span in zip(
+            for (*_, a), (*_, b), before, span in zip(
                 behind(ring.labels), ring.labels, behind(ring.spans), ring.spans, strict=True
             )
-            if a != b and a in known and b in known
+            if a != b and a >= 0 and b >= 0
         ]
         if not corners:
             return

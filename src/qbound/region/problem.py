@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.evaluator import (
     Evaluator,
     Range,
@@ -53,6 +54,8 @@ class Problem:
     held : dict of int to float
         Values of the other joints, rad or length.
     rule : {"clearance", "paper"}
+    contacts : Contacts
+        Features of the pairs of bodies that are to keep apart.
     """
 
     forms: HarmonicForm
@@ -64,6 +67,7 @@ class Problem:
     joints: tuple[int, int] = (0, 1)
     held: Mapping[int, float] = field(default_factory=dict)
     rule: Rule = "clearance"
+    contacts: Contacts = NO_CONTACTS
 
     def __repr__(self) -> str:
         """Say in a line whose joints these are, and by which rule."""

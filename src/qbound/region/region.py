@@ -17,8 +17,9 @@ from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
-from qbound.region.decomposition import Decomposition, Plane, decompose
+from qbound.region.decomposition import Decomposition, decompose
 from qbound.region.loops import BoundaryLoop, Layout
+from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.units import limited_joints, margin_text
 
@@ -391,9 +392,9 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     constants = problem.constants()
     inner = problem.without(list(constants))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
-    plane = Plane(inner.forms, inner.ranges, base)
+    plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
     if blocked:
-        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), []))
+        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), [], np.zeros(0)))
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]))
     cells = CellComplex(decompose(plane))
     if not cells.cells:

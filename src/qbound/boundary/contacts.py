@@ -1,0 +1,344 @@
+r"""How do two bodies of a planar arm touch? Contact features as harmonic forms of two joints.
+
+Convex cores, thickened by radii, are apart by more than R (both radii and the clearance) exactly
+if an edge of one has all corners of the other more than R beyond it, or two corners are the nearest
+places of both and more than R apart. Each such test is made of features: an edge of one core and a
+corner of the other, or two corners. A feature has one form f, positive on the free side, and at
+most four side conditions g: ``f = 0, all g >= 0`` is a contact, and these contacts together are the
+whole boundary of what the pair forbids.
+
+All is seen from the frame of the pair's first body, so that only the joints between the two occur,
+each in the first degree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.tolerances import ROUNDING
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+SIDES = 4
+"""Most side conditions of one feature: two ends of an edge and two neighbours of a corner."""
+
+
+@dataclass(frozen=True)
+class Move:
+    """A joint in the plane of motion, as tables see it.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (2,)
+        From the parent's frame to the joint's, at joint value 0; length.
+    turn : int
+        +1 or -1 for a turn anticlockwise or clockwise; 0 for a slide.
+    along : ndarray, shape (2,)
+        Direction of a slide; zeros for a turn.
+    free : int or None
+        Which of the two free joints it is; None for one that is held.
+    value : float
+        Of a held joint, rad or length.
+    """
+
+    origin: Floats
+    turn: int
+    along: Floats
+    free: int | None = None
+    value: float = 0.0
+
+
+class Pose(NamedTuple):
+    """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
+
+    A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared`` is
+    ``|at|^2``, which a product of tables would not show to be of first degree.
+    """
+
+    turn: Floats  # (2, 2, 3, 3)
+    at: Floats  # (2, 3, 3)
+    back: Floats  # (2, 3, 3)
+    squared: Floats  # (3, 3)
+
+
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+
+
+def pose(moves: Sequence[Move]) -> Pose:
+    """Return the pose that some joints, one after the other, give the last one's frame."""
+    found = Pose(_constant(np.eye(2)), *(_constant(np.zeros(n)) for n in (2, 2, ())))
+    for move in moves:
+        found = _shifted(found, move.origin)
+        if move.free is None:
+            c, s = np.cos(move.value), move.turn * np.sin(move.value)
+            found = _rotated(found, np.array([[c, -s], [s, c]])) if move.turn else found
+            found = _shifted(found, move.value * move.along)
+        else:
+            found = (_turned if move.turn else _slid)(found, move, move.free)
+    return found
+
+
+def _constant(value: Floats) -> Floats:
+    """Return tables of a value that no joint moves, shape (..., 3, 3)."""
+    table = np.zeros((*np.shape(value), 3, 3))
+    table[..., 0, 0] = value
+    return table
+
+
+def _times(table: Floats, joint: int, factor: int) -> Floats:
+    """Multiply what a joint does not move yet by that joint's first or second factor."""
+    product = np.zeros_like(table)
+    axis = joint - 2
+    np.moveaxis(product, axis, 0)[factor] = np.take(table, 0, axis=axis)
+    return product
+
+
+def _shifted(now: Pose, by: Floats) -> Pose:
+    """Go on by a fixed vector, seen from the moved frame."""
+    return Pose(
+        now.turn,
+        now.at + np.einsum("abij,b->aij", now.turn, by),
+        now.back + _constant(by),
+        now.squared + 2 * np.tensordot(by, now.back, axes=1) + _constant(by @ by),
+    )
+
+
+def _rotated(now: Pose, by: Floats) -> Pose:
+    """Turn by a fixed rotation."""
+    turn = np.einsum("abij,bc->acij", now.turn, by)
+    return now._replace(turn=turn, back=np.einsum("ba,bij->aij", by, now.back))
+
+
+def _turned(now: Pose, move: Move, joint: int) -> Pose:
+    """Turn by a free joint: cosine times what was, sine times that a quarter turn on."""
+    on = _rotated(now, move.turn * QUARTER)
+    turn, back = (
+        _times(one, joint, 1) + _times(other, joint, 2)
+        for one, other in ((now.turn, on.turn), (now.back, on.back))
+    )
+    return now._replace(turn=turn, back=back)
+
+
+def _slid(now: Pose, move: Move, joint: int) -> Pose:
+    """Go on along a free slide, by its value times a direction."""
+    ahead = np.einsum("abij,b->aij", now.turn, move.along)
+    product = 2 * np.tensordot(move.along, now.back, axes=1)
+    length = _constant(np.asarray(move.along @ move.along))
+    return Pose(
+        now.turn,
+        now.at + _times(ahead, joint, 1),
+        now.back + _times(_constant(move.along), joint, 1),
+        now.squared + _times(product, joint, 1) + _times(length, joint, 2),
+    )
+
+
+# --- features -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Core:
+    """A convex core in its frame's plane coordinates.
+
+    Attributes
+    ----------
+    corners : ndarray, shape (m, 2)
+        Anticlockwise; one is a point, two a segment, which has an edge on either side.
+    names : tuple of two str
+        What its corners and its edges are called.
+    """
+
+    corners: Floats
+    names: tuple[str, str] = ("corner", "edge")
+
+    def edges(self) -> tuple[Floats, Floats]:
+        """Return the directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
+        ahead = np.roll(self.corners, -1, axis=0) - self.corners
+        lengths = np.hypot(*ahead.T)
+        count = len(ahead) if len(ahead) > 1 else 0
+        return ahead[:count] / lengths[:count, None], lengths[:count]
+
+    def steps(self) -> Floats:
+        """Return the directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
+        along, _ = self.edges()
+        if not len(along):
+            return np.zeros((len(self.corners), 0, 2))
+        return np.stack([along, -np.roll(along, 1, axis=0)], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """Features, one a row.
+
+    Attributes
+    ----------
+    forms : ndarray, shape (f, 3, 3)
+        Positive on the free side: a length, of two corners a squared length.
+    sides : ndarray, shape (f, 4, 3, 3)
+        What is negative in no contact; constant 1 where there are fewer.
+    corners : ndarray of bool, shape (f,)
+        Whether it is of two corners.
+    clause : ndarray of int, shape (f,)
+        The separating test that it belongs to, ascending: an edge against all corners, or one pair
+        of corners.
+    names : tuple of str
+        What touches, the first body's first: "corner 2 on edge 3".
+    """
+
+    forms: Floats
+    sides: Floats
+    corners: Bools
+    clause: Ints
+    names: tuple[str, ...]
+
+
+def features(one: Core, other: Core, moved: Pose, keep: float) -> Features:
+    """Return the features of two convex cores that are to keep a distance.
+
+    Parameters
+    ----------
+    moved : Pose
+        Of the other core's frame, seen from the first one's.
+    keep : float
+        Both radii plus the clearance, R; length.
+    """
+    ahead = moved.at + np.einsum("abij,kb->kaij", moved.turn, other.corners)
+    back = np.einsum("baij,kb->kaij", moved.turn, one.corners) - moved.back
+    there, here = moved.turn, np.swapaxes(moved.turn, 0, 1)
+    found = [_edges(one, other, ahead, there, keep), _edges(other, one, back, here, keep)]
+    if keep > 0 or max(len(one.corners), len(other.corners)) < 3:
+        found.append(_corners(one, other, ahead, back, moved, keep))
+    forms, sides = (np.concatenate([rows[i] for rows in found]) for i in (0, 1))
+    (e, k), (j, i) = (len(one.edges()[1]), len(other.corners)), (len(other.edges()[1]), len(one.corners))
+    pairs = len(forms) - e * k - j * i
+    clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
+    clause = np.concatenate([clause, e + j + np.arange(pairs)])
+    names = [f"{one.names[1]} {a} on {other.names[0]} {b}" for a in range(e) for b in range(k)]
+    names += [f"{one.names[0]} {b} on {other.names[1]} {a}" for a in range(j) for b in range(i)]
+    places = [(a, b) for a in range(i) for b in range(k)][:pairs]
+    names += [f"{one.names[0]} {a} on {other.names[0]} {b}" for a, b in places]
+    corners = np.arange(len(forms)) >= e * k + j * i
+    return Features(forms, sides, corners, clause, tuple(names))
+
+
+def _edges(
+    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float
+) -> tuple[Floats, Floats]:
+    """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
+    along, lengths = mine.edges()
+    normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    starts = mine.corners[: len(along)]
+    height = np.einsum("ea,kaij->ekij", normal, seen)
+    height[..., 0, 0] -= ((normal * starts).sum(axis=1) + keep)[:, None]
+    beside = np.einsum("ea,kaij->ekij", along, seen)
+    beside[..., 0, 0] -= (along * starts).sum(axis=1)[:, None]
+    rest = -beside
+    rest[..., 0, 0] += lengths[:, None]
+    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps())
+    sides = np.concatenate([beside[:, :, None], rest[:, :, None], rims], axis=2)
+    size = max(float(np.abs(seen).max()), float(np.abs(mine.corners).max()))
+    sides[:, :, :2] = _settled(sides[:, :, :2], size)
+    return _settled(height.reshape(-1, 3, 3), size), _padded(_settled(sides, 1.0))
+
+
+def _corners(
+    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float
+) -> tuple[Floats, Floats]:
+    """Forms and sides of each corner of one core with each of the other."""
+    p, u = one.corners, other.corners
+    squared = moved.squared - 2 * np.einsum("pa,kaij->pkij", p, ahead)
+    squared = squared + 2 * np.einsum("ka,aij->kij", u, moved.back)
+    squared[..., 0, 0] += (p**2).sum(axis=1)[:, None] + (u**2).sum(axis=1) - keep**2
+    mine, theirs = one.steps(), other.steps()
+    behind = -np.einsum("pna,kaij->pknij", mine, ahead)
+    behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
+    beyond = -np.einsum("kna,paij->pknij", theirs, back)
+    beyond[..., 0, 0] += np.einsum("kna,ka->kn", theirs, u)
+    size = max(float(np.abs(x).max()) for x in (ahead, back, p, u))
+    sides = _settled(np.concatenate([behind, beyond], axis=2), size)
+    return _settled(squared.reshape(-1, 3, 3), size**2), _padded(sides)
+
+
+def _settled(table: Floats, size: float) -> Floats:
+    """Take for zero what rounding leaves where terms of this size cancel."""
+    return np.where(np.abs(table) > ROUNDING * size, table, 0.0)
+
+
+def _padded(sides: Floats) -> Floats:
+    """Return side conditions (e, k, up to 4, 3, 3) as (e k, 4, 3, 3), with 1 for those missing."""
+    e, k, n = sides.shape[:3]
+    full = np.zeros((e, k, SIDES, 3, 3))
+    full[..., 0, 0] = 1.0
+    full[:, :, :n] = sides
+    return full.reshape(-1, SIDES, 3, 3)
+
+
+# --- of all pairs ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """The features of all pairs of bodies that are to keep apart, one a row.
+
+    Attributes
+    ----------
+    forms, sides, corners, clause, names
+        As in `Features`; clauses and pairs are numbered through, ascending.
+    pair : ndarray of int, shape (f,)
+        Which pair of convex parts.
+    touching : ndarray of bool, shape (f,)
+        Whether it can bound what the pair forbids; else it only parts.
+    boundaries : tuple of str
+        The boundary of each pair of parts.
+    """
+
+    forms: Floats
+    sides: Floats
+    corners: Bools
+    clause: Ints
+    names: tuple[str, ...]
+    pair: Ints
+    touching: Bools
+    boundaries: tuple[str, ...]
+
+    @property
+    def pairs(self) -> int:
+        """Number of pairs of convex parts."""
+        return len(self.boundaries)
+
+
+def gathered(found: Sequence[tuple[str, Features, float]]) -> Contacts:
+    """Gather the features of pairs of parts: boundary, features, and the distance R they keep."""
+    if not found:
+        return NO_CONTACTS
+    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows, _ in found)])
+    return Contacts(
+        np.concatenate([rows.forms for _, rows, _ in found]),
+        np.concatenate([rows.sides for _, rows, _ in found]),
+        np.concatenate([rows.corners for _, rows, _ in found]),
+        np.concatenate([rows.clause + n for (_, rows, _), n in zip(found, clauses, strict=False)]),
+        tuple(name for _, rows, _ in found for name in rows.names),
+        np.concatenate([np.full(len(rows.forms), k) for k, (_, rows, _) in enumerate(found)]),
+        np.concatenate([~rows.corners | (keep > 0) for _, rows, keep in found]),
+        tuple(boundary for boundary, _, _ in found),
+    )
+
+
+NO_CONTACTS = Contacts(
+    np.zeros((0, 3, 3)),
+    np.zeros((0, SIDES, 3, 3)),
+    np.zeros(0, dtype=np.bool_),
+    np.zeros(0, dtype=np.int64),
+    (),
+    np.zeros(0, dtype=np.int64),
+    np.zeros(0, dtype=np.bool_),
+    (),
+)
+"""Of a robot without bodies that keep apart."""

@@ -1,0 +1,204 @@
+"""At which base values can two forms share a root along the lift? Roots of univariate polynomials.
+
+Every kind of event is one polynomial of the base: of z = exp(i t) on a circle, of t itself on a
+line. They are solved in stacks, by eigenvalues; each root is returned with the row it belongs to.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.forms.angles import TURN, turns_within
+from qbound.forms.factors import basis
+from qbound.region.plane import Plane
+from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Complexes = NDArray[np.complex128]
+
+BLOCK = 2**14
+"""Polynomials that are solved at once: fast enough, small enough for any memory."""
+
+Events = Iterator[tuple[Ints, Complexes]]
+"""Rows and their polynomials, stacks of equal length; a row may occur in several."""
+
+
+def univariate(plane: Plane, table: Floats) -> Complexes:
+    """Turn scaled (m, 3, 3) coefficients into polynomials of the base, (m, 3 of the lift, 3).
+
+    Ascending powers. Revolute: of z = exp(i q), times z. Prismatic: of q itself.
+    """
+    c = np.moveaxis(table, 1, -1).astype(complex)
+    if plane.base_kind == "prismatic":
+        return c
+    one, cosine, sine = np.moveaxis(c, -1, 0)
+    return np.stack([(cosine + 1j * sine) / 2, one, (cosine - 1j * sine) / 2], axis=-1)
+
+
+def own_events(plane: Plane, c: Complexes) -> Events:
+    """Yield where a form's roots appear, jump, or pass an end of the lift's range."""
+    rows = np.arange(len(c))
+    c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
+    if plane.lift_kind == "revolute":
+        yield rows, _times(c1, c1) + _times(c2, c2) - _times(c0, c0)
+    else:
+        yield rows, _times(c1, c1) - 4 * _times(c0, c2)
+        yield rows, c1
+    yield rows, c2
+    if plane.lift_range is not None:
+        at = basis(plane.lift_kind, np.asarray(plane.lift_range) / plane.lift_unit)
+        for factor in at:
+            yield rows, np.einsum("j,mjl->ml", factor, c)
+
+
+def meetings(plane: Plane, a: Complexes, b: Complexes) -> Events:
+    """Yield where paired forms, two stacks (k, 3, 3), may share a root along the lift."""
+    yield from (_circle if plane.lift_kind == "revolute" else _line)(a, b)
+
+
+def _circle(a: Complexes, b: Complexes) -> Events:
+    """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule).
+
+    Where the two are parallel for every base value, as for two points on one ray of a link, it is
+    the sum of two squares with only double roots; their common roots are then those of each term.
+    Where both have no constant part it is the square of the determinant.
+    """
+    rows = np.arange(len(a))
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, 1, 0), np.moveaxis(b, 1, 0)
+    determinant = _times(a1, b2) - _times(a2, b1)
+    cosine = _times(a2, b0) - _times(a0, b2)
+    sine = _times(a0, b1) - _times(a1, b0)
+    parallel = (np.abs(determinant) <= NEGLIGIBLE).all(axis=-1)
+    plain = (np.abs(cosine) <= NEGLIGIBLE).all(-1) & (np.abs(sine) <= NEGLIGIBLE).all(-1)
+    resultant = _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
+    # Two forms that share one root for every base value share the other where they are parallel.
+    sharing = ~parallel & (np.abs(resultant) <= NEGLIGIBLE).all(axis=-1)
+    apart = ~parallel & ~plain
+    yield rows[apart], resultant[apart]
+    yield rows[parallel], cosine[parallel]
+    yield rows[parallel], sine[parallel]
+    yield rows[sharing | plain], determinant[sharing | plain]
+
+
+def _line(a: Complexes, b: Complexes) -> Events:
+    """Resultants of polynomials of degree 2 or less at their actual degrees.
+
+    The formal resultant of two affine forms is identically zero, so each pair is taken at its own.
+    """
+    rows = np.arange(len(a))
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, 1, 0), np.moveaxis(b, 1, 0)
+    one, other = (np.abs(c).max(axis=-1, initial=0.0) > 0 for c in (a2, b2))
+    p = _times(a1, b0) - _times(a0, b1)
+    q = _times(a2, b0) - _times(a0, b2)
+    apart = _times(a2, b1) - _times(a1, b2)
+    both = _times(q, q) - _times(apart, p)
+    # Two quadratics that share one root for every base value share the other where sums agree.
+    sharing = one & other & (np.abs(both) <= NEGLIGIBLE).all(axis=-1)
+    first = _times(_times(a2, b0), b0) - _times(_times(a1, b0), b1) + _times(_times(a0, b1), b1)
+    second = _times(_times(b2, a0), a0) - _times(_times(b1, a0), a1) + _times(_times(b0, a1), a1)
+    for chosen, polynomials in (
+        (~one & ~other, p),
+        (one & other, both),
+        (one & ~other, first),
+        (~one & other, second),
+        (sharing, apart),
+    ):
+        yield rows[chosen], polynomials[chosen]
+
+
+def _times(p: Complexes, q: Complexes) -> Complexes:
+    """Multiply stacked polynomials, coefficients on the last axis."""
+    product = np.zeros((*p.shape[:-1], p.shape[-1] + q.shape[-1] - 1), dtype=complex)
+    for k in range(p.shape[-1]):
+        product[..., k : k + q.shape[-1]] += p[..., k : k + 1] * q
+    return product
+
+
+def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
+    """Return the rows and the real base values at which any of the polynomials vanishes.
+
+    A block at a time: of thousands of boundaries there are millions of pairs.
+    """
+    found = [(np.zeros(0, dtype=np.int64), np.zeros(0))]
+    for rows, stack in events:
+        for k in range(0, len(stack), BLOCK):
+            where, t = _real(plane, stack[k : k + BLOCK])
+            found.append((rows[k : k + BLOCK][where], t))
+    where, t = zip(*found, strict=True)
+    return np.concatenate(where), np.concatenate(t)
+
+
+def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
+    rows, z = _polynomial_roots(stack)
+    if plane.base_kind == "prismatic":
+        near = np.abs(z.imag) <= NEAR_CIRCLE * (1 + np.abs(z.real))
+        return rows[near], np.asarray(plane.base_unit * z.real[near])
+    near = np.abs(np.abs(z) - 1) <= NEAR_CIRCLE
+    rows, t = rows[near], np.angle(z[near])
+    turns = np.array(turns_within(*plane.ends, [-math.pi, math.pi]))
+    return np.repeat(rows, len(turns)), (t[:, None] + TURN * turns).ravel()
+
+
+def _polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
+    """Return rows and roots of stacked polynomials, equal degrees by one call of the solver.
+
+    Both ends are trimmed relative to the largest coefficient: a fixed degree would send roots to
+    zero or infinity and spoil the others.
+    """
+    rows = np.flatnonzero(np.abs(stack).max(axis=-1, initial=0.0) > NEGLIGIBLE)
+    stack = stack[rows]
+    kept = np.abs(stack) > NEGLIGIBLE * np.abs(stack).max(axis=-1, keepdims=True, initial=0.0)
+    first = kept.argmax(axis=-1)
+    last = stack.shape[-1] - 1 - kept[:, ::-1].argmax(axis=-1)
+    zero = rows[first > 0]  # roots that are trimmed with their coefficients
+    found = [(zero, np.zeros(len(zero), dtype=complex))]
+    for low, high in set(zip(first.tolist(), last.tolist(), strict=True)):
+        if high > low:
+            chosen = (first == low) & (last == high)
+            where, z = _companion_roots(stack[chosen, low : high + 1])
+            found.append((rows[chosen][where], z))
+    where, z = zip(*found, strict=True)
+    return np.concatenate(where), np.concatenate(z)
+
+
+def _companion_roots(stack: Complexes) -> tuple[Ints, Complexes]:
+    """Return rows and roots of polynomials with non-zero ends; the mean of close ones once more."""
+    degree = stack.shape[1] - 1
+    matrices = np.zeros((len(stack), degree, degree), dtype=complex)
+    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    matrices[:, :, -1] = -stack[:, :-1] / stack[:, -1:]
+    z = np.asarray(np.linalg.eigvals(matrices), dtype=complex)
+    close = np.abs(z[:, :, None] - z[:, None, :]) < 1e-6
+    count = close.sum(axis=-1)
+    # The errors of a double root's two halves cancel in their mean.
+    means = np.einsum("kij,kj->ki", close, z) / count
+    rows = np.repeat(np.arange(len(stack)), degree)
+    doubled = count > 1
+    return (
+        np.concatenate([rows, rows[doubled.ravel()]]),
+        np.concatenate([_polished(stack, z).ravel(), means[doubled]]),
+    )
+
+
+def _polished(stack: Complexes, z: Complexes) -> Complexes:
+    """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
+    powers = np.arange(stack.shape[1])
+    slopes = (stack * powers)[:, 1:]
+    for _ in range(2):
+        value, slope = _horner(stack, z), _horner(slopes, z)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = value / slope
+        z = np.where(np.abs(step) < 1e-6, z - step, z)
+    return z
+
+
+def _horner(stack: Complexes, z: Complexes) -> Complexes:
+    result = np.zeros_like(z)
+    for k in reversed(range(stack.shape[1])):
+        result = result * z + stack[:, k : k + 1]
+    return result

@@ -1,0 +1,301 @@
+"""Forms of two joints over a base: their roots along the other joint, the lift, and their signs.
+
+For a fixed value of the base each form is a one-joint form of the lift, and Theorem 2 (or the
+quadratic formula) gives its roots.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
+from qbound.forms.angles import TURN
+from qbound.forms.circle import polar
+from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, WALL
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Range = tuple[float, float] | None
+
+PROBES = np.array([0.29, 0.5, 0.77])
+
+MOST_VALUES = 2**21
+"""Values of features that are held at once: some 16 MB."""
+
+
+class Root(NamedTuple):
+    """A root of one form along the lift, as a function of the base within a slab.
+
+    Attributes
+    ----------
+    form : int
+        Index of the form; -1 and -2 are the lower and the upper end of the lift's range.
+    branch : int
+        -1 / +1: theta - / + arccos, or the lower / upper root of a quadratic; 0 for an end.
+    turns : int
+        Full turns added.
+    """
+
+    form: int
+    branch: int
+    turns: int = 0
+
+
+LOWEST, HIGHEST = Root(-1, 0), Root(-2, 0)
+
+
+class Plane:
+    """Forms of two joints, scaled to largest coefficient 1, with one joint as base.
+
+    A prismatic joint is measured in its farthest limit for this (`scaled`); `table` is the same
+    forms in the joints' own units. After the forms that must be positive themselves come those of
+    the features in which bodies touch, of which none need be.
+
+    Parameters
+    ----------
+    forms : HarmonicForm, shape (m,)
+        Of two joints.
+    ranges : sequence of two (low, high) or None
+        None for a revolute joint that turns all the way round.
+    base : int
+        0 or 1.
+    contacts : Contacts, optional
+        Of pairs of bodies that are to keep apart.
+    """
+
+    def __init__(
+        self,
+        forms: HarmonicForm,
+        ranges: Sequence[Range],
+        base: int,
+        contacts: Contacts = NO_CONTACTS,
+    ) -> None:
+        self.count, self.base, self.contacts = len(forms.coefficients), base, contacts
+        self.base_kind: Kind = forms.kinds[base]
+        self.lift_kind: Kind = forms.kinds[1 - base]
+        self.base_range, self.lift_range = ranges[base], ranges[1 - base]
+        self.ends = self.base_range or (-math.pi, math.pi)
+        self.lift_ends = self.lift_range or (-math.pi, math.pi)
+        # In mm the high powers of a slide have coefficients that would pass for rounding.
+        self.base_unit: float = _unit(self.base_kind, self.ends)
+        self.lift_unit: float = _unit(self.lift_kind, self.lift_ends)
+        powers = np.outer(self.base_unit ** np.arange(3), self.lift_unit ** np.arange(3))
+        self.powers: Floats = np.outer(
+            self.base_unit ** np.arange(3), self.lift_unit ** np.arange(3)
+        )
+        own = np.asarray(forms.coefficients, dtype=float)
+        self.scaled: Floats = self.scale(np.concatenate([own, contacts.forms]))
+        self.table: Floats = self.scaled / self.powers
+        # Largest values of the coefficients along the lift: what is rounding is so beside these.
+        self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
+        # Ends of the lift's range are roots of forms -1 and -2: two rows of zeros at the end.
+        self._rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
+        self._row_sizes = np.concatenate([self.sizes, np.zeros((2, 3))])
+        slides = self.lift_kind == "prismatic"
+        self.affine = [slides and not any(row) for row in self.table[:, :, 2].tolist()]
+
+    def scale(self, tables: Floats) -> Floats:
+        """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
+        tables = tables if self.base == 0 else np.swapaxes(tables, -1, -2)
+        tables = tables * self.powers
+        largest = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
+        tables = tables / np.where(largest > 0, largest, 1.0)
+        return np.where(np.abs(tables) > NEGLIGIBLE, tables, 0.0)
+
+    @cached_property
+    def bodies(self) -> Separation:
+        """The tests that part the bodies."""
+        return Separation(self)
+
+    def along_lift(self, t: Floats) -> Floats:
+        """Return the coefficients of the forms, without features, along the lift, (len(t), m, 3)."""
+        m, factors = self.count, basis(self.base_kind, t)
+        table = np.moveaxis(self.table[:m], 1, 0).reshape(3, 3 * m)
+        return _settled((factors @ table).reshape(len(t), m, 3), self.sizes[:m], self.lift_kind)
+
+    def positive(self, t: Floats, v: Floats, least: float) -> Bools:
+        """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
+        products, left = self.products(t, v), np.arange(len(t))
+        for forms in np.split(self.table[: self.count].reshape(-1, 9), range(16, self.count, 16)):
+            left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
+        return np.isin(np.arange(len(t)), left)
+
+    def products(self, t: Floats, v: Floats) -> Floats:
+        """Return the nine factors of a form at paired base and lift values, (len(t), 9)."""
+        found = basis(self.base_kind, t)[:, :, None] * basis(self.lift_kind, v)[:, None, :]
+        return np.asarray(found.reshape(-1, 9))
+
+    def open(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
+        """Tell whether forms that do not change sign there are positive between lift values, (k,).
+
+        One place may be where a form touches zero, so there are three, at uneven parts.
+        """
+        v = low[:, None] + (high - low)[:, None] * PROBES
+        found = self.positive(np.repeat(t, len(PROBES)), v.ravel(), least)
+        return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
+
+    def apart(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
+        """Tell the same of bodies: whether every pair is apart at one of three places at least."""
+        v = low[:, None] + (high - low)[:, None] * PROBES
+        heights = self.bodies.heights(np.repeat(t, len(PROBES)), v.ravel())
+        found = (heights > least).all(axis=1)
+        return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
+
+    def roots(self, t: Floats) -> Floats:
+        """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
+
+        Revolute: theta - alpha and theta + alpha, theta in (-pi, pi]; a double root is theta twice
+        or theta -+ pi, two ends that keep their order. Prismatic: the lower and the upper root of
+        a quadratic; the one root of an affine form stands first.
+        """
+        return self.roots_of(self.along_lift(t))
+
+    def roots_of(self, c: Floats) -> Floats:
+        """Return both roots of coefficients along the lift, (..., 3) to (2, ...), as in `roots`."""
+        c0, c1, c2 = np.moveaxis(c, -1, 0)
+        if self.lift_kind == "prismatic":
+            return _quadratic_roots(c0, c1, c2)
+        theta, alpha, ratio = polar(c1, c2, -c0)
+        found = (np.abs(ratio) <= 1) & ((c1 != 0) | (c2 != 0))
+        return np.where(found, np.stack([theta - alpha, theta + alpha]), np.nan)
+
+    def vanishing(self, t: float, v: float) -> int:
+        """Return the form that is nearest to zero at a place; of a feature, if it is a contact."""
+        c = self.along_lift(np.array([t]))[0]
+        values = np.abs(c @ basis(self.lift_kind, np.asarray(v)))
+        if self.contacts.pairs:
+            products = self.products(np.array([t]), np.array([v]))[0]
+            sides = self.scale(self.contacts.sides) / self.powers
+            held = (sides.reshape(-1, SIDES, 9) @ products >= -WALL).all(axis=1)
+            own = np.abs(self.table[self.count :].reshape(-1, 9) @ products)
+            touching = self.contacts.touching & held
+            values = np.append(values, np.where(touching, own, np.inf))
+        return int(values.argmin())
+
+    def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
+        """Evaluate roots, each over its own row of base values inside its slab, shape as t (k, n).
+
+        A root that leaves its form just there (at a fold, but for rounding) stays at the fold.
+        """
+        form, branch, turns = np.array(roots, dtype=np.int64).reshape(-1, 3).T[:, :, None]
+        c = _settled(*self._lifted(form[:, 0], t), self.lift_kind)
+        c0, c1, c2 = np.moveaxis(c, -1, 0)
+        if self.lift_kind == "revolute":
+            theta, alpha, _ = polar(c1, c2, -c0)
+            values = theta + branch * alpha + TURN * turns
+        else:
+            lower, upper = _quadratic_roots(c0, c1, c2, folds=True)
+            values = np.clip(np.where(branch < 0, lower, upper), *self.lift_ends)
+        ends = np.array(self.lift_ends)[(form == HIGHEST.form).astype(int)]
+        return np.asarray(np.where(form < 0, ends, values))
+
+    def blank(self, roots: Sequence[Root], t: Floats) -> Bools:
+        """Tell where the forms of roots vanish on the whole fibre, shape as t (k, n)."""
+        c, size = self._lifted(np.array([root.form for root in roots], dtype=np.int64), t)
+        return np.asarray((np.abs(c) <= BLANK * size).all(axis=-1) & (size > 0).any(axis=-1))
+
+    def _lifted(self, forms: Ints, t: Floats) -> tuple[Floats, Floats]:
+        """Coefficients along the lift, (k, n, 3), and their sizes, (k, 1, 3); of ends all zero."""
+        return basis(self.base_kind, t) @ self._rows[forms], self._row_sizes[forms][:, None]
+
+
+def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
+    """Return index and value of every integer in range(start, end), for each entry in turn."""
+    count = np.maximum(end - start, 0)
+    pick = np.repeat(np.arange(len(count)), count)
+    return pick, start[pick] + np.arange(len(pick)) - (np.cumsum(count) - count)[pick]
+
+
+class Separation:
+    """Which pairs of bodies are apart? Any one clause of a pair shows it; all its forms must.
+
+    Parameters
+    ----------
+    plane : Plane
+        Whose features these are.
+    """
+
+    def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
+        contacts = plane.contacts
+        chosen = np.full(contacts.pairs, True) if pairs is None else pairs
+        rows = np.flatnonzero(chosen[contacts.pair]) if contacts.pairs else np.arange(0)
+        self.plane, self.pairs = plane, np.flatnonzero(chosen)
+        self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
+        self.corners: Ints = np.flatnonzero(contacts.corners[rows])
+        sides = plane.scale(contacts.sides[rows][self.corners]) / plane.powers
+        self.sides: Floats = sides.reshape(-1, 9)
+        clause, pair = contacts.clause[rows], contacts.pair[rows]
+        self.clauses: Ints = np.flatnonzero(np.diff(clause, prepend=-1))
+        self.starts: Ints = np.flatnonzero(np.diff(pair[self.clauses], prepend=-1))
+
+    def heights(self, t: Floats, v: Floats) -> Floats:
+        """Return of each pair, at paired base and lift values, what parts it best, (len(t), pairs).
+
+        A value of a scaled form, positive where the two are apart.
+        """
+        result = np.empty((len(t), len(self.pairs)))
+        if not len(self.pairs):
+            return result
+        step = max(1, MOST_VALUES // (len(self.forms) + len(self.sides)))
+        for k in range(0, len(t), step):
+            products = self.plane.products(t[k : k + step], v[k : k + step])
+            values = products @ self.forms.T
+            if len(self.corners):
+                sides = (products @ self.sides.T).reshape(len(products), -1, SIDES).min(axis=2)
+                corners = values[:, self.corners]
+                values[:, self.corners] = np.where(sides >= -NEGLIGIBLE, corners, -np.inf)
+            parted = np.minimum.reduceat(values, self.clauses, axis=1)
+            result[k : k + step] = np.maximum.reduceat(parted, self.starts, axis=1)
+        return result
+
+
+def _settled(c: Floats, size: Floats, kind: Kind) -> Floats:
+    """Make double roots exact where coefficients, sums of terms of these sizes, cannot tell.
+
+    Where terms cancel, as at a point in which a form touches zero along a curve, what is left of
+    the discriminant is rounding.
+    """
+    (c0, c1, c2), (e0, e1, e2) = np.moveaxis(c, -1, 0), np.moveaxis(ROUNDING * size, -1, 0)
+    if kind == "revolute":
+        d = np.hypot(c1, c2)
+        double, exact = np.abs(np.abs(c0) - d) <= e0 + e1 + e2, np.copysign(d, c0)
+    else:
+        doubt = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
+        double = (np.abs(c1 * c1 - 4 * c0 * c2) <= doubt) & (c2 != 0)
+        exact = c1 * c1 / np.where(double, 4 * c2, 1.0)
+    return np.stack([np.where(double, exact, c0), c1, c2], axis=-1)
+
+
+def _unit(kind: Kind, ends: tuple[float, float]) -> float:
+    return 1.0 if kind == "revolute" else max(map(abs, ends))
+
+
+def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False) -> Floats:
+    """Return the lower and the upper root of c0 + c1 v + c2 v^2; an affine root stands first.
+
+    With `folds` the vertex stands for roots that are not real, and the affine root stands twice.
+    """
+    discriminant = _discriminant(c0, c1, c2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(np.maximum(discriminant, 0) if folds else discriminant)
+        half = -(c1 + np.copysign(root, c1)) / 2
+        pair = np.sort(np.stack([half / c2, np.where(root == 0, half / c2, c0 / half)]), axis=0)
+        single = -c0 / c1
+    singles = np.stack([single, single if folds else np.full_like(single, np.nan)])
+    roots = np.where(c2 == 0, singles, pair)
+    return np.nan_to_num(roots) if folds else np.where(np.isfinite(roots), roots, np.nan)
+
+
+def _discriminant(c0: Floats, c1: Floats, c2: Floats) -> Floats:
+    """Return c1^2 - 4 c0 c2, zero where it is rounding: a double root is a root."""
+    square, product = c1 * c1, 4 * c0 * c2
+    size = square + np.abs(product)
+    return np.where(np.abs(square - product) <= TANGENT * size, 0.0, square - product)
