@@ -13,7 +13,7 @@ each in the first degree.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
@@ -143,7 +143,7 @@ def _slid(now: Pose, move: Move, joint: int) -> Pose:
 # --- features -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Core:
     """A convex core in its frame's plane coordinates.
 
@@ -151,18 +151,33 @@ class Core:
     ----------
     corners : ndarray, shape (m, 2)
         Anticlockwise; one is a point, two a segment, which has an edge on either side.
-    names : tuple of two str
-        What its corners and its edges are called.
+    corner_names, edge_names : tuple of str
+        The edge of a corner's number begins there.
     """
 
     corners: Floats
-    names: tuple[str, str] = ("corner", "edge")
+    corner_names: tuple[str, ...]
+    edge_names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, corners: Floats, part: str = "") -> Core:
+        """Make it of corners either way round; they keep their numbers, and so do the edges."""
+        m = len(corners)
+        x, y = (corners - corners[0]).T
+        clockwise = m > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
+        order = list(range(m))[::-1] if clockwise else list(range(m))
+        edges = [(k - 1) % m for k in order] if clockwise else order
+        return cls(
+            corners[order],
+            tuple(f"{part}corner {k}" for k in order),
+            tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
+        )
 
     def edges(self) -> tuple[Floats, Floats]:
         """Return the directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
         ahead = np.roll(self.corners, -1, axis=0) - self.corners
         lengths = np.hypot(*ahead.T)
-        count = len(ahead) if len(ahead) > 1 else 0
+        count = len(self.edge_names)
         return ahead[:count] / lengths[:count, None], lengths[:count]
 
     def steps(self) -> Floats:
@@ -199,7 +214,7 @@ class Features:
     names: tuple[str, ...]
 
 
-def features(one: Core, other: Core, moved: Pose, keep: float) -> Features:
+def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool) -> Features:
     """Return the features of two convex cores that are to keep a distance.
 
     Parameters
@@ -208,24 +223,42 @@ def features(one: Core, other: Core, moved: Pose, keep: float) -> Features:
         Of the other core's frame, seen from the first one's.
     keep : float
         Both radii plus the clearance, R; length.
+    swapped : bool
+        Whether names begin with the other core's part.
     """
     ahead = moved.at + np.einsum("abij,kb->kaij", moved.turn, other.corners)
     back = np.einsum("baij,kb->kaij", moved.turn, one.corners) - moved.back
     there, here = moved.turn, np.swapaxes(moved.turn, 0, 1)
     found = [_edges(one, other, ahead, there, keep), _edges(other, one, back, here, keep)]
-    if keep > 0 or max(len(one.corners), len(other.corners)) < 3:
-        found.append(_corners(one, other, ahead, back, moved, keep))
-    forms, sides = (np.concatenate([rows[i] for rows in found]) for i in (0, 1))
-    (e, k), (j, i) = (len(one.edges()[1]), len(other.corners)), (len(other.edges()[1]), len(one.corners))
-    pairs = len(forms) - e * k - j * i
+    names = [(a, b) for a in one.edge_names for b in other.corner_names]
+    names += [(b, a) for a in other.edge_names for b in one.corner_names]
+    (e, k), (j, i) = ((len(x.edge_names), len(y.corners)) for x, y in ((one, other), (other, one)))
     clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
-    clause = np.concatenate([clause, e + j + np.arange(pairs)])
-    names = [f"{one.names[1]} {a} on {other.names[0]} {b}" for a in range(e) for b in range(k)]
-    names += [f"{one.names[0]} {b} on {other.names[1]} {a}" for a in range(j) for b in range(i)]
-    places = [(a, b) for a in range(i) for b in range(k)][:pairs]
-    names += [f"{one.names[0]} {a} on {other.names[0]} {b}" for a, b in places]
-    corners = np.arange(len(forms)) >= e * k + j * i
-    return Features(forms, sides, corners, clause, tuple(names))
+    of_edges = len(names)
+    if keep > 0 or max(i, k) < 3:
+        found.append(_corners(one, other, ahead, back, moved, keep))
+        names += [(a, b) for a in one.corner_names for b in other.corner_names]
+        clause = np.concatenate([clause, e + j + np.arange(i * k)])
+    return Features(
+        forms=np.concatenate([forms for forms, _ in found]),
+        sides=np.concatenate([sides for _, sides in found]),
+        corners=np.arange(len(names)) >= of_edges,
+        clause=clause,
+        names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
+    )
+
+
+def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[Features]:
+    """Yield each corner of a core above a line, ``normal . r >= level``: a feature without sides."""
+    seen = moved.at + np.einsum("abij,kb->kaij", moved.turn, core.corners)
+    forms = np.einsum("a,kaij->kij", normal, seen)
+    forms[..., 0, 0] -= level
+    forms = _settled(forms, max(float(np.abs(seen).max()), abs(level)))
+    for form, name in zip(forms, core.corner_names, strict=True):
+        free = np.zeros((1, SIDES, 3, 3))
+        free[..., 0, 0] = 1.0
+        no = np.zeros(1, dtype=np.bool_)
+        yield Features(form[None], free, no, np.zeros(1, dtype=np.int64), (name,))
 
 
 def _edges(

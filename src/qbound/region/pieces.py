@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
-from qbound.forms.harmonic import basis, basis_slope
+from qbound.forms.harmonic import basis
 from qbound.region.critical import Complexes, base_values, meetings, own_events, univariate
 from qbound.region.plane import Plane, ranges
 from qbound.tolerances import AGREE, CONTACT_SIDE, NEGLIGIBLE, SAME_CRITICAL, WALL
@@ -73,7 +73,7 @@ def find_pieces(plane: Plane) -> Pieces:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         no = np.zeros(0, dtype=np.bool_)
         return Pieces(none, none, nothing, nothing, no, nothing, nothing, no, no)
-    forms, sides = plane.scaled[plane.count :], plane.scale(contacts.sides)
+    forms, sides = plane.scaled[plane.count :], plane.sides
     low, high = _bounds(plane, forms)
     most = _bounds(plane, sides)[1]
     alive = contacts.touching & (low <= 0) & (high >= 0) & (most >= -CONTACT_SIDE).all(axis=1)
@@ -130,7 +130,7 @@ def _contacts(
     t = start + INSIDE * (end - start)
     values = _both_roots(plane, plane.table[plane.count :][chosen[of]], t)
     touching = _in_contact(plane, chosen[of], sides, t, values)
-    enters = _falls(plane, plane.table[plane.count :][chosen[of]], t, values)
+    enters = _falls(plane, plane.table[plane.count :][chosen[of]], t)
     found, lines = [], [np.zeros(0)]
     for branch in (0, 1):
         here = touching[:, branch]
@@ -207,10 +207,16 @@ def _in_contact(plane: Plane, feature: Ints, sides: Floats, t: Floats, values: F
     return np.asarray((np.einsum("nsj,nrj->nrs", over, lift) >= -CONTACT_SIDE).all(axis=-1))
 
 
-def _falls(plane: Plane, tables: Floats, t: Floats, values: Floats) -> Bools:
-    """Tell at which roots, (n, 2), a form falls along the lift."""
+def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:
+    """Tell at both roots, (n, 2), whether a form falls along the lift.
+
+    On a circle it is positive from theta - alpha to theta + alpha, even where the two are one.
+    """
+    if plane.lift_kind == "revolute":
+        return np.tile([False, True], (len(t), 1))
     c = np.einsum("ni,nij->nj", basis(plane.base_kind, t), tables)
-    return np.einsum("nj,nrj->nr", c, basis_slope(plane.lift_kind, values)) < 0
+    bends = np.where(c[:, 2] == 0, -c[:, 1], c[:, 2])  # an affine root stands first
+    return np.stack([bends > 0, bends < 0], axis=1)
 
 
 # --- walls ----------------------------------------------------------------------------------------

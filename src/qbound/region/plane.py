@@ -111,6 +111,11 @@ class Plane:
         return np.where(np.abs(tables) > NEGLIGIBLE, tables, 0.0)
 
     @cached_property
+    def sides(self) -> Floats:
+        """Side conditions of all features, scaled, shape (f, 4, 3, 3)."""
+        return self.scale(self.contacts.sides)
+
+    @cached_property
     def bodies(self) -> Separation:
         """The tests that part the bodies."""
         return Separation(self)
@@ -173,8 +178,8 @@ class Plane:
         values = np.abs(c @ basis(self.lift_kind, np.asarray(v)))
         if self.contacts.pairs:
             products = self.products(np.array([t]), np.array([v]))[0]
-            sides = self.scale(self.contacts.sides) / self.powers
-            held = (sides.reshape(-1, SIDES, 9) @ products >= -WALL).all(axis=1)
+            sides = (self.sides / self.powers).reshape(-1, SIDES, 9)
+            held = (sides @ products >= -WALL).all(axis=1)
             own = np.abs(self.table[self.count :].reshape(-1, 9) @ products)
             touching = self.contacts.touching & held
             values = np.append(values, np.where(touching, own, np.inf))
@@ -230,8 +235,7 @@ class Separation:
         self.plane, self.pairs = plane, np.flatnonzero(chosen)
         self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
         self.corners: Ints = np.flatnonzero(contacts.corners[rows])
-        sides = plane.scale(contacts.sides[rows][self.corners]) / plane.powers
-        self.sides: Floats = sides.reshape(-1, 9)
+        self.sides: Floats = (plane.sides[rows][self.corners] / plane.powers).reshape(-1, 9)
         clause, pair = contacts.clause[rows], contacts.pair[rows]
         self.clauses: Ints = np.flatnonzero(np.diff(clause, prepend=-1))
         self.starts: Ints = np.flatnonzero(np.diff(pair[self.clauses], prepend=-1))
