@@ -2,6 +2,7 @@
 
 - `functions`: from a robot's points and boundaries to forms and margins, one boundary at a time;
 - `parts`, `poses`: the bodies that a boundary is about, and where they stand in the plane;
+- `contacts`: how two convex parts touch, as forms; `body_contacts`: all contacts of a robot;
 - `separation`: how far bodies are apart, at millions of configurations; `nearest`: and where;
 - `evaluator`: all of them compiled once, for one configuration or for millions.
 """

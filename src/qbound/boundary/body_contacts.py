@@ -89,7 +89,7 @@ def _of_pair(
 
 
 def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Found]:
-    """Yield the corners of a body that are to stay above a half-space: each is a test of its own."""
+    """Yield the corners of a body that are to stay above a half-space, each a test of its own."""
     normal = robot.plane.across @ wall.normal
     off = robot.plane.height(body.frame, body.parts[0].corners)[0]
     level = wall.offset - off * float(wall.normal @ robot.plane.normal)

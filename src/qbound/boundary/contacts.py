@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +58,7 @@ class Move:
 class Pose(NamedTuple):
     """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
 
-    A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared`` is
+    A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared``
     ``|at|^2``, which a product of tables would not show to be of first degree.
     """
 
@@ -249,7 +248,7 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
 
 
 def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[Features]:
-    """Yield each corner of a core above a line, ``normal . r >= level``: a feature without sides."""
+    """Yield each corner of a core above a line, ``normal . r >= level``: features without sides."""
     seen = moved.at + np.einsum("abij,kb->kaij", moved.turn, core.corners)
     forms = np.einsum("a,kaij->kij", normal, seen)
     forms[..., 0, 0] -= level
@@ -345,6 +344,21 @@ class Contacts:
     def pairs(self) -> int:
         """Number of pairs of convex parts."""
         return len(self.boundaries)
+
+    def without(self, dropped: Sequence[str]) -> Contacts:
+        """Return the features of the other boundaries."""
+        kept = np.array([name not in dropped for name in self.boundaries], dtype=np.bool_)
+        rows = np.flatnonzero(kept[self.pair])
+        return Contacts(
+            self.forms[rows],
+            self.sides[rows],
+            self.corners[rows],
+            self.clause[rows],
+            tuple(self.names[row] for row in rows.tolist()),
+            (np.cumsum(kept) - 1)[self.pair[rows]],
+            self.touching[rows],
+            tuple(name for name in self.boundaries if name not in dropped),
+        )
 
 
 def gathered(found: Sequence[tuple[str, Features, float]]) -> Contacts:

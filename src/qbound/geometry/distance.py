@@ -213,7 +213,7 @@ def _foot(core: Floats, edge: int, place: Floats, distance: float) -> tuple[Floa
 
 def axis_gaps(view: View) -> Floats:
     """Return the gap that the normal of each edge shows, the better one of a segment's two."""
-    least = view.across.min(axis=1)
+    least: Floats = np.asarray(view.across.min(axis=1))
     return least if view.solid else np.maximum(least, -view.across.max(axis=1))
 
 

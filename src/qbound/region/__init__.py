@@ -1,7 +1,9 @@
 """Which values of two joints are safe? All of them, as components bounded by exact arcs.
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
-- `decomposition`: cells in which every form is positive; `cells`: which of them are adjacent;
+- `plane`: forms over a base, their roots and signs; `critical`: where roots may meet;
+- `pieces`: where bodies touch, and where such contacts cross;
+- `decomposition`: cells in which all is free; `cells`: which of them are adjacent;
 - `loops`, `arcs`: the boundary of each component; `components`: what else is known of it;
 - `region`: the answer, and what it can be asked.
 """

@@ -129,8 +129,7 @@ def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
         for k in range(0, len(stack), BLOCK):
             where, t = _real(plane, stack[k : k + BLOCK])
             found.append((rows[k : k + BLOCK][where], t))
-    where, t = zip(*found, strict=True)
-    return np.concatenate(where), np.concatenate(t)
+    return np.concatenate([rows for rows, _ in found]), np.concatenate([t for _, t in found])
 
 
 def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
@@ -162,8 +161,7 @@ def _polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
             chosen = (first == low) & (last == high)
             where, z = _companion_roots(stack[chosen, low : high + 1])
             found.append((rows[chosen][where], z))
-    where, z = zip(*found, strict=True)
-    return np.concatenate(where), np.concatenate(z)
+    return np.concatenate([rows for rows, _ in found]), np.concatenate([z for _, z in found])
 
 
 def _companion_roots(stack: Complexes) -> tuple[Ints, Complexes]:

@@ -64,7 +64,6 @@ class Decomposition:
     cells: list[Cell]
     walls: Floats
 
-
     def joined(self, line: Ints, low: Floats, high: Floats) -> Bools:
         """Tell whether what is free on both sides of lines is so on them, between lift values."""
         t = self.lines[line]
@@ -110,7 +109,11 @@ def _of_forms(plane: Plane) -> Floats:
     lifts = table[:, :, 1:].any(axis=(1, 2))
     fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
     i, j = np.triu_indices(len(c), k=1)
-    found = [iter([(np.arange(len(fixed)), fixed)]), own_events(plane, c), meetings(plane, c[i], c[j])]
+    found = [
+        iter([(np.arange(len(fixed)), fixed)]),
+        own_events(plane, c),
+        meetings(plane, c[i], c[j]),
+    ]
     return np.concatenate([base_values(plane, events)[1] for events in found])
 
 
@@ -202,7 +205,12 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
         first, end = (turns_up_to(x, values).astype(np.int64) for x in (low, high))
         end = first + 1 if plane.lift_range is None else end  # by rounding a root could have none
         pick, turns = ranges(first, end)
-        values, slab, roots, piece = values[pick] + TURN * turns, slab[pick], roots[pick], piece[pick]
+        values, slab, roots, piece = (
+            values[pick] + TURN * turns,
+            slab[pick],
+            roots[pick],
+            piece[pick],
+        )
         roots[:, 2] = turns
     every = np.arange(len(t))
     if plane.lift_range is None:
@@ -232,7 +240,9 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> _Fibres:
     """
     touching = np.flatnonzero(fibres.piece >= 0)
     piece = fibres.piece[touching]
-    group = fibres.slab[touching] * plane.contacts.pairs + plane.contacts.pair[pieces.feature[piece]]
+    group = (
+        fibres.slab[touching] * plane.contacts.pairs + plane.contacts.pair[pieces.feature[piece]]
+    )
     order = np.argsort(group, kind="stable")
     group, enters = group[order], pieces.enters[piece[order]]
     same = np.diff(group, prepend=-1) == 0
@@ -263,10 +273,11 @@ def _apart(plane: Plane, fibres: _Fibres, pieces: Pieces, tops: Floats) -> Bools
     doubtful = ((known >= 0) & (known != collides)).any(axis=1)
     doubtful |= np.bincount(fibres.slab, change, slabs) != 0 if fibres.circle else False
     still = Separation(plane, pieces.base_only | pieces.idle)
-    blocked = (still.heights(fibres.t, place) <= 0).any(axis=1)
-    apart = (count == 0) & ~blocked[fibres.slab]
+    blocked: Bools = np.asarray((still.heights(fibres.t, place) <= 0).any(axis=1))
+    apart: Bools = np.asarray((count == 0) & ~blocked[fibres.slab])
     looked = np.flatnonzero(
-        (widths > 0) & ((apart & (widths < THIN * plane.lift_unit)) | doubtful[fibres.slab])
+        (widths > 0)
+        & ((apart & (widths < THIN * plane.lift_unit)) | doubtful[fibres.slab])
         & ~blocked[fibres.slab]
     )
     t, low = fibres.t[fibres.slab[looked]], fibres.values[looked]
@@ -342,5 +353,3 @@ def _simple(plane: Plane, roots: Sequence[Root], t: Floats) -> Bools:
     gap = np.sin(gap / 2) if plane.lift_kind == "revolute" else gap
     alone = np.array([r.form < 0 or plane.affine[r.form] for r in roots], dtype=np.bool_)
     return np.asarray(alone | (np.abs(gap).min(axis=1) > UNCHANGED))
-
-

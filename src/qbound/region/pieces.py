@@ -78,7 +78,7 @@ def find_pieces(plane: Plane) -> Pieces:
     most = _bounds(plane, sides)[1]
     alive = contacts.touching & (low <= 0) & (high >= 0) & (most >= -CONTACT_SIDE).all(axis=1)
     lifts = forms[:, :, 1:].any(axis=(1, 2))
-    moved = lifts | sides[:, :, :, 1:].any(axis=(1, 2, 3))
+    moved: Bools = np.asarray(lifts | sides[:, :, :, 1:].any(axis=(1, 2, 3)))
     base_only = ~_any_of(moved, contacts.pair, contacts.pairs)
     idle = ~_any_of(alive, contacts.pair, contacts.pairs)
     walls = _walls(plane, np.flatnonzero(alive), forms, sides)
@@ -244,7 +244,6 @@ def _walls(plane: Plane, alive: Ints, forms: Floats, sides: Floats) -> Floats:
     low, high = plane.ends
     inside = (t >= low) & (t <= high)
     return np.unique(t[blank & possible & inside])
-
 
 
 # --- crossings ------------------------------------------------------------------------------------

@@ -87,7 +87,6 @@ class Plane:
         # In mm the high powers of a slide have coefficients that would pass for rounding.
         self.base_unit: float = _unit(self.base_kind, self.ends)
         self.lift_unit: float = _unit(self.lift_kind, self.lift_ends)
-        powers = np.outer(self.base_unit ** np.arange(3), self.lift_unit ** np.arange(3))
         self.powers: Floats = np.outer(
             self.base_unit ** np.arange(3), self.lift_unit ** np.arange(3)
         )
@@ -121,7 +120,7 @@ class Plane:
         return Separation(self)
 
     def along_lift(self, t: Floats) -> Floats:
-        """Return the coefficients of the forms, without features, along the lift, (len(t), m, 3)."""
+        """Return the coefficients of all forms but features' along the lift, (len(t), m, 3)."""
         m, factors = self.count, basis(self.base_kind, t)
         table = np.moveaxis(self.table[:m], 1, 0).reshape(3, 3 * m)
         return _settled((factors @ table).reshape(len(t), m, 3), self.sizes[:m], self.lift_kind)

@@ -1,7 +1,8 @@
 """What a region is asked of: named forms of two joints, their ranges, and whose they are.
 
-By the clearance rule every boundary in use keeps its distance. By the paper's rule the windows of
-Table 6 are limits and the half-spaces cut (`paper_rule`); one engine serves both.
+By the clearance rule every boundary in use keeps its distance; bodies have features for a form. By
+the paper's rule the windows of Table 6 are limits and the half-spaces cut (`paper_rule`); one
+engine serves both.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.body_contacts import body_contacts
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.evaluator import (
     Evaluator,
@@ -21,7 +23,10 @@ from qbound.boundary.evaluator import (
     compiled,
     limit_names,
     stacked,
+    with_bodies,
 )
+from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Held, Robot
 from qbound.printable import printable
@@ -54,8 +59,10 @@ class Problem:
     held : dict of int to float
         Values of the other joints, rad or length.
     rule : {"clearance", "paper"}
+    bodies : tuple of Boundary
+        Those about bodies, which have no single form.
     contacts : Contacts
-        Features of the pairs of bodies that are to keep apart.
+        Their features.
     """
 
     forms: HarmonicForm
@@ -67,6 +74,7 @@ class Problem:
     joints: tuple[int, int] = (0, 1)
     held: Mapping[int, float] = field(default_factory=dict)
     rule: Rule = "clearance"
+    bodies: tuple[Boundary, ...] = ()
     contacts: Contacts = NO_CONTACTS
 
     def __repr__(self) -> str:
@@ -80,7 +88,12 @@ class Problem:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
         missing = len(self.names) - len(self.distances)
         distances = (*self.distances, *[None] * missing)
-        return compiled(self.forms, self.names, distances, self.ranges, self.limits)
+        forms = compiled(self.forms, self.names, distances, self.ranges, self.limits)
+        if self.robot is None or not self.bodies:
+            return forms
+        names = {boundary.name for boundary in self.bodies}.union(self.names)
+        order = [boundary.name for boundary in self.robot.used if boundary.name in names]
+        return with_bodies(forms, Separation(self.robot, self.held, self.bodies), order)
 
     @property
     def home(self) -> Floats | None:
@@ -106,6 +119,11 @@ class Problem:
         """Return the problem with one more form, of coefficients (3, 3), as its last."""
         table = np.concatenate([self.forms.coefficients, coefficients[None]])
         return replace(self, forms=HarmonicForm(table, self.forms.kinds), names=(*self.names, name))
+
+    def without_bodies(self, dropped: Sequence[str]) -> Problem:
+        """Return the problem without some of its boundaries about bodies, by name."""
+        bodies = tuple(boundary for boundary in self.bodies if boundary.name not in dropped)
+        return replace(self, bodies=bodies, contacts=self.contacts.without(dropped))
 
     def without(self, dropped: Sequence[int]) -> Problem:
         """Return the problem without some of its forms, by index."""
@@ -183,20 +201,24 @@ def state(
     """
     held = held or {}
     one, other = free_pair(robot, held)
-    forms = stacked(robot, used).restrict(held)
+    bodies = tuple(boundary for boundary in used if bounds_bodies(boundary))
+    formed = [boundary for boundary in used if boundary not in bodies]
+    forms = stacked(robot, formed).restrict(held)
     beyond = list(_beyond_limits(robot, held))
     constants = np.zeros((len(beyond), 3, 3))
     constants[:, 0, 0] = [margin for _, margin in beyond]
     return Problem(
         forms=HarmonicForm(np.concatenate([forms.coefficients, constants]), forms.kinds),
-        names=(*(boundary.name for boundary in used), *(name for name, _ in beyond)),
+        names=(*(boundary.name for boundary in formed), *(name for name, _ in beyond)),
         ranges=(ranges[0], ranges[1]),
         limits=(limits[0], limits[1]),
-        distances=tuple(robot.least_distance(boundary) for boundary in used),
+        distances=tuple(robot.least_distance(boundary) for boundary in formed),
         robot=robot,
         joints=(one, other),
         held=dict(held),
         rule=rule,
+        bodies=bodies,
+        contacts=body_contacts(robot, held, bodies),
     )
 
 

@@ -429,10 +429,18 @@ def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
     """Return forms that leave no room together, but would if any one of them were dropped."""
     dropped: list[int] = []
     for k in range(len(problem.names)):
-        left = problem.without([*dropped, k])
-        if not decompose(Plane(left.forms, left.ranges, base)).cells:
+        if _is_empty(problem.without([*dropped, k]), base):
             dropped.append(k)
-    return problem.without(dropped).names
+    problem = problem.without(dropped)
+    for name in [boundary.name for boundary in problem.bodies]:
+        if _is_empty(left := problem.without_bodies([name]), base):
+            problem = left
+    return (*problem.names, *(boundary.name for boundary in problem.bodies))
+
+
+def _is_empty(problem: Problem, base: int) -> bool:
+    plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
+    return not decompose(plane).cells
 
 
 def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
