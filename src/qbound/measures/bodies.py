@@ -1,4 +1,4 @@
-"""Whole links instead of points: convex outlines in the plane of motion and the gap between them.
+"""Whole links instead of points: outlines in the plane of motion and the gaps between them.
 
 Not in the paper, which prints points. The points are corners of bodies, so its region can be held
 against a check of the bodies themselves. For arms that move in a plane.
@@ -6,15 +6,17 @@ against a check of the bodies themselves. For arms that move in a plane.
 
 from __future__ import annotations
 
-from itertools import combinations
-from typing import Any
+from collections.abc import Sequence
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.geometry.polylines import cross
-from qbound.model.robot import Body, Polygon, Robot
-from qbound.tolerances import CONTACT, ZERO_AMPLITUDE
+from qbound.boundary.parts import flat_parts
+from qbound.boundary.separation import Separation
+from qbound.geometry.distance import signed_distance
+from qbound.model.robot import Body, BodyPair, Robot
+from qbound.tolerances import CONTACT
 
 Floats = NDArray[np.float64]
 
@@ -57,9 +59,8 @@ def outline_in_frame(robot: Robot, body: Body, deviation: float | None = None) -
 def gap(one: ArrayLike, other: ArrayLike) -> Floats:
     """Return how far two convex outlines are apart, negative by how deep they overlap.
 
-    It is the largest gap that any edge's normal shows (separating axis theorem): at most the
-    distance where it is positive, zero where they touch, and the shortest way out where it is
-    negative.
+    The signed distance of `qbound.geometry.distance`: zero where they touch, and minus the
+    shortest way out where they overlap.
 
     Parameters
     ----------
@@ -71,12 +72,13 @@ def gap(one: ArrayLike, other: ArrayLike) -> Floats:
     ValueError
         If an outline is not convex.
     """
-    p, r = _anticlockwise(one), _anticlockwise(other)
-    return np.asarray(np.maximum(_beyond_edges(p, r), _beyond_edges(r, p)))
+    return signed_distance(one, other)
 
 
 def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
     """Return the gap of every two bodies on different frames by their names, each of shape (...).
+
+    It is the margin of a pair of bodies without clearance, whatever boundaries ask for.
 
     Parameters
     ----------
@@ -85,28 +87,27 @@ def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
     Raises
     ------
     ValueError
-        If a body is no convex polygon.
+        If the robot leaves every plane, or a joint value is not finite.
     """
-    q = np.asarray(q, dtype=float)
-    return {
-        (one.name, other.name): np.broadcast_to(
-            gap(_corners(robot, one, q), _corners(robot, other, q)), q.shape[:-1]
-        )
+    pairs = [
+        _pair(one, other)
         for one, other in combinations((*robot.bodies, *robot.obstacles), 2)
         if one.frame != other.frame
-    }
+    ]
+    margins = Separation(robot, boundaries=pairs).margins(q)
+    return {pair.bodies: margins[..., k] for k, pair in enumerate(pairs)}
 
 
 def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
-    """Return the joint values around home between which two neighbouring bodies stay apart.
+    """Return the joint values around home between which two neighbouring links stay apart.
 
-    Both ends come from conservative advancement: no corner of either body moves faster about the
+    Both ends come from conservative advancement: no place of either link moves faster about the
     joint than its distance from the axis, so a step of the gap over that speed passes no contact.
 
     Parameters
     ----------
     joint : int
-        The joint between the two bodies; the others stand at home, which does not matter to them.
+        The joint between the two links; the others stand at home, which does not matter to them.
 
     Returns
     -------
@@ -116,74 +117,53 @@ def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        If either link has no body, or several, or one that is no convex polygon.
+        If either link has no body, or the robot leaves every plane.
     """
     moved = robot.joints[joint]
-    near, far = (_body(robot, frame) for frame in (moved.parent, moved.frame))
+    near, far = (_bodies(robot, frame) for frame in (moved.parent, moved.frame))
+    separation = Separation(robot, boundaries=[_pair(*both) for both in product(near, far)])
+    speed = _largest_motion(robot, near, far, joint)
     home = float(robot.home[joint])
     low, high = moved.limits or (home - 2 * np.pi, home + 2 * np.pi)
     return (
-        max(low, _advance(robot, near, far, joint, -1, home - low)),
-        min(high, _advance(robot, near, far, joint, +1, high - home)),
+        max(low, _advance(separation, speed, joint, -1, home - low)),
+        min(high, _advance(separation, speed, joint, +1, high - home)),
     )
 
 
-def _advance(robot: Robot, near: Body, far: Body, joint: int, sense: int, most: float) -> float:
-    """Go from home until the bodies touch or `most` is passed; return the joint value."""
-    q = np.array(robot.home, dtype=float)
-    speed = _largest_motion(robot, near, far, joint)
+def _advance(separation: Separation, speed: float, joint: int, sense: int, most: float) -> float:
+    """Go from home until the links touch or `most` is passed; return the joint value."""
+    q = np.array(separation.robot.home, dtype=float)
     start = q[joint]
     while abs(q[joint] - start) < most:
-        apart = float(gap(_corners(robot, near, q), _corners(robot, far, q)))
+        apart = float(separation.margins(q).min())
         if apart <= CONTACT * speed:
             break
         q[joint] += sense * apart / speed
     return float(q[joint])
 
 
-def _largest_motion(robot: Robot, near: Body, far: Body, joint: int) -> float:
-    """Return the most that a corner of either body moves, seen from the other, a unit of joint."""
-    if not robot.joints[joint].turns:
+def _largest_motion(robot: Robot, near: Sequence[Body], far: Sequence[Body], joint: int) -> float:
+    """Return the most that a place of either link moves, seen from the other, a unit of joint."""
+    moved = robot.joints[joint]
+    if not moved.turns:
         return 1.0
-    frames = robot.frames(robot.home)
-    axis = robot.plane.across @ frames.position(robot.base, robot.joints[joint].frame, robot.base)
-    corners = [outline(robot, body, robot.home) for body in (near, far)]
-    return float(np.linalg.norm(np.concatenate(corners) - axis, axis=-1).max())
+    axis = robot.plane.flat(moved.parent, moved.origin[None])
+    reach = [
+        float(np.linalg.norm(core - centre, axis=-1).max()) + radius
+        for bodies, centre in ((near, axis), (far, np.zeros(2)))
+        for body in bodies
+        for core, radius in flat_parts(robot, body)
+    ]
+    return max(reach)
 
 
-def _body(robot: Robot, frame: str) -> Body:
+def _bodies(robot: Robot, frame: str) -> list[Body]:
     found = [body for body in robot.bodies if body.frame == frame]
-    if len(found) != 1:
-        count = f"{len(found)} bodies" if found else "no body"
-        raise ValueError(f"{robot.name} has {count} in frame {frame!r}; one is wanted")
-    return found[0]
+    if not found:
+        raise ValueError(f"{robot.name} has no body in frame {frame!r}")
+    return found
 
 
-def _corners(robot: Robot, body: Body, q: ArrayLike) -> Floats:
-    """Return the corners of a body that is a polygon, as `outline` does."""
-    if not isinstance(body.shape, Polygon):
-        text = f"body {body.name!r} is a {body.shape.key}; gaps are of convex polygons alone"
-        raise ValueError(text)
-    return outline(robot, body, q)
-
-
-def _anticlockwise(outline: ArrayLike) -> Floats:
-    """Return the corners anticlockwise; refuse an outline that is not convex."""
-    p = np.asarray(outline, dtype=float)
-    step = np.roll(p, -1, axis=-2) - p
-    turn = cross(step, np.roll(step, -1, axis=-2))
-    rounding = ZERO_AMPLITUDE * (step**2).sum(axis=-1).max()
-    left, right = ((sense * turn >= -rounding).all(axis=-1) for sense in (1, -1))
-    if not (left | right).all():
-        raise ValueError("the outline of a body must be convex")
-    return np.asarray(np.where(left[..., None, None], p, p[..., ::-1, :]))
-
-
-def _beyond_edges(p: Floats, r: Floats) -> Any:
-    """Largest, over the edges of p, of the least distance of r's corners beyond that edge."""
-    step = np.roll(p, -1, axis=-2) - p
-    normal = np.stack([step[..., 1], -step[..., 0]], axis=-1)
-    normal = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
-    edge = (normal * p).sum(axis=-1)
-    beyond = np.einsum("...ei,...ci->...ec", normal, r) - edge[..., None]
-    return beyond.min(axis=-1).max(axis=-1)
+def _pair(one: Body, other: Body) -> BodyPair:
+    return BodyPair(f"{one.name}, {other.name}", (one.name, other.name))
