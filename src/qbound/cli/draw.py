@@ -58,6 +58,7 @@ def run(options: argparse.Namespace) -> int:
 def _picture(
     robot: Robot, q: ArrayLike, values: dict[int, float], ending: str, options: argparse.Namespace
 ) -> bytes:
+    from qbound.figures import drawn_plane
     from qbound.figures.pictures import pose_picture
 
     both, kind = options.region == options.arm, ending.removeprefix(".").lower()
@@ -66,5 +67,5 @@ def _picture(
         region = region_by_rule(robot, options.rule, values)
         numbered = nth_component(region, options.component) if region.components else None
     if both or options.arm:
-        plane = plane_of_motion(robot) or (0, 2)
+        plane = plane_of_motion(robot) or drawn_plane(robot)
     return pose_picture(robot, q, region, plane, kind, numbered)

@@ -23,8 +23,9 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.export.polygons import polygons
 from qbound.extras import require
 from qbound.forms.angles import TURN, whole_turns
-from qbound.measures.bodies import outline
+from qbound.measures.bodies import outline_in_frame
 from qbound.model.frames import Frames
+from qbound.model.plane import COORDINATES
 from qbound.model.robot import Joint, Robot
 from qbound.paths.traversal import Traversal
 from qbound.printable import printable
@@ -95,10 +96,11 @@ def joint_axes(
 
 
 def plane_axes(
-    ax: Axes, robot: Robot, limits: ArrayLike | None = None, plane: tuple[int, int] = (0, 2)
+    ax: Axes, robot: Robot, limits: ArrayLike | None = None, plane: tuple[int, int] | None = None
 ) -> None:
-    """Label the plane of motion of a planar arm, x and z, and give both axes one scale."""
-    one, other = (f"${'xyz'[axis]}$ / {robot.length_unit}" for axis in plane)
+    """Label the plane of motion of a planar arm (`drawn_plane`), and give both axes one scale."""
+    axes = drawn_plane(robot) if plane is None else plane
+    one, other = (f"${'xyz'[axis]}$ / {robot.length_unit}" for axis in axes)
     ax.set(aspect="equal", xlabel=one, ylabel=other)
     if limits is not None:
         (x0, x1), (z0, z1) = np.asarray(limits)
@@ -113,9 +115,9 @@ def draw_robot(
     points: Sequence[str] = (),
     bodies: bool = True,
     alpha: float = 1.0,
-    plane: tuple[int, int] = (0, 2),
+    plane: tuple[int, int] | None = None,
 ) -> list[Artist]:
-    """Draw a planar arm at one configuration: bodies, links, joints, and points by name.
+    """Draw a planar arm at one configuration: obstacles, bodies, links, joints, points by name.
 
     A joint that turns is a circle; one that slides is a carriage on a rail from its lowest value
     to its highest. A rail on the base stands where it is, without a link to the base's origin.
@@ -125,16 +127,15 @@ def draw_robot(
     q : array_like, shape (n,)
     points : sequence of str
         Points to mark and name.
-    plane : tuple of int
-        The two coordinates drawn; 0, 1, 2 for x, y, z. Bodies lie in x, z and are drawn there.
+    plane : tuple of int, optional
+        The two coordinates drawn; 0, 1, 2 for x, y, z. Default: those of `drawn_plane`, in which
+        bodies lie; in others they are not drawn.
     """
-    axes = list(plane)
+    axes = list(drawn_plane(robot) if plane is None else plane)
     frames = robot.frames(np.asarray(q, dtype=float))
     artists: list[Artist] = []
-    for body in robot.bodies if bodies and plane == (0, 2) else ():
-        colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
-        seen = outline(robot, body, q)
-        artists += ax.fill(*seen.T, facecolor=colour, edgecolor=INK, alpha=0.35 * alpha, lw=1)
+    if bodies and tuple(axes) == drawn_plane(robot):
+        artists += _draw_bodies(ax, robot, frames, axes, alpha)
     artists += _draw_chain(ax, robot, frames, axes, alpha)
     # Names go left and right by turns: the two points of a pair in contact are at one place.
     for i, name in enumerate(points):
@@ -145,6 +146,31 @@ def draw_robot(
         text = ax.annotate(as_text(name), (x, z), shift, textcoords="offset points", zorder=6)
         text.set_horizontalalignment("right" if left else "left")
         artists.append(_halo(text))
+    return artists
+
+
+def drawn_plane(robot: Robot) -> tuple[int, int]:
+    """Return the two coordinates in which a picture shows an arm: x and z if it is not planar."""
+    try:
+        return COORDINATES[int(np.argmax(np.abs(robot.plane.normal)))]
+    except ValueError:
+        return 0, 2
+
+
+def _draw_bodies(
+    ax: Axes, robot: Robot, frames: Frames, axes: list[int], alpha: float
+) -> list[Artist]:
+    """Draw the outlines of obstacles and bodies, each in the colour of its frame."""
+    artists: list[Artist] = []
+    for body in (*robot.obstacles, *robot.bodies):
+        colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
+        if body in robot.obstacles:
+            colour = COLLIDING
+        turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
+        corners = outline_in_frame(robot, body) @ turn.T
+        seen = corners + frames.position(robot.base, body.frame, robot.base)
+        look: dict[str, Any] = {"facecolor": colour, "edgecolor": INK, "lw": 1}
+        artists += ax.fill(*seen[:, axes].T, alpha=0.35 * alpha, **look)
     return artists
 
 
@@ -200,15 +226,16 @@ def _draw_slide(ax: Axes, rail: Floats, carriage: Floats, alpha: float) -> list[
 
 
 def draw_spheres(
-    ax: Axes, robot: Robot, q: ArrayLike, plane: tuple[int, int] = (0, 2)
+    ax: Axes, robot: Robot, q: ArrayLike, plane: tuple[int, int] | None = None
 ) -> list[Artist]:
     """Draw every point that has a radius as a disc: those of the base filled, the others open."""
     from matplotlib.patches import Circle
 
     frames = robot.frames(np.asarray(q, dtype=float))
+    axes = list(drawn_plane(robot) if plane is None else plane)
     artists: list[Artist] = []
     for point in (point for point in robot.points if point.radius > 0):
-        place = frames.position(robot.base, point.name, robot.base)[list(plane)]
+        place = frames.position(robot.base, point.name, robot.base)[axes]
         fixed = point.frame == robot.base
         look: dict[str, Any] = {"fc": COLLIDING + "55" if fixed else "none", "ec": INK, "lw": 1}
         artists.append(ax.add_patch(Circle(tuple(place), point.radius, zorder=2, **look)))
@@ -331,7 +358,7 @@ def draw_traversal(
     plane_axes(space, robot, window)
     artists.append(space.axhline(0, color=INK, lw=1))
     artists += draw_robot(space, robot, path.final_pose, alpha=0.6)
-    return artists + draw_path(space, path.tool[:, [0, 2]], path.stops, **look)
+    return artists + draw_path(space, path.tool[:, list(drawn_plane(robot))], path.stops, **look)
 
 
 def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,7 @@ def pose_picture(
     robot: Robot,
     q: ArrayLike,
     region: Region | None = None,
-    plane: tuple[int, int] | None = (0, 2),
+    plane: tuple[int, int] | Literal["own"] | None = "own",
     kind: str = "svg",
     numbered: Component | None = None,
 ) -> bytes:
@@ -47,13 +47,15 @@ def pose_picture(
     q : array_like, shape (n,)
     region : Region or None
         None: no panel of joint space.
-    plane : tuple of int or None
-        The coordinates of the robot's panel, 0, 1, 2 for x, y, z; None: no such panel.
+    plane : tuple of int, "own" or None
+        The coordinates of the robot's panel, 0, 1, 2 for x, y, z; "own": those of the robot's plane
+        of motion; None: no such panel.
     kind : {"svg", "png"}
     numbered : Component or None
         The component whose vertices bear their numbers.
     """
     pose = np.asarray(q, dtype=float)
+    plane = figures.drawn_plane(robot) if plane == "own" else plane
 
     def draw(axes: Sequence[Axes]) -> None:
         if region is not None:

@@ -193,11 +193,11 @@ def _check_chain(table: Table) -> None:
 
 def _check_references(table: Table) -> None:
     """Refuse a name that nothing has, under whatever key of a row names a frame or points."""
+    for kind, i, _ in _rows(table, "point", "body"):
+        _check_known(table, (kind, i, "frame"), "frame", _frames(table))
     points, bodies = [p["name"] for p in table["point"]], [name for *_, name in _bodies(table)]
     _check_known(table, ("tool",), "point", points)
-    for kind, i, row in _rows(table, "point", "boundary", "body"):
-        if "frame" in row:
-            _check_known(table, (kind, i, "frame"), "frame", _frames(table))
+    for kind, i, row in _rows(table, "boundary"):
         if "point" in row:
             _check_known(table, (kind, i, "point"), "point", points)
         for k in range(len(row.get("points", ()))):
