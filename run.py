@@ -71,7 +71,12 @@ COUNTS += ("LANG", "LC_", "TZ")
 # Programs that a chapter's process may start without reading anything of ours.
 HARMLESS = {"fc-list", "uname"}
 
-SCRIPTS = ["src/qbound/explorer/web", "book/_static", "tests/test_book_browser.js"]
+SCRIPTS = [
+    "src/qbound/explorer/web",
+    "book/_static",
+    "benchmarks/live.js",
+    "tests/test_book_browser.js",
+]
 PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."

@@ -40,6 +40,12 @@ SCRIPTS = HERE.parent / "_static" / "play"
 WITHOUT_PARTS = {"explorer"}
 """Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
 
+WITHOUT_EXPLORER = {"live"}
+"""Kinds that show no robot of the package and mount no explorer."""
+
+SCRIPTS_BEFORE = {"live": ("live_geometry", "live_fibres", "live_scene")}
+"""What stands before a kind's own script, in order."""
+
 LOGGER = logging.getLogger(__name__)
 
 Options = dict[str, str]
@@ -93,6 +99,11 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str]]:
     if kind != "explorer" and not (SCRIPTS / f"{kind}.js").is_file():
         LOGGER.warning("no figure kind %r: there is no book/_static/play/%s.js", kind, kind)
         return
+    for before in SCRIPTS_BEFORE.get(kind, ()):
+        yield own_script(before)
+    if kind in WITHOUT_EXPLORER:
+        yield own_script(kind)
+        return
     name = hook.get("robot", "minervabot-v2")
     region = region_of(name, hook.get("rule", "clearance"))
     told = explorer_data(region, paths_of(name))
@@ -121,8 +132,11 @@ def add_scripts(
     found = hooks(doctree)
     if not found:
         return
+    kinds = {hook.get("figure") for hook in found}
     files = {"play/engine.js": engine_script()}
-    if any(hook.get("figure") not in WITHOUT_PARTS for hook in found):
+    if kinds <= WITHOUT_EXPLORER:
+        files = {"play/parts_of_engine.js": engine_script(explorer=False)}
+    if kinds - WITHOUT_PARTS:
         files |= [own_script("parts")]
     files |= [script for hook in found for script in scripts_of(hook)]
     files |= [own_script("play")]

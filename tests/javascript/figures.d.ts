@@ -203,3 +203,130 @@ interface Judged {
   region: number | null;
   violated: string[];
 }
+
+/* --- live ------------------------------------------------------------------------------------- */
+
+interface LivePlaced {
+  name: string;
+  x: number;
+  y: number;
+  angle: number;
+}
+
+interface LiveDisc extends LivePlaced {
+  kind: "disc";
+  radius: number;
+}
+
+interface LiveBox extends LivePlaced {
+  kind: "box";
+  width: number;
+  height: number;
+}
+
+interface LivePolygon extends LivePlaced {
+  kind: "polygon";
+  corners: Point[]; // about x, y, before it is turned
+}
+
+type LiveObstacle = LiveDisc | LiveBox | LivePolygon;
+
+interface LiveScene {
+  lengths: number[];
+  thicknesses: number[];
+  q: Pair;
+  home: Pair;
+  obstacles: LiveObstacle[];
+}
+
+interface LiveArm {
+  lengths: number[];
+  radii: number[];
+}
+
+interface LiveShape {
+  points: Point[]; // of a disc its centre
+  radius: number;
+  x: number;
+  y: number;
+  size: number; // of a disc about x, y that holds it all
+}
+
+interface LiveContact {
+  gap: number; // negative where they overlap, but no depth
+  places: Point[]; // the two nearest, on the link's line and on the obstacle
+  end: number | null; // of the link, 0 or 1; null: its side
+  part: "corner" | "edge" | null; // of the obstacle; null: a disc
+  number: number; // of that part
+}
+
+interface LiveEncounter extends LiveContact {
+  link: number;
+  obstacle: number;
+}
+
+interface LiveForbidden {
+  windows: number[]; // pairs of ends in [-pi, pi]: q1 at which the first link meets it
+  columns: number[][]; // the same of q2, for the second link, on each column of the grid
+  critical: number[]; // q1 at which the number of those intervals changes
+}
+
+interface LiveColumn {
+  q: number;
+  free: number[]; // pairs of ends
+}
+
+interface LiveSpace {
+  columnsOf(arm: LiveArm, shapes: LiveShape[]): LiveColumn[];
+}
+
+interface LiveRegions {
+  columns: LiveColumn[];
+  home: boolean; // whether home is free; its component is the first
+  areas: number[];
+  of: number[][]; // of each interval of each column its component; -1: too small
+}
+
+interface LiveScale {
+  x0: number; // a pixel is x0 + dx * angle
+  dx: number;
+  y0: number;
+  dy: number;
+}
+
+interface LiveLine {
+  kept: number[];
+  add(x: number, y: number): void;
+  end(): void;
+}
+
+interface LiveStrip {
+  number: number;
+  lower: LiveLine;
+  upper: LiveLine;
+  cutLow: boolean;
+  cutHigh: boolean;
+}
+
+interface LiveOutline {
+  fill: string;
+  edge: string;
+}
+
+interface LivePictures {
+  square: Picture;
+  whole: Picture;
+  regions: SVGGElement;
+  shadow: SVGPathElement;
+  names: SVGGElement;
+  home: SVGPathElement;
+  dot: Handle;
+  obstacles: SVGGElement;
+  ghost: SVGPathElement;
+  links: SVGLineElement[];
+  spine: SVGPathElement;
+  gap: SVGPathElement;
+  elbow: Handle;
+  tool: Handle;
+  hands: SVGGElement;
+}

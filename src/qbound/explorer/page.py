@@ -140,16 +140,20 @@ def explorer_page(region: Region, walks: Walks = ()) -> str:
     )
 
 
-def engine_script() -> str:
+def engine_script(*, explorer: bool = True) -> str:
     """Return the engine: one classic script that defines `qboundEngine` and draws nothing yet.
 
     Its function ``mount(root, robot, options)`` holds the scripts in `EXPLORER`, so that their
-    names belong to one explorer, and a page may have several.
+    names belong to one explorer, and a page may have several. A page whose figures are of other
+    kinds may do without: then `explorer` is false, and ``mount`` is null.
     """
-    shared, own = ("".join(map(_web, names)) for names in (ENGINE, EXPLORER))
-    markup = _embedded(_web("parts.html"))
-    mount = f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
-    return shorter_script(f"(() => {{\n{shared}const MARKUP = {markup};\n{mount}}})();\n")
+    shared = "".join(map(_web, ENGINE))
+    mount = "const mount = null;\n"
+    if explorer:
+        own, markup = "".join(map(_web, EXPLORER)), _embedded(_web("parts.html"))
+        mount = f"const MARKUP = {markup};\n"
+        mount += f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
+    return shorter_script(f"(() => {{\n{mount}{shared}}})();\n")
 
 
 def engine_style() -> str:
