@@ -41,9 +41,7 @@ See [chapter 3](03_theorem_1.ipynb).
 """
 
 
-def tool(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """A tool as a module; one may import another."""
-    monkeypatch.syspath_prepend(TOOLS)
+def tool(name: str) -> ModuleType:
     return load_script(f"tools/{name}.py")
 
 
@@ -174,8 +172,8 @@ def test_an_index_that_cannot_be_is_named_and_nothing_written(
 # --- first cells ----------------------------------------------------------------------------------
 
 
-def test_every_chapter_has_the_same_first_cell(monkeypatch: pytest.MonkeyPatch) -> None:
-    script = tool("first_cells", monkeypatch)
+def test_every_chapter_has_the_same_first_cell() -> None:
+    script = tool("first_cells")
     code = script.first_cell((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     for chapter in CHAPTERS:
         first = next(c for c in jupytext.read(chapter).cells if c.cell_type == "code")
@@ -212,7 +210,7 @@ def without_first_cell(path: Path) -> str:
 @pytest.mark.parametrize("address", ["", "https://example.org/group/qbound"])
 def test_the_first_cell_says_what_to_install(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
     """It is nothing where qbound is there; where it is not, it asks for it, or on Colab gets it."""
-    script = tool("first_cells", monkeypatch)
+    script = tool("first_cells")
     code = script.first_cell(f'[tool.qbound]\nrepository = "{address}"\n')
     exec(code, {})
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
@@ -229,9 +227,9 @@ def test_the_first_cell_says_what_to_install(monkeypatch: pytest.MonkeyPatch, ad
 # --- references -----------------------------------------------------------------------------------
 
 
-def test_roles_become_links_with_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_roles_become_links_with_numbers() -> None:
     known = {"fig:5": "5", "eq:31": "31", "thm:2": "2", "tab:signs": "N4", "thm-arc": "N1"}
-    written = tool("references", monkeypatch).with_numbers
+    written = tool("references").with_numbers
     for before, after in {
         "{numref}`fig:5`": "[Figure 5](#fig:5)",
         "{numref}`Figures %s <fig:5>`": "[Figures 5](#fig:5)",
@@ -258,11 +256,11 @@ def test_both_files_of_a_chapter_get_the_same_references(scratch: Path) -> None:
         assert re.findall(r"\{(?:numref|eq)\}`", text) == [], stem
 
 
-def test_the_numbers_are_those_of_the_built_book(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_numbers_are_those_of_the_built_book() -> None:
     """The book's own, too: they are counted here as Sphinx counts them."""
     if not (HTML / "index.html").is_file():
         pytest.skip("the book has not been made")
-    known = tool("references", monkeypatch).numbers()
+    known = tool("references").numbers()
     built = {}
     for page in [*HTML.glob("*.html"), *(HTML / "chapters").glob("*.html")]:
         soup = BeautifulSoup(page.read_text(encoding="utf-8"), "html.parser")
@@ -278,10 +276,8 @@ def test_the_numbers_are_those_of_the_built_book(monkeypatch: pytest.MonkeyPatch
     }
 
 
-def test_a_readers_copy_carries_numbers_and_captions(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    script = tool("workbook", monkeypatch)
+def test_a_readers_copy_carries_numbers_and_captions(tmp_path: Path) -> None:
+    script = tool("workbook")
     assert script.main([str(tmp_path)]) == 0
     copies = sorted(tmp_path.iterdir())
     assert [copy.stem for copy in copies] == [chapter.stem for chapter in CHAPTERS]
@@ -297,8 +293,8 @@ def test_a_readers_copy_carries_numbers_and_captions(
     assert ":label: thm:2\n:enumerator: 2\n" in text
 
 
-def test_a_readers_work_is_left_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    script = tool("workbook", monkeypatch)
+def test_a_readers_work_is_left_alone(tmp_path: Path) -> None:
+    script = tool("workbook")
     mine = tmp_path / f"{CHAPTERS[0].stem}.ipynb"
     mine.write_text("mine")
     assert script.main([str(tmp_path)]) == 0
@@ -308,8 +304,8 @@ def test_a_readers_work_is_left_alone(monkeypatch: pytest.MonkeyPatch, tmp_path:
 # --- the list of chapters -------------------------------------------------------------------------
 
 
-def test_the_list_of_chapters_is_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert tool("list_chapters", monkeypatch).main(["--check"]) == 0
+def test_the_list_of_chapters_is_up_to_date() -> None:
+    assert tool("list_chapters").main(["--check"]) == 0
 
 
 def test_the_list_names_every_chapter_and_every_item_with_the_chapter_that_holds_it() -> None:

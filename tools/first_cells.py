@@ -10,10 +10,10 @@ from __future__ import annotations
 import json
 import sys
 import tomllib
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parent.parent
+from chapter_files import ROOT, finish, rewritten
+
 OWN = "first-cell"  # the tag by which the cell is known
 TAGS = ["hide-input", OWN]
 
@@ -41,26 +41,8 @@ if importlib.util.find_spec("qbound") is None:
 def main(arguments: list[str]) -> int:
     """Write what has to change, or with --check only name it."""
     code = first_cell((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    changes = {}
-    for path in chapters():
-        old = path.read_text(encoding="utf-8")
-        new = in_notebook(old, code) if path.suffix == ".ipynb" else in_text(old, code)
-        if new != old:
-            changes[path] = new
-    if "--check" in arguments:
-        for path in changes:
-            print(f"{path.relative_to(ROOT)} begins otherwise: run `python3 run.py renumber`.")
-        return 1 if changes else 0
-    for path, text in changes.items():
-        path.write_text(text, encoding="utf-8", newline="\n")
-    print(f"{len(changes)} first cells written.")
-    return 0
-
-
-def chapters() -> list[Path]:
-    """Return the files of all chapters."""
-    found = (ROOT / "notebooks").iterdir()
-    return sorted(p for p in found if p.suffix in {".md", ".ipynb"} and p.stem != "README")
+    changes = rewritten(lambda text: in_text(text, code), lambda text: in_notebook(text, code))
+    return finish(changes, arguments, "begins otherwise", f"{len(changes)} first cells written.")
 
 
 def first_cell(pyproject: str) -> str:

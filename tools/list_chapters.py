@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-TARGET = ROOT / "notebooks" / "README.md"
+from chapter_files import NOTEBOOKS, ROOT, finish
+
+TARGET = NOTEBOOKS / "README.md"
 ROW = re.compile(
     r"^\| \{[\w:]+\}`(\w+):(\w+)` \| ([^|]+) \| \[[^\]]+\]\(chapters/(\w+)\.ipynb\)", re.M
 )
@@ -43,13 +43,8 @@ def main(arguments: list[str]) -> int:
     """Write the list, or with --check compare it."""
     new = listed()
     old = TARGET.read_text(encoding="utf-8") if TARGET.exists() else ""
-    if "--check" in arguments:
-        if new != old:
-            print("notebooks/README.md is not up to date: run `python3 run.py renumber`.")
-        return int(new != old)
-    TARGET.write_text(new, encoding="utf-8", newline="\n")
-    print(f"{TARGET.relative_to(ROOT)} lists {len(titles())} chapters.")
-    return 0
+    done = f"{TARGET.relative_to(ROOT)} lists {len(titles())} chapters."
+    return finish({TARGET: new} if new != old else {}, arguments, "is not up to date", done)
 
 
 def listed() -> str:
@@ -59,7 +54,7 @@ def listed() -> str:
 
 def titles() -> dict[str, str]:
     """Return the title of each chapter, by the name of its files."""
-    files = sorted((ROOT / "notebooks").glob("[0-9][0-9]_*.md"))
+    files = sorted(NOTEBOOKS.glob("[0-9][0-9]_*.md"))
     return {file.stem: TITLE.findall(file.read_text(encoding="utf-8"))[0] for file in files}
 
 

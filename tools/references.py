@@ -15,7 +15,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from chapter_files import NOTEBOOKS, ROOT, finish, rewritten
+
 BOOK = ROOT / "book"
 
 ENTRY = re.compile(r"^(?:chapters/)?[a-z0-9_]+$")
@@ -40,26 +41,11 @@ NUMBER = re.compile(r"N?\d+[a-z]?")
 def main(arguments: list[str]) -> int:
     """Write what has to change, or with --check only name it."""
     known = numbers()
-    changes = {}
-    for path in chapters():
-        old = path.read_text(encoding="utf-8")
-        new = in_notebook(old, known) if path.suffix == ".ipynb" else with_numbers(old, known)
-        if new != old:
-            changes[path] = new
-    if "--check" in arguments:
-        for path in changes:
-            print(f"{path.relative_to(ROOT)} has old references: run `python3 run.py renumber`.")
-        return 1 if changes else 0
-    for path, text in changes.items():
-        path.write_text(text, encoding="utf-8", newline="\n")
-    print(f"References of {len(changes)} files written.")
-    return 0
-
-
-def chapters() -> list[Path]:
-    """Return the files of all chapters."""
-    found = (ROOT / "notebooks").glob("[0-9]*_*")
-    return sorted(path for path in found if path.suffix in {".md", ".ipynb"})
+    changes = rewritten(
+        lambda text: with_numbers(text, known), lambda text: in_notebook(text, known)
+    )
+    done = f"References of {len(changes)} files written."
+    return finish(changes, arguments, "has old references", done)
 
 
 def pages() -> list[Path]:
@@ -68,7 +54,7 @@ def pages() -> list[Path]:
     trees = "\n".join(TREE.findall(index.read_text(encoding="utf-8")))
     names = [line.strip() for line in trees.splitlines() if ENTRY.match(line.strip())]
     files = {name: BOOK / f"{name}.md" for name in names}
-    files |= {n: ROOT / "notebooks" / f"{n[9:]}.md" for n in names if n.startswith("chapters/")}
+    files |= {n: NOTEBOOKS / f"{n[9:]}.md" for n in names if n.startswith("chapters/")}
     return [index, *files.values()]
 
 

@@ -16,7 +16,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from chapter_files import ROOT, chapters, report, write
+
 INDEX = ROOT / "book" / "index.md"
 ORDER = ROOT / "src" / "lizarraga2025" / "recorded.py"
 
@@ -37,11 +38,8 @@ def main(arguments: list[str]) -> int:
     changes = renumbered(names)
     moves = {old: new for old, new in moved(names).items() if old != new}
     if "--check" in arguments:
-        for path in sorted({*changes, *moves}):
-            print(f"{path.relative_to(ROOT)} is out of order: run `python3 run.py renumber`.")
-        return 1 if changes or moves else 0
-    for path, text in changes.items():
-        path.write_text(text, encoding="utf-8", newline="\n")
+        return report([*changes, *moves], "is out of order")
+    write(changes)
     rename(moves)
     print(f"{len(names)} chapters; {len(changes)} files written, {len(moves)} renamed.")
     return 0
@@ -55,12 +53,6 @@ def unlisted(names: list[str]) -> str:
     if files != set(names):
         return f"book/index.md and notebooks/ differ: {', '.join(sorted(files ^ set(names)))}."
     return ""
-
-
-def chapters() -> list[Path]:
-    """Return the files of all chapters."""
-    found = (ROOT / "notebooks").iterdir()
-    return sorted(p for p in found if p.suffix in {".md", ".ipynb"} and p.stem != "README")
 
 
 def name_of(path: Path) -> str:

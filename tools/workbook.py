@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import references
-
-ROOT = Path(__file__).resolve().parent.parent
+from chapter_files import chapters
 
 # Front matter of the first cell: no numbers but ours.
 PLAIN = "---\nnumbering:\n  equation: false\n---\n\n"
@@ -29,7 +28,7 @@ def main(arguments: list[str]) -> int:
     folder = Path(arguments[0])
     folder.mkdir(parents=True, exist_ok=True)
     known = references.numbers()
-    sources = [path for path in references.chapters() if path.suffix == ".ipynb"]
+    sources = [path for path in chapters() if path.suffix == ".ipynb"]
     missing = [source for source in sources if not (folder / source.name).exists()]
     for source in missing:
         content = json.loads(source.read_text(encoding="utf-8"))
