@@ -2,14 +2,19 @@
 and one browser for all tests that look at pages.
 """
 
+import gc
+
 import pytest
 from hypothesis import HealthCheck, settings
 
 pytest.register_assert_rewrite("support")  # before its first import: its assertions show values
 
-from support.browser import browser  # noqa: E402
+from support.browser import browser, open_quietly  # noqa: E402
 
-__all__ = ["browser"]
+__all__ = ["browser", "open_quietly"]
+
+# What the library and the parsed pages keep is looked through again and again, in vain.
+gc.set_threshold(50_000, 20, 50)
 
 # On a busy machine nothing is too slow.
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}

@@ -22,6 +22,8 @@ from matplotlib import pyplot as plt
 
 from qbound import figures
 from qbound.cli import command_parsers
+from support.pages import HTML, ids, read
+from support.scripts import importable
 from support.trial_book import BOOK, ROOT, TRIAL_INDEX, build_trial
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
@@ -29,7 +31,6 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
 )
 
-HTML = BOOK / "_build" / "html"
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
 API_PAGES = [page for page in PAGES if page.startswith("generated/")] or ["index.html"]
@@ -37,13 +38,6 @@ NOTEBOOKS = sorted(path.stem for path in (ROOT / "notebooks").glob("*.ipynb"))
 
 REMOTE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 LOADED = {"src", "srcset", "poster", "data", "xlink:href", "action"}
-
-
-@cache
-def read(page: str) -> BeautifulSoup:
-    file = HTML / page
-    assert file.exists(), "run `python3 run.py book` first"
-    return BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
 
 
 def loaded_by(page: Tag) -> list[str]:
@@ -104,19 +98,15 @@ def test_an_id_is_used_once(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_a_link_inside_the_book_leads_somewhere(page):
-    lost = []
+    here, lost = HTML.resolve(), []
     for link in read(page).select("article a[href]"):
         target, _, anchor = link["href"].partition("#")
         if re.match(r"^\w+:", link["href"]) or target.startswith("//"):
             continue
         file = ((HTML / page).parent / target).resolve() if target else HTML / page
-        if not file.exists() or (anchor and not has_id(file, anchor)):
+        if not file.exists() or (anchor and anchor not in ids(str(file.relative_to(here)))):
             lost.append(link["href"])
     assert lost == []
-
-
-def has_id(file: Path, anchor: str) -> bool:
-    return read(str(file.relative_to(HTML.resolve()))).find(id=anchor) is not None
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -302,11 +292,8 @@ def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
 
 def panels(file: Path) -> list[Any]:
     """Return what the book's extension makes of a drawing."""
-    sys.path.insert(0, str(BOOK / "_ext"))
-    try:
+    with importable(BOOK / "_ext"):
         return list(importlib.import_module("panels").panels_of(ElementTree.parse(file).getroot()))
-    finally:
-        sys.path.pop(0)
 
 
 def drawn(file: Path, columns: int, rows: int = 1, legend: bool = False) -> Path:

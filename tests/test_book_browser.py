@@ -11,7 +11,6 @@ from axe_playwright_python.sync_playwright import Axe
 
 from support.browser import (
     FAMILIES,
-    HTML,
     chapter_page,
     eventually,
     in_every_family,
@@ -19,6 +18,7 @@ from support.browser import (
     refuse_remote,
     settle,
 )
+from support.pages import HTML
 from support.trial_book import build_trial
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))

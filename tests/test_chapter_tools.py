@@ -13,15 +13,14 @@ from types import ModuleType
 import jupytext
 import nbformat
 import pytest
-from bs4 import BeautifulSoup
 from jupytext.compare import compare_notebooks
 
+from support.pages import HTML, read
 from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parent.parent
 TOOLS = ROOT / "tools"
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
-HTML = ROOT / "book" / "_build" / "html"
 
 TEXT = """\
 ---
@@ -263,8 +262,9 @@ def test_the_numbers_are_those_of_the_built_book() -> None:
     known = tool("references").numbers()
     built = {}
     for page in [*HTML.glob("*.html"), *(HTML / "chapters").glob("*.html")]:
-        soup = BeautifulSoup(page.read_text(encoding="utf-8"), "html.parser")
-        for number in soup.select("span.caption-number, span.eqno"):
+        for number in read(page.relative_to(HTML).as_posix()).select(
+            "span.caption-number, span.eqno"
+        ):
             holder = number.find_parent(lambda tag: tag.get("id") and tag.name != "span")
             found = re.search(r"N?\d+[a-z]?", number.get_text())
             built[holder["id"].removeprefix("equation-")] = found and found[0]

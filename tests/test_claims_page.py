@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bs4 import BeautifulSoup
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
@@ -18,19 +17,13 @@ from lizarraga2025.ledger.claims import counts, from_content
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
-from support.browser import HTML, chapter_page, open_page, refuse_remote
+from support.browser import chapter_page, open_page, refuse_remote
+from support.pages import HTML, read
 
 LEDGER = [from_content(content) for content in recorded.claims()]
 PAGE, ERRATA = chapter_page("what_holds"), chapter_page("errata")
 
 every_entry = pytest.mark.parametrize("one", LEDGER, ids=lambda one: one.id)
-
-
-@cache
-def read(page: str) -> BeautifulSoup:
-    file = HTML / page
-    assert file.exists(), "run `python3 run.py book` first"
-    return BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
 
 
 @cache

@@ -17,7 +17,7 @@ from qbound import find_region, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL
-from support.browser import drag, in_every_family, refuse_remote, settle, wait_until
+from support.browser import drag, in_every_family, settle, wait_until
 
 WALLS = {
     "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
@@ -57,25 +57,14 @@ def files(tmp_path_factory):
 
 
 @pytest.fixture
-def open_explorer(browser, files):
-    """Open pages; at the end none has complained or asked for anything."""
-    pages, complaints, requests = [], [], []
+def open_explorer(open_quietly, files):
+    """Open explorers by their robot's name."""
 
     def open_one(name="paper", fragment="", **options):
-        page = browser.new_page(**({"viewport": {"width": 1280, "height": 900}} | options))
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto(files[name].as_uri() + fragment)
-        settle(page)
-        pages.append(page)
-        return page
+        options = {"viewport": {"width": 1280, "height": 900}} | options
+        return open_quietly(files[name].as_uri() + fragment, **options)
 
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+    return open_one
 
 
 def pose(page):
@@ -155,12 +144,8 @@ def test_a_tool_dragged_out_of_reach_stretches_the_arm_and_says_so(open_explorer
 
 
 @pytest.fixture
-def phone(browser, files):
-    page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
-    page.goto(files["paper"].as_uri())
-    settle(page)
-    yield page
-    page.close()
+def phone(open_explorer):
+    return open_explorer(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
 
 
 def test_a_touch_drags_the_dot(phone):

@@ -1,20 +1,20 @@
 """The book's numbers: the paper's own where the paper has the object, N1, N2, ... elsewhere."""
 
-import sys
 from pathlib import Path
 
 import nbformat
 import pytest
 from bs4 import BeautifulSoup, Tag
 from sphinx.errors import ExtensionError
-from sphinx.testing.util import SphinxTestApp
+
+from support.trial_book import BOOK, build_book
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
 pytestmark = pytest.mark.filterwarnings(
     "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
 )
 
-EXTENSIONS = Path(__file__).resolve().parents[1] / "book" / "_ext"
+EXTENSIONS = BOOK / "_ext"
 
 CONF = """
 extensions = ["myst_nb", "sphinx_proof", "paper_numbers"]
@@ -143,15 +143,9 @@ def build(folder: Path, first: str) -> dict[str, Tag]:
         ("arm.svg", SVG),
     ]:
         (folder / name).write_text(text, encoding="utf-8")
-    sys.path.insert(0, str(EXTENSIONS))
-    app = SphinxTestApp("html", srcdir=folder, warningiserror=True, freshenv=True)
-    try:
-        app.build()
-        assert app.warning.getvalue() == ""
-        assert app.statuscode == 0
-    finally:
-        app.cleanup()
-    return {page: soup(Path(app.outdir) / f"{page}.html") for page in ("first", "second")}
+    html, warnings = build_book(folder, EXTENSIONS, warningiserror=True, freshenv=True)
+    assert warnings == ""
+    return {page: soup(html / f"{page}.html") for page in ("first", "second")}
 
 
 def soup(file: Path) -> BeautifulSoup:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from bs4 import BeautifulSoup
 from numpy.testing import assert_allclose
-from sphinx.testing.util import SphinxTestApp
 
 from qbound.explorer.page import engine_script
-from support.browser import drag, refuse_remote, settle, wait_until
+from support.browser import drag, settle, wait_until
+from support.scripts import importable
+from support.trial_book import BOOK, build_book
 
-BOOK = Path(__file__).resolve().parents[1] / "book"
 PICTURES = ".play svg[role=application]"
 MOST_BYTES = 150_000  # of our own script on a page
 
@@ -28,7 +27,6 @@ pytestmark = pytest.mark.filterwarnings(
 
 CONF = f"""
 extensions = ["myst_parser", "play"]
-source_suffix = {{".md": "markdown"}}  # Sphinx keeps what another book of this process set
 html_theme = "basic"
 html_static_path = [{str(BOOK / "_static")!r}]
 """
@@ -72,36 +70,18 @@ def site(tmp_path_factory):
     folder.joinpath("still.svg").write_bytes((BOOK / "_static" / "logo.svg").read_bytes())
     for name, text in PAGES.items():
         folder.joinpath(f"{name}.md").write_text(text, encoding="utf-8")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(BOOK / "_ext")
-        app = SphinxTestApp("html", srcdir=folder)
-        try:
-            app.build()
-            return Path(app.outdir), app.warning.getvalue()
-        finally:
-            app.cleanup()
+    return build_book(folder, BOOK / "_ext")
 
 
 @pytest.fixture
-def open_site(browser, site):
-    """Open a page; at the end it has not complained, nor asked for anything."""
-    pages, complaints, requests = [], [], []
+def open_site(open_quietly, site):
+    """Open pages of the small book."""
 
     def open_one(name="index", **options):
-        page = browser.new_page(**({"viewport": {"width": 1000, "height": 900}} | options))
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto((site[0] / f"{name}.html").as_uri())
-        settle(page)
-        pages.append(page)
-        return page
+        options = {"viewport": {"width": 1000, "height": 900}} | options
+        return open_quietly((site[0] / f"{name}.html").as_uri(), **options)
 
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+    return open_one
 
 
 def own_scripts(folder, name):
@@ -145,19 +125,16 @@ def test_a_kind_that_is_not_there_is_complained_of(site):
 
 
 def test_a_kind_may_be_told_more_by_python(monkeypatch, tmp_path):
-    monkeypatch.syspath_prepend(BOOK / "_ext")
-    monkeypatch.syspath_prepend(tmp_path)
-    import play
-
-    monkeypatch.setattr(play, "HERE", tmp_path)
-    monkeypatch.setattr(play, "SCRIPTS", tmp_path)
-    monkeypatch.delitem(sys.modules, "play_data", raising=False)
     (tmp_path / "play_data").mkdir()
     (tmp_path / "play_data" / "areas.py").write_text(
         "def data(region):\n    return {'pieces': len(region.components)}\n", encoding="utf-8"
     )
     (tmp_path / "areas.js").write_text("// a kind\n", encoding="utf-8")
-    made = dict(play.scripts_of({"figure": "areas"}))
+    with importable(BOOK / "_ext"), importable(tmp_path):
+        play = importlib.import_module("play")
+        monkeypatch.setattr(play, "HERE", tmp_path)
+        monkeypatch.setattr(play, "SCRIPTS", tmp_path)
+        made = dict(play.scripts_of({"figure": "areas"}))
     assert list(made) == [
         "play/robots/minervabot-v2.js",
         "play/data/areas-minervabot-v2.js",

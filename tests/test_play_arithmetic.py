@@ -2,60 +2,29 @@
 
 from __future__ import annotations
 
-import json
-from functools import cache
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
-import quickjs
 import shapely
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
-from qbound import circle_arc, circle_roots, clearance, find_region, load_robot
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ARITHMETIC
+from qbound import circle_arc, circle_roots, clearance
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule
 from qbound.symbols import with_symbols
+from support.play import kind
 
-ROOT = Path(__file__).resolve().parents[1]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
-PLAY = ROOT / "book" / "_static" / "play"
-ENGINE = """const qboundFigures = {}, qboundEngine = {
-  alongSecond, basis, evaluate, framesOf, placeIn, pointPlaces, project, restrict, rootsWithin,
-  scaledPolygon, viewAxes };"""
 ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")
 RNG = np.random.default_rng(12)
 
 
-class Kind:
-    """The arithmetic of one kind of figure in a JavaScript engine, called with JSON."""
-
-    def __init__(self, kind, data):
-        self.context = quickjs.Context()
-        for name in ARITHMETIC:
-            self.context.eval((WEB / name).read_text("utf-8"))
-        self.context.eval(ENGINE)
-        self.context.eval((PLAY / f"{kind}.js").read_text("utf-8"))
-        self.context.eval(f"const robot = {json.dumps(data)}, kind = qboundFigures.{kind};")
-
-    def __call__(self, expression, **values):
-        names = ", ".join(values)
-        json_values = ", ".join(json.dumps(value) for value in values.values())
-        return json.loads(
-            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
-        )
-
-
-@cache
-def case(kind, name="minervabot-v2", rule="paper"):
-    robot = load_robot(name)
-    return robot, Kind(kind, explorer_data(find_region(robot, rule=rule)))
+def case(name, robot="minervabot-v2", rule="paper"):
+    figure = kind(name, rule, robot)
+    return figure.region.robot, figure
 
 
 # --- Theorem 2 ------------------------------------------------------------------------------------

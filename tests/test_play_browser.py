@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,73 +10,26 @@ from axe_playwright_python.sync_playwright import Axe
 
 from lizarraga2025 import closed_form
 from qbound import circle_roots, clearance, find_region, load_robot
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import engine_script, engine_style
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule
 from qbound.sampling import keeps_clear
-from support.browser import in_every_family, refuse_remote, settle
+from support.browser import drag, in_every_family, settle
+from support.play import WIDTHS, open_play
 
-STATIC = Path(__file__).resolve().parents[1] / "book" / "_static"
+__all__ = ["open_play"]
+
 RULES = {"circle": "clearance", "switches": "paper", "scale": "paper", "bodies": "clearance"}
-WIDTHS = {"wide screen": 900, "phone": 340}
 ROBOT = load_robot("minervabot-v2")
-PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
-<meta name="viewport" content="width=device-width"><title>A figure</title>
-<style>:root {{ color-scheme: {theme} }}
-body {{ background: light-dark(#fff, #12181b); margin: 8px }}
-{style}</style><main><h1>A figure</h1>
-<div class="play" data-figure="{kind}" data-rule="{rule}"></div></main><script>{script}</script>"""
-
 LOST = """() => [...document.querySelectorAll(".play *:not(svg *)")]
   .filter((part) => part.getBoundingClientRect().right > innerWidth + 1)
   .map((part) => part.outerHTML)"""
 
 
-def page_of(kind, theme):
-    """Write the page that the book's extension makes of one hook, in one file."""
-    rule = RULES[kind]
-    key = "minervabot-v2" + ("" if rule == "clearance" else f"-{rule}")
-    robots = {key: explorer_data(find_region(ROBOT, rule=rule))}
-    files = [STATIC / "play" / f"{name}.js" for name in ("parts", kind, "play")]
-    script = engine_script() + f"window.qboundRobots = {json.dumps(robots)};\n"
-    script += "".join(file.read_text(encoding="utf-8") for file in files)
-    style = engine_style() + (STATIC / "play" / "play.css").read_text(encoding="utf-8")
-    return PAGE.format(kind=kind, rule=rule, theme=theme, style=style, script=script)
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("figures")
-    written = {}
-    for kind in RULES:
-        for theme in ("light", "dark"):
-            written[kind, theme] = folder / f"{kind}-{theme}.html"
-            written[kind, theme].write_text(page_of(kind, theme), encoding="utf-8")
-    return written
-
-
 @pytest.fixture
-def open_figure(browser, files):
-    """Open figures; at the end none has complained or asked for anything."""
-    pages, complaints, requests = [], [], []
-
-    def open_one(kind, theme="light", width=900, **options):
-        page = browser.new_page(viewport={"width": width, "height": 1000}, **options)
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto(files[kind, theme].as_uri())
-        settle(page)
-        pages.append(page)
-        return page
-
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+def open_figure(open_play):
+    """Open figures by their kind."""
+    return lambda kind, *where, **options: open_play(kind, RULES[kind], "", *where, **options)
 
 
 def words(page, selector=".status"):
@@ -92,14 +43,6 @@ def numbers(text):
 def middle(page, selector, n=0):
     box = page.locator(selector).nth(n).bounding_box()
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
-def drag(page, start, end, steps=12):
-    page.mouse.move(*start)
-    page.mouse.down()
-    page.mouse.move(*end, steps=steps)
-    page.mouse.up()
-    settle(page)
 
 
 def fill(page, label, value):

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,47 +11,12 @@ import quickjs
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
-from qbound import Region, find_region, load_robot
 from qbound.boundary.functions import position
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ARITHMETIC
 from qbound.geometry import polygon
 from qbound.paths.traversal import traverse
+from support.play import ROOT, kind
 
-ROOT = Path(__file__).resolve().parents[1]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
-PLAY = ROOT / "book" / "_static" / "play"
-ENGINE = """const window = globalThis, qboundFigures = {}, qboundEngine = { alongPath, armOf, basis,
-determinant, evaluate, margins, mirroredPose, pieceLengths, possible, restrict, scaledPolygon,
-toolAt, toolMap, withPair };"""
 RNG = np.random.default_rng(12)
-
-
-class Kind:
-    """The arithmetic of one kind of figure in a JavaScript engine, called with JSON."""
-
-    def __init__(self, kind: str, region: Region):
-        self.region = region
-        self.context = quickjs.Context()
-        for name in (*ARITHMETIC, "arm.js"):
-            self.context.eval((WEB / name).read_text("utf-8"))
-        self.context.eval(ENGINE)
-        for name in ("parts", kind):
-            self.context.eval((PLAY / f"{name}.js").read_text("utf-8"))
-        data = json.dumps(explorer_data(region, closed_form.PATHS))
-        self.context.eval(f"const robot = {data}, kind = qboundFigures.{kind};")
-
-    def __call__(self, expression, **values):
-        names = ", ".join(values)
-        json_values = ", ".join(json.dumps(value) for value in values.values())
-        return json.loads(
-            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
-        )
-
-
-@cache
-def kind(name, rule="clearance", robot="minervabot-v2"):
-    return Kind(name, find_region(load_robot(robot), rule=rule))
 
 
 def numbered(region, pairs):

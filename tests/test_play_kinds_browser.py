@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from lizarraga2025 import closed_form
-from qbound import find_region, load_robot
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import engine_script, engine_style
-from support.browser import eventually, refuse_remote, settle
+from support.browser import drag, eventually, settle
+from support.play import WIDTHS, open_play, region
 
-PLAY = Path(__file__).resolve().parents[1] / "book" / "_static" / "play"
+__all__ = ["open_play"]
+
 HOOKS = {
     "front": ("traversals", "paper", "data-small"),
     "traversals": ("traversals", "paper", 'data-start="right"'),
@@ -23,68 +18,17 @@ HOOKS = {
     "postures": ("postures", "clearance", ""),
     "regions": ("regions", "clearance", ""),
 }
-WIDTHS = {"wide screen": 900, "phone": 340}
-REGIONS = {
-    rule: find_region(load_robot("minervabot-v2"), rule=rule) for rule in ("clearance", "paper")
-}
-KEEP = (
-    "const mount = qboundEngine.mount; qboundEngine.mount = (...a) => (window.arm = mount(...a));"
-)
-PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>A figure</title>
-<meta name="viewport" content="width=device-width">
-<style>:root {{ color-scheme: {theme} }}
-body {{ background: light-dark(#fff, #12181b); margin: 8px }}
-{style}</style><main><h1>A figure</h1>
-<div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
-<script>{script}</script>"""
-
-
-def page_of(name, theme):
-    """Write the page that the book's extension makes of one hook, in one file."""
-    kind, rule, options = HOOKS[name]
-    key = "minervabot-v2" + ("" if rule == "clearance" else f"-{rule}")
-    robots = {key: explorer_data(REGIONS[rule], closed_form.PATHS)}
-    files = [PLAY / f"{file}.js" for file in ("parts", kind, "play")]
-    script = engine_script() + f"window.qboundRobots = {json.dumps(robots)};\n{KEEP}\n"
-    script += "".join(file.read_text(encoding="utf-8") for file in files)
-    style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
-    return PAGE.format(
-        kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
-    )
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("figures")
-    written = {}
-    for name in HOOKS:
-        for theme in ("light", "dark"):
-            written[name, theme] = folder / f"{name}-{theme}.html"
-            written[name, theme].write_text(page_of(name, theme), encoding="utf-8")
-    return written
 
 
 @pytest.fixture
-def open_figure(browser, files):
-    """Open figures; at the end none has complained or asked for anything."""
-    pages, complaints, requests = [], [], []
+def open_figure(open_play):
+    """Open figures by the name of their hook."""
 
-    def open_one(name, theme="light", width=900, **options):
-        options = {"reduced_motion": "reduce"} | options
-        page = browser.new_page(viewport={"width": width, "height": 1000}, **options)
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto(files[name, theme].as_uri())
-        settle(page)
-        pages.append(page)
-        return page
+    def open_one(name, *where, **options):
+        kind, rule, hook = HOOKS[name]
+        return open_play(kind, rule, hook, *where, **{"reduced_motion": "reduce"} | options)
 
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+    return open_one
 
 
 def words(page):
@@ -104,7 +48,7 @@ def pair(page):
 
 
 def region_of(page, rule="clearance"):
-    found = REGIONS[rule].component_of(pair(page))
+    found = region(rule).component_of(pair(page))
     return None if found is None else found + 1
 
 
@@ -120,14 +64,6 @@ def place(page, values, picture="joints"):
         }""",
         [picture, list(values)],
     )
-
-
-def drag(page, start, end, steps=12):
-    page.mouse.move(*start)
-    page.mouse.down()
-    page.mouse.move(*end, steps=steps)
-    page.mouse.up()
-    settle(page)
 
 
 # --- every figure ---------------------------------------------------------------------------------
@@ -312,7 +248,7 @@ def test_the_arm_can_be_lifted_into_every_region(open_figure, region):
 def test_a_pressed_dot_shows_both_its_postures(open_figure):
     page = open_figure("postures")
     dots = page.evaluate("arm.state.sample.slice(0, 300).map(({ pair, tool }) => [pair, tool])")
-    robot = REGIONS["clearance"]
+    robot = region()
     inner = [(q, at) for q, at in dots if robot.component_of(q) == 0]
     wanted, at = inner[0]
     page.mouse.click(*place(page, at, "plane"))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import importlib
 import re
-import sys
 from collections import defaultdict
+from collections.abc import Iterator
 from decimal import Decimal
 from itertools import combinations
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import jupytext
@@ -33,6 +35,7 @@ from qbound.cli import main
 from qbound.model.robotfile import robot_text
 from qbound.paths.traversal import traverse
 from qbound.symbols import with_symbols
+from support.scripts import importable
 
 ROOT = Path(__file__).resolve().parent.parent
 ENTRIES = recorded.results()
@@ -360,19 +363,24 @@ def test_a_claim_with_greek_is_cited_in_ascii() -> None:
 
 
 @pytest.fixture(scope="module")
-def page() -> BeautifulSoup:
-    """Return the tables that the directive writes."""
-    sys.path.insert(0, str(ROOT / "book" / "_ext"))
-    import result_pages
+def pages() -> Iterator[ModuleType]:
+    """The book's extension that writes the tables."""
+    with importable(ROOT / "book" / "_ext"):
+        yield importlib.import_module("result_pages")
 
-    tables = [result_pages.table(entries) for _, entries in result_pages.chapters()]
+
+@pytest.fixture(scope="module")
+def page(pages: ModuleType) -> BeautifulSoup:
+    """Return the tables that the directive writes."""
+    tables = [pages.table(entries) for _, entries in pages.chapters()]
     return BeautifulSoup("".join(tables), "html.parser")
 
 
 def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: BeautifulSoup) -> None:
-    assert len(page.select("tbody tr")) == len(RESULTS)
+    rows = {row["id"]: row for row in page.select("tbody tr")}
+    assert len(page.select("tbody tr")) == len(rows) == len(RESULTS)
     for name, entry in RESULTS.items():
-        (row,) = page.select(f"tr#{cite.anchor(name)}")
+        row = rows[cite.anchor(name)]
         head, value, unit, error, _ = row.find_all(["th", "td"])
         assert head.get_text() == name
         assert value.get_text() == cite.value_text(entry["value"])
@@ -385,9 +393,7 @@ def test_every_citation_can_be_read_without_a_script(page: BeautifulSoup) -> Non
     assert cited == [cite.result(entry) for entry in RESULTS.values()]
 
 
-def test_an_id_of_a_stranger_stays_text() -> None:
-    import result_pages
-
+def test_an_id_of_a_stranger_stays_text(pages: ModuleType) -> None:
     entry = RESULTS["paper.area"] | {"id": "<b>&", "value": "<script>"}
-    row = BeautifulSoup(result_pages.row(entry), "html.parser")
+    row = BeautifulSoup(pages.row(entry), "html.parser")
     assert row.find(["b", "script"]) is None

@@ -18,8 +18,8 @@ import pytest
 from fontTools import subset
 
 from lizarraga2025 import recorded
+from support.pages import HTML
 
-HTML = Path(__file__).resolve().parents[2] / "book" / "_build" / "html"
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome")
 HOW_TO_GET_CHROMIUM = (
     "The browser tests need Chromium: install it from your system's packages "
@@ -88,6 +88,28 @@ def browser() -> Iterator[Any]:
         browser.on("context", lambda context: context.set_default_timeout(PATIENCE))
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def open_quietly(browser: Any) -> Iterator[Callable[..., Any]]:
+    """Open pages by their address; at the end none has complained or asked for anything."""
+    pages, complaints, requests = [], [], []
+
+    def open_one(address: str, **options: Any) -> Any:
+        page = browser.new_page(**options)
+        refuse_remote(page, requests)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
+        page.goto(address)
+        settle(page)
+        pages.append(page)
+        return page
+
+    yield open_one
+    for page in pages:
+        page.close()
+    assert complaints == []
+    assert requests == []
 
 
 @cache

@@ -2,30 +2,46 @@
 
 import importlib.util
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def load_script(name: str) -> ModuleType:
-    """A fresh copy of a script, by its path in the repository, so that a test may change it.
+@contextmanager
+def importable(folder: Path) -> Iterator[None]:
+    """Let the modules of a folder be imported; at the end they are forgotten again.
 
-    What it imports from its own folder is forgotten again: it belongs to this copy.
+    Another copy of them, or another order of the tests, then finds the process as it was.
     """
+    known = set(sys.modules)
+    sys.path.insert(0, str(folder))
+    try:
+        yield
+    finally:
+        if str(folder) in sys.path:
+            sys.path.remove(str(folder))
+        for name in set(sys.modules) - known:
+            if lies_in(folder, sys.modules[name]):
+                del sys.modules[name]
+
+
+def lies_in(folder: Path, module: ModuleType) -> bool:
+    """Tell whether a module comes from a folder; a package without a file of its own, too."""
+    places = [vars(module).get("__file__") or "", *vars(module).get("__path__", [])]
+    return any(Path(place).is_relative_to(folder) for place in places)
+
+
+def load_script(name: str) -> ModuleType:
+    """A fresh copy of a script, by its path in the repository, so that a test may change it."""
     path = ROOT / name
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     assert module.__name__ not in sys.modules
-    known = set(sys.modules)
-    sys.path.insert(0, str(path.parent))
-    try:
+    with importable(path.parent):
         spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(path.parent))
-        for own in set(sys.modules) - known:
-            if Path(getattr(sys.modules[own], "__file__", None) or "").parent == path.parent:
-                del sys.modules[own]
     return module

@@ -1,10 +1,16 @@
-"""A book of one chapter, built with the real configuration and extensions."""
+"""Small books: of one chapter with the real configuration and extensions, or of any source."""
 
 import shutil
+from copy import deepcopy
 from pathlib import Path
+from typing import Any
+from unittest import mock
 
 import nbformat
+from sphinx.config import Config
 from sphinx.testing.util import SphinxTestApp
+
+from support.scripts import importable
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
@@ -41,10 +47,21 @@ def build_trial(
     python = {"language_info": {"name": "python"}}
     notebook = nbformat.v4.new_notebook(cells=cells, metadata=python)
     nbformat.write(notebook, book / "chapters" / "01_trial.ipynb")
-    app = SphinxTestApp("html", srcdir=book, builddir=folder)
-    try:
-        app.build()
-        assert app.warning.getvalue() == ""
-    finally:
-        app.cleanup()
-    return Path(app.outdir)
+    outdir, warnings = build_book(book, book / "_ext", builddir=folder)
+    assert warnings == ""
+    return outdir
+
+
+def build_book(source: Path, extensions: Path, **options: Any) -> tuple[Path, str]:
+    """Build the pages of a book in this process; return their folder and the warnings.
+
+    Sphinx keeps the defaults of its settings for the process, and changes some of them.
+    """
+    fresh = deepcopy(Config.config_values)
+    with importable(extensions), mock.patch.object(Config, "config_values", fresh):
+        app = SphinxTestApp("html", srcdir=source, **options)
+        try:
+            app.build()
+            return Path(app.outdir), app.warning.getvalue()
+        finally:
+            app.cleanup()

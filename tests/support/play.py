@@ -1,0 +1,109 @@
+"""A figure that a reader moves: a page with it alone, and its arithmetic in a JavaScript engine."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import quickjs
+
+from lizarraga2025 import closed_form
+from qbound import Region, find_region, load_robot
+from qbound.explorer.data import explorer_data
+from qbound.explorer.page import ARITHMETIC, engine_script, engine_style
+
+ROOT = Path(__file__).resolve().parents[2]
+WEB = ROOT / "src" / "qbound" / "explorer" / "web"
+PLAY = ROOT / "book" / "_static" / "play"
+PAPER = "minervabot-v2"
+WIDTHS = {"wide screen": 900, "phone": 340}
+
+PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
+<meta name="viewport" content="width=device-width"><title>A figure</title>
+<style>:root {{ color-scheme: {theme} }}
+body {{ background: light-dark(#fff, #12181b); margin: 8px }}
+{style}</style><main><h1>A figure</h1>
+<div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
+<script>{script}</script>"""
+KEEP = (
+    "const mount = qboundEngine.mount; qboundEngine.mount = (...a) => (window.arm = mount(...a));"
+)
+ENGINE = """const window = globalThis, qboundFigures = {}, qboundEngine = { alongPath, alongSecond,
+  armOf, basis, determinant, evaluate, framesOf, margins, mirroredPose, pieceLengths, placeIn,
+  pointPlaces, possible, project, restrict, rootsWithin, scaledPolygon, toolAt, toolMap, viewAxes,
+  withPair };"""
+
+
+@cache
+def region(rule: str = "clearance", robot: str = PAPER) -> Region:
+    return find_region(load_robot(robot), rule=rule)
+
+
+@cache
+def data(rule: str = "clearance", robot: str = PAPER) -> str:
+    """What the figures of a robot are told, as JSON."""
+    return json.dumps(explorer_data(region(rule, robot), closed_form.PATHS))
+
+
+# --- in a page ------------------------------------------------------------------------------------
+
+
+def page_of(kind: str, rule: str, theme: str, options: str = "") -> str:
+    """Return the page that the book's extension makes of one hook, in one file.
+
+    Its script knows the mounted arm, if it has one, as `arm`.
+    """
+    key = PAPER + ("" if rule == "clearance" else f"-{rule}")
+    script = engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule)} }};\n"
+    script += KEEP + "\n"
+    files = [PLAY / f"{name}.js" for name in ("parts", kind, "play")]
+    script += "".join(file.read_text(encoding="utf-8") for file in files)
+    style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
+    return PAGE.format(
+        kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
+    )
+
+
+@pytest.fixture
+def open_play(open_quietly: Callable[..., Any], tmp_path: Path) -> Callable[..., Any]:
+    """Open figures, each alone on its page."""
+
+    def open_one(
+        kind: str, rule: str, hook: str = "", theme: str = "light", width: int = 900, **options: Any
+    ) -> Any:
+        file = tmp_path / f"{kind}-{theme}.html"
+        file.write_text(page_of(kind, rule, theme, hook), encoding="utf-8")
+        return open_quietly(file.as_uri(), viewport={"width": width, "height": 1000}, **options)
+
+    return open_one
+
+
+# --- in an engine ---------------------------------------------------------------------------------
+
+
+class Kind:
+    """The arithmetic of one kind of figure, called with JSON."""
+
+    def __init__(self, name: str, rule: str = "clearance", robot: str = PAPER) -> None:
+        self.region = region(rule, robot)
+        self.context = quickjs.Context()
+        for script in (*ARITHMETIC, "arm.js"):
+            self.context.eval((WEB / script).read_text("utf-8"))
+        self.context.eval(ENGINE)
+        for script in ("parts", name):
+            self.context.eval((PLAY / f"{script}.js").read_text("utf-8"))
+        self.context.eval(f"const robot = {data(rule, robot)}, kind = qboundFigures.{name};")
+
+    def __call__(self, expression: str, **values: Any) -> Any:
+        names = ", ".join(values)
+        json_values = ", ".join(json.dumps(value) for value in values.values())
+        return json.loads(
+            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
+        )
+
+
+kind = cache(Kind)
