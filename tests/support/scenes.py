@@ -6,6 +6,7 @@ stays whole. All scenes lie in the plane of x and z.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 
@@ -13,10 +14,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from qbound.boundary.separation import Separation
 from qbound.model.robot import (
     JOINT_TYPES,
     Body,
     BodyPair,
+    Boundary,
     Capsule,
     Disc,
     HalfSpace,
@@ -26,6 +29,7 @@ from qbound.model.robot import (
     Robot,
     Shape,
 )  # fmt: skip
+from qbound.region import Region
 from support.forms import PP, PR, RP, RR
 
 Floats = NDArray[np.float64]
@@ -209,13 +213,15 @@ def near_the_boundary(robot: Robot, q: Floats, halvings: int = 25) -> Floats:
 
     Every halving asks shapely; ends are apart by their distance in `q` over 2 to the halvings.
     """
-    free = is_free(robot, q)
+    free = ~hits(robot, q)
     change = np.flatnonzero(free[1:] != free[:-1])
+    if not len(change):
+        return q[:0]
     good = np.where(free[change, None], q[change], q[change + 1])
     bad = np.where(free[change, None], q[change + 1], q[change])
     for _ in range(halvings):
         middle = (good + bad) / 2
-        inside = is_free(robot, middle)[:, None]
+        inside = ~hits(robot, middle)[:, None]
         good, bad = np.where(inside, middle, good), np.where(inside, bad, middle)
     return np.concatenate([good, bad])
 
@@ -223,15 +229,17 @@ def near_the_boundary(robot: Robot, q: Floats, halvings: int = 25) -> Floats:
 # --- shapely's answer -----------------------------------------------------------------------------
 
 
-def margins(robot: Robot, q: Floats) -> dict[str, Floats]:
+def margins(
+    robot: Robot, q: Floats, boundaries: Sequence[Boundary] | None = None
+) -> dict[str, Floats]:
     """What shapely says of each boundary at q, shape (n, 2): distance less radii and clearance.
 
     Where cores overlap it is minus radii and clearance, whatever the depth: exact where positive,
     and never less than the margin. Limits are left out.
     """
     placed = {body.name: _placed(robot, body, q) for body in (*robot.bodies, *robot.obstacles)}
-    found = {}
-    for boundary in robot.used:
+    found: dict[str, Floats] = {}
+    for boundary in robot.used if boundaries is None else boundaries:
         if isinstance(boundary, BodyPair):
             (one, p), (other, r) = (placed[name] for name in boundary.bodies)
             found[boundary.name] = shapely.distance(one, other) - p - r - boundary.clearance
@@ -242,6 +250,74 @@ def margins(robot: Robot, q: Floats) -> dict[str, Floats]:
             least = np.minimum.reduceat(heights, np.cumsum([0, *count[:-1]]))
             found[boundary.name] = least - radius - boundary.offset
     return found
+
+
+def hits(robot: Robot, q: Floats) -> NDArray[np.bool_]:
+    """Tell where a boundary is violated or, without radius and clearance, cores meet; shape (n,).
+
+    Every pair is asked of shapely only where boxes round both bodies come that near.
+    """
+    placed = {body.name: _placed(robot, body, q) for body in (*robot.bodies, *robot.obstacles)}
+    boxes = {name: shapely.bounds(geometry) for name, (geometry, _) in placed.items()}
+    found = np.zeros(len(q), dtype=np.bool_)
+    for boundary in robot.used:
+        if isinstance(boundary, BodyPair):
+            (one, p), (other, r) = (placed[name] for name in boundary.bodies)
+            a, b = (boxes[name] for name in boundary.bodies)
+            kept = p + r + boundary.clearance
+            far = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:]).max(axis=1) > kept
+            at = np.flatnonzero(~found & ~far)
+            distance = shapely.distance(one[at], other[at])
+            found[at] = (distance < kept) | (distance == 0)
+        else:
+            found |= margins(robot, q, [boundary])[boundary.name] < 0
+    return found
+
+
+def in_cells(region: Region, q: Floats) -> NDArray[np.bool_]:
+    """Tell which configurations within the limits lie in a cell of a region; shape (n,)."""
+    cells = region.cells
+    base, lift = q[:, region.base], q[:, 1 - region.base]
+    if cells.wrapped:
+        base = cells.abscissae[0] + (base - cells.abscissae[0]) % (2 * pi)
+    slab = np.searchsorted(cells.abscissae, base, side="right") - 1
+    found = np.zeros(len(q), dtype=np.bool_)
+    for k, cell in enumerate(cells.cells):
+        at = np.flatnonzero(slab == cell.slab)
+        if not len(at):
+            continue
+        if cells.whole[k]:
+            found[at] = True
+            continue
+        low, high = cells.interval([k], base[None, at])[:, 0]
+        v = low + (lift[at] - low) % (2 * pi) if cells.circle else lift[at]
+        found[at] |= (low <= v) & (v <= high)
+    return found
+
+
+def wrongly_told(robot: Robot, region: Region, q: Floats, least: float = 1e-9) -> Floats:
+    """Return the configurations that lie in a cell and in a body, or in neither.
+
+    Those within `least`, a length, of contact are left out: there rounding decides.
+    """
+    wrong = q[in_cells(region, q) == hits(robot, q)]
+    margin = Separation(robot).margins(wrong).min(axis=-1)
+    return wrong[np.abs(margin) > least]
+
+
+def touching_in_cells(robot: Robot, region: Region, q: Floats) -> NDArray[np.bool_]:
+    """Tell which configurations lie in a cell although bodies touch there; shape (n,).
+
+    At random configurations they touch only where contact goes on while a joint moves, as of a
+    slide along an edge: such places belong to no cell, which is open.
+    """
+    margin = Separation(robot).margins(q).min(axis=-1)
+    return in_cells(region, q) & (np.abs(margin) < 1e-12)
+
+
+def with_clearance(robot: Robot, more: float) -> Robot:
+    """The robot with more asked of every pair of bodies that `collisions` makes."""
+    return replace(robot, clearance=robot.clearance + more)
 
 
 def is_free(robot: Robot, q: Floats) -> NDArray[np.bool_]:
