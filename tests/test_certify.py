@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from qbound import check, cli, load_robot, packaged_robots, save_robot
+from qbound import check, cli, load_robot, save_robot
 from qbound.boundary.functions import clearance
 from qbound.cli.values import box
 from qbound.forms.bending import bending
@@ -36,7 +36,7 @@ from qbound.proofs.triangulation import triangulate
 from qbound.proofs.verdict import Verdict
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
-from support.robots import drawn_robot, random_robot
+from support.robots import OF_POINTS, drawn_robot, random_robot
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
 """Random robots; a longer run is written down in docs/decisions/0233."""
@@ -154,7 +154,7 @@ def region_of(text):
     return answer.verdict
 
 
-@pytest.mark.parametrize("name", packaged_robots())
+@pytest.mark.parametrize("name", OF_POINTS)
 def test_the_region_of_a_packaged_robot_is_proved_by_default(name):
     assert region_of(robot_text(name)[0]) == "proved"
 

@@ -17,7 +17,7 @@ import shapely
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
-from qbound import find_region, load_robot, packaged_robots
+from qbound import find_region, load_robot
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
 from qbound.explorer.data import explorer_data
@@ -28,6 +28,7 @@ from qbound.paths.traversal import traverse
 from qbound.region import paper_rule, violated
 from qbound.workspace.planar import planar_arm, postures
 from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
+from support.robots import OF_POINTS
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"
 POSES = 3000
@@ -362,7 +363,7 @@ def parts(page):
     return parser
 
 
-@pytest.mark.parametrize("name", packaged_robots())
+@pytest.mark.parametrize("name", OF_POINTS)
 def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
     file = tmp_path / "arm.html"
     assert main(["explore", name, "-o", str(file)]) in (0, 1)

@@ -26,6 +26,7 @@ BLOCKS = re.findall(r"(?s)```(\w+)\n(.*?)```", README)
 LINES = [line for kind, text in BLOCKS if kind == "shell" for line in text.splitlines()]
 COMMANDS = [shlex.split(line, comments=True)[1:] for line in LINES if line.startswith("qbound ")]
 [PYTHON] = [text for kind, text in BLOCKS if kind == "python"]
+[ROBOT] = [text for kind, text in BLOCKS if kind == "toml"]
 [INSTALL] = [shlex.split(line)[2:] for line in LINES if line.startswith("pip install ")]
 
 
@@ -125,7 +126,9 @@ def as_readme_says(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Env
     """What README's own install brings."""
     [target] = INSTALL
     chosen = sorted(Requirement(f"qbound{target.removeprefix('.')}").extras)
-    return Environment(tmp_path_factory.mktemp("readme"), wheel, chosen)
+    environment = Environment(tmp_path_factory.mktemp("readme"), wheel, chosen)
+    (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
+    return environment
 
 
 # --- README ---------------------------------------------------------------------------------------
@@ -134,6 +137,16 @@ def as_readme_says(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Env
 def test_readme_shows_commands() -> None:
     assert len(COMMANDS) >= 4
     assert any("--svg" in command for command in COMMANDS)
+
+
+def test_the_robot_of_readme_is_fifteen_lines_and_keeps_clear_of_its_obstacles(tmp_path) -> None:
+    assert ROBOT.count("\n") == 15
+    (tmp_path / "arm.toml").write_text(ROBOT, encoding="utf-8")
+    robot = load_robot(tmp_path / "arm.toml")
+    assert {name for b in robot.used for name in b.bodies} == {
+        "upper arm", "forearm", "post", "box",
+    }  # fmt: skip
+    assert find_region(robot).home is not None
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)

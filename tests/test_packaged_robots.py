@@ -16,6 +16,7 @@ from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.region import margins, violated
 from support.oracles import frame_matrix, row_of
 from support.regions import check_arcs, check_grid, check_roles
+from support.robots import OF_POINTS
 
 KINDS = {
     "two-joint-arm-with-walls": ("revolute", "revolute"),
@@ -24,6 +25,7 @@ KINDS = {
     "pp-portal": ("prismatic", "prismatic"),
 }
 PACKAGED = [name for name in packaged_robots() if len(load_robot(name).joints) == 2]
+WHOLE_BODIES = [name for name in PACKAGED if name not in OF_POINTS]
 robots = pytest.mark.parametrize("name", PACKAGED)
 
 
@@ -83,7 +85,7 @@ def test_home_is_safe_and_in_the_first_component(name):
     assert region.component_of(robot.home) == 0
 
 
-@robots
+@pytest.mark.parametrize("name", [name for name in PACKAGED if name in OF_POINTS])
 def test_arcs_grid_and_roles_of_the_joints(name):
     region = find_region(load_robot(name))
     check_arcs(region)
@@ -116,6 +118,17 @@ def test_components_are_the_flood_fill_of_scikit_image(name):
             components[int(patch)] = {region.component_of(pixels[i]) for i in chosen}
     large = [i for i, c in enumerate(region.components) if c.area > 300 * step.prod()]
     assert sorted(components.values(), key=str) == sorted(({i} for i in large), key=str)
+
+
+@pytest.mark.parametrize("name", WHOLE_BODIES)
+def test_regions_of_whole_bodies_are_what_distances_on_a_grid_say(name):
+    """`margins` measures distances of bodies and knows no region."""
+    robot = load_robot(name)
+    region = find_region(robot)
+    q, step = grid(robot, 300)
+    free = (region.margins(q) >= 0).all(axis=-1)
+    assert region.area == pytest.approx(free.sum() * step.prod(), rel=3e-3)
+    assert 0.1 < free.mean() < 0.9
 
 
 def flood(free: np.ndarray, rounds: list[bool]) -> np.ndarray:

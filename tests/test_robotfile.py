@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
-from qbound import RobotFileError, load_robot, packaged_robots
+from qbound import RobotFileError, load_robot, margins, packaged_robots
 from qbound.boundary.functions import clearance
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Robot
@@ -732,7 +732,7 @@ def test_a_packaged_robot_is_written_as_it_was_typed(name, tmp_path: Path) -> No
     save_robot(load_robot(name), path)
     source = resources.files("qbound") / "robots" / f"{name}.toml"
     typed = tomllib.loads(source.read_text("utf-8"))
-    for row in typed["boundary"]:
+    for row in typed.get("boundary", ()):
         if "normal" in row:  # written as a unit vector
             row["normal"] = [x / math.hypot(*row["normal"]) for x in row["normal"]]
     assert tomllib.loads(path.read_text("utf-8")) == typed
@@ -820,6 +820,18 @@ def test_the_example_of_the_page_is_a_robot(tmp_path: Path) -> None:
     margins = [clearance(robot, b)(robot.home) for b in robot.boundaries]
     assert min(margins) > 0
     assert {type(b) for b in robot.boundaries} == {Pair, HalfSpace}
+
+
+def test_the_bodies_of_the_page_go_with_its_example(tmp_path: Path) -> None:
+    (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+    (block,) = re.findall(r"^```{code-block} toml\n:.*?\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+    keys, tables = block.split("\n\n", 1)
+    path = tmp_path / "arm.toml"
+    path.write_text(f"{keys}\n{example}\n{tables}", encoding="utf-8")
+    robot = load_robot(path)
+    names = ["post", "floor", "forearm, lamp", "forearm, floor", "upper arm, lamp"]
+    assert [b.name for b in robot.used] == names
+    assert all(margin > 0 for _, margin in margins(robot, robot.home))
 
 
 def test_the_tables_of_the_page_hold_every_key_of_the_schema() -> None:

@@ -6,8 +6,16 @@ from math import pi
 
 import numpy as np
 
-from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
+from qbound import load_robot, packaged_robots
+from qbound.model.robot import JOINT_TYPES, BodyPair, HalfSpace, Joint, Pair, Point, Robot
 from support.forms import PP, PR, RP, RR, TURN
+
+OF_POINTS = [
+    name
+    for name in packaged_robots()
+    if not any(isinstance(boundary, BodyPair) for boundary in load_robot(name).used)
+]
+"""Packaged robots whose every boundary has one form."""
 
 
 def random_robot(seed: int) -> Robot:

@@ -229,16 +229,18 @@ def _table(robot: Robot) -> Table:
         "boundary": [boundary.row() for boundary in robot.boundaries],
         **_bodies(robot),
     }
+    file = {key: value for key, value in file.items() if value != []}
     table: Table = msgspec.to_builtins(file)
     return table
 
 
 def _collisions(robot: Robot) -> dict[str, object]:
     """Return the keys that say which bodies are kept apart."""
+    order = [body.name for body in (*robot.bodies, *robot.obstacles)]
     keys = {
         "collisions": "all" if robot.collisions else None,
         "clearance": robot.clearance,
-        "allowed": [sorted(pair) for pair in robot.allowed],
+        "allowed": [sorted(pair, key=order.index) for pair in robot.allowed],
     }
     return {key: value for key, value in keys.items() if value}
 
@@ -252,5 +254,4 @@ def _bodies(robot: Robot) -> dict[str, object]:
         keys[body.shape.key] = body.shape.value(_flat_coordinate(robot, body.frame))
         link = len(rows) < len(robot.bodies)
         rows.append(BodyRow(frame=body.frame, **keys) if link else ObstacleRow(**keys))
-    tables: dict[str, object] = {"body": rows[: len(robot.bodies)]}
-    return tables | ({"obstacle": rows[len(robot.bodies) :]} if robot.obstacles else {})
+    return {"body": rows[: len(robot.bodies)], "obstacle": rows[len(robot.bodies) :]}
