@@ -160,7 +160,7 @@ def test_everything_can_be_done_with_keys(open_page):
     settle(page)
     assert page.get_by_label("Obstacle", exact=True).locator(":checked").inner_text() == "crate"
     assert value(page, "x in metres, as a number") == pytest.approx(0.6)
-    assert value(page, "turned by, in degrees, as a number") == pytest.approx(22.1887, abs=1e-3)
+    assert value(page, "turned by, in degrees, as a number") == pytest.approx(22.2)
     assert value(page, "width in metres, as a number") == pytest.approx(0.525)
     page.keyboard.press("Delete")
     settle(page)

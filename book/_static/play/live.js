@@ -80,6 +80,8 @@
     let space = qboundLiveFibres.freeSpace(360);
     /** @type {LivePictures} */
     let drawn;
+    /** @type {LiveObstacle[]} */
+    let pictured = []; // what the elements of the obstacles show
     let [hasNewScene, isWaiting, isTouched] = [true, false, false];
     const timers = { link: 0 };
 
@@ -237,7 +239,7 @@
           low,
           high,
           step: 0.01,
-          digits: 4,
+          digits: 3,
           unit: "m",
         },
         (value) =>
@@ -329,10 +331,13 @@
     /** @type {(name: string, spoken: string, range: number[], unit: string, get: (one: LiveObstacle) => number, set: (one: LiveObstacle, value: number) => LiveObstacle) => void} */
     function field(name, spoken, [low, high], unit, get, set) {
       const step = unit === "m" ? 0.01 : 1;
-      const row = valueRow({ name, spoken, low, high, step, digits: 4, unit }, (value) => {
-        const now = nowChosen();
-        if (now) changeChosen(set(now, value), `field ${name}`);
-      });
+      const row = valueRow(
+        { name, spoken, low, high, step, digits: unit === "m" ? 3 : 1, unit },
+        (value) => {
+          const now = nowChosen();
+          if (now) changeChosen(set(now, value), `field ${name}`);
+        },
+      );
       fields.append(row.row);
       fillers.push((now) => row.set(get(now)));
     }
@@ -513,6 +518,7 @@
         hands,
       };
       const pixels = (square.box.right - square.box.left) * (window.devicePixelRatio || 1);
+      pictured = [];
       space = qboundLiveFibres.freeSpace(Math.min(FINEST, Math.ceil(pixels)));
       hasNewScene = true;
       draw();
@@ -555,14 +561,14 @@
     }
 
     function showTotals() {
-      const all = regions.areas.map((area) => `${number((100 * area) / TURN ** 2, 2)} %`);
+      const all = regions.areas.map((area) => `${number((100 * area) / TURN ** 2, 2)}\u00a0%`);
       const free = regions.areas.reduce((sum, area) => sum + area, 0) / TURN ** 2;
       const count = all.length === 1 ? "one piece" : `${all.length} pieces`;
       const home = regions.home ? "" : " Home is not safe.";
       const parts =
         all.length > 1 ? ` (${all.slice(0, 6).join(", ")}${all.length > 6 ? ", …" : ""})` : "";
       totals.textContent = all.length
-        ? `Free: ${number(100 * free, 2)} % of all poses, in ${count}${parts}.${home}`
+        ? `Free: ${number(100 * free, 2)}\u00a0% of all poses, in ${count}${parts}.${home}`
         : "No pose is free.";
     }
 
@@ -580,39 +586,59 @@
     function drawRegions() {
       const { columns, of, areas } = regions;
       const outlines = qboundLiveFibres.outlines(columns, of, areas.length, scale());
-      drawn.regions.replaceChildren(
-        ...outlines.flatMap(({ fill, edge }, i) => [
-          make("path", { class: tint(i), d: fill }),
-          make("path", { class: `${tint(i)} edge`, d: edge }),
-        ]),
-      );
-      drawn.names.replaceChildren(
-        ...(areas.length > 1 ? widest() : []).map(({ pair, size }, i) => {
-          const [x, y] = drawn.square.at(pair);
-          const text = size * -scale().dy > 18 ? String(i + 1) : "";
-          return make("text", { class: "piece-name", x, y: y + 4, "text-anchor": "middle" }, text);
-        }),
-      );
+      const paths = children(drawn.regions, "path", 2 * areas.length);
+      for (const [i, { fill, edge }] of outlines.entries())
+        for (const [k, d] of [fill, edge].entries())
+          attributes(paths[2 * i + k], { class: k ? `${tint(i)} edge` : tint(i), d });
+      const places = areas.length > 1 ? roomiest() : [];
+      for (const [i, text] of children(drawn.names, "text", places.length).entries()) {
+        const [x, y] = drawn.square.at(places[i].pair);
+        attributes(text, { class: "piece-name", x, y: y + 5, "text-anchor": "middle" });
+        text.textContent = places[i].room > 9 ? String(i + 1) : "";
+      }
       drawShadow();
       moveTo(drawn.home, drawn.square.at(scene.home));
     }
 
-    /** A place for the name of each piece: among its high intervals the one in the middle. */
-    function widest() {
-      /** @type {{ pair: Pair, size: number }[][]} */
-      const all = regions.areas.map(() => []);
-      for (const [k, { q, free }] of regions.columns.entries()) {
-        if (Math.abs(q) > 3) continue; // a name at the square's edge would be cut
-        for (const [i, piece] of regions.of[k].entries()) {
-          const [low, high] = [free[2 * i], free[2 * i + 1]];
-          if (piece >= 0) all[piece].push({ pair: [q, (low + high) / 2], size: high - low });
+    /** So many elements of a layer: those that are there are used again.
+     * @template {keyof SVGElementTagNameMap} K
+     * @param {SVGGElement} parent
+     * @param {K} name
+     * @param {number} count
+     * @returns {SVGElement[]} */
+    function children(parent, name, count) {
+      while (parent.children.length > count) parent.lastElementChild?.remove();
+      while (parent.children.length < count) parent.append(make(name, {}));
+      return /** @type {SVGElement[]} */ ([...parent.children]);
+    }
+
+    /** @type {(one: Element, values: Record<string, string | number>) => void} */
+    function attributes(one, values) {
+      for (const [key, value] of Object.entries(values)) one.setAttribute(key, String(value));
+    }
+
+    /** A place for the name of each piece, with much room around it; the room is in pixels. */
+    function roomiest() {
+      const { columns, of, areas } = regions;
+      const { dx, dy } = scale();
+      const found = areas.map(() => ({ pair: [0, 0], room: -1 }));
+      const step = Math.max(1, columns.length >> 7);
+      for (let k = 0; k < columns.length; k += step)
+        for (const [i, piece] of of[k].entries()) {
+          const [low, high] = [columns[k].free[2 * i], columns[k].free[2 * i + 1]];
+          const height = (high - low) * -dy;
+          if (piece < 0 || height <= 2 * found[piece].room) continue;
+          const middle = (low + high) / 2;
+          let [left, right] = [k, k];
+          while (left > 0 && qboundLiveFibres.holds(columns[left - 1].free, middle)) left -= 1;
+          while (columns[right + 1] && qboundLiveFibres.holds(columns[right + 1].free, middle))
+            right += 1;
+          const { q } = columns[k];
+          const beside = Math.min(q - columns[left].q, columns[right].q - q) * dx;
+          const room = Math.min(height / 2, beside);
+          if (room > found[piece].room) found[piece] = { pair: [q, middle], room };
         }
-      }
-      return all.map((list) => {
-        const most = Math.max(0, ...list.map(({ size }) => size));
-        const high = list.filter(({ size }) => size > 0.8 * most);
-        return high[high.length >> 1] ?? { pair: [0, 0], size: 0 };
-      });
+      return found;
     }
 
     /** What the chosen obstacle alone forbids. */
@@ -632,26 +658,32 @@
       drawn.shadow.setAttribute("d", fill);
     }
 
+    /** The obstacles; those that are as they were stay. */
     function drawObstacles() {
-      drawn.obstacles.replaceChildren(
-        ...scene.obstacles.map(({ name }, i) => {
-          const [x, y] = drawn.whole.at([shapes[i].x, shapes[i].y]);
-          const body = make("path", { class: "obstacle", d: shapePath(shapes[i]) });
-          const touch = make("path", {
-            class: "reach-me",
-            d: shapePath(shapes[i]),
-            "data-body": i,
-          });
-          const text = make(
-            "text",
-            { class: "obstacle-name", x, y: y + 4, "text-anchor": "middle" },
-            name,
-          );
-          const one = make("g", { class: i === chosen ? "one chosen" : "one" });
-          one.append(body, text, touch);
-          return one;
-        }),
+      const { children: groups } = drawn.obstacles;
+      for (const [i, one] of scene.obstacles.entries()) {
+        if (pictured[i] !== one || !groups[i]) {
+          const made = obstacleGroup(one, i);
+          if (groups[i]) groups[i].replaceWith(made);
+          else drawn.obstacles.append(made);
+        }
+        groups[i].classList.toggle("chosen", i === chosen);
+      }
+      while (groups.length > scene.obstacles.length) drawn.obstacles.lastElementChild?.remove();
+      pictured = scene.obstacles;
+    }
+
+    /** @type {(one: LiveObstacle, i: number) => SVGGElement} */
+    function obstacleGroup({ name }, i) {
+      const d = shapePath(shapes[i]);
+      const [x, y] = drawn.whole.at([shapes[i].x, shapes[i].y]);
+      const group = make("g", { class: "one" });
+      group.append(
+        make("path", { class: "obstacle", d }),
+        make("text", { class: "obstacle-name", x, y: y + 4, "text-anchor": "middle" }, name),
+        make("path", { class: "reach-me", d, "data-body": i }),
       );
+      return group;
     }
 
     /** @type {(shape: LiveShape) => string} */
@@ -783,7 +815,7 @@
           ? ""
           : ` Piece ${piece + 1} of ${count}${regions.home ? (piece === 0 ? ", with home" : ", cut off from home") : ""}.`;
       const feature = featureText(least.link, least);
-      return `Safe. Nearest: ${pairName(least)}, ${number(least.gap, 3)} m (${feature}).${where}`;
+      return `Safe. Nearest: ${pairName(least)}, ${number(least.gap, 3)}\u00a0m (${feature}).${where}`;
     }
 
     /** @type {(one: LiveEncounter) => string} */
@@ -925,6 +957,7 @@
     });
     window.addEventListener("hashchange", restore);
 
+    root.closest(".bd-article-container")?.classList.add("as-wide-as-the-window");
     restore();
     whenWidthChanges(joints.figure, build);
   }

@@ -318,8 +318,6 @@ const qboundLiveGeometry = (() => {
   return {
     TURN,
     placed,
-    localCorners,
-    isInside,
     isSimple,
     meetingAngles,
     wrapped,

@@ -2,7 +2,7 @@
 /* Configuration space, live: an arm among obstacles, as a link keeps it and as a robot file says it.
    Lengths are in metres, angles in radians; links and files have degrees. */
 const qboundLiveScene = (() => {
-  const { isSimple, localCorners, placed } = qboundLiveGeometry;
+  const { encounters, isSimple, placed } = qboundLiveGeometry;
   const DEGREE = Math.PI / 180;
   const LINKS = ["upper arm", "forearm"];
 
@@ -48,13 +48,23 @@ const qboundLiveScene = (() => {
     return { lengths, radii: thicknesses.map((value) => value / 2) };
   }
 
-  /** A new obstacle, with a name that none has.
+  /** A new obstacle, with a name that none has, away from the arm and the others.
    * @type {(scene: LiveScene, kind: LiveObstacle["kind"]) => LiveObstacle} */
   function newObstacle(scene, kind) {
-    const n = scene.obstacles.length;
-    const direction = 2.4 * n + 0.6; // each one elsewhere
-    const place = { x: 1.25 * Math.cos(direction), y: 1.25 * Math.sin(direction), angle: 0 };
-    const base = { name: freeName(scene, kind, -1), ...place };
+    const arm = armOf(scene);
+    /** @type {(x: number, y: number) => number} */
+    const room = (x, y) => {
+      const disc = placed({ kind: "disc", name: "", x, y, angle: 0, radius: 0 });
+      const links = [scene.q, scene.home].flatMap((q) => encounters(arm, [disc], q));
+      const others = scene.obstacles.map((one) => Math.hypot(one.x - x, one.y - y) - 0.2);
+      return Math.min(...links.map(({ gap }) => gap), ...others);
+    };
+    const places = Array.from({ length: 24 }, (_, k) => {
+      const [x, y] = [Math.cos, Math.sin].map((f) => (1.1 + 0.2 * (k % 3)) * f((k * Math.PI) / 12));
+      return { x, y, room: room(x, y) };
+    });
+    const { x, y } = places.reduce((one, other) => (other.room > one.room ? other : one));
+    const base = { name: freeName(scene, kind, -1), x, y, angle: 0 };
     if (kind === "disc") return { kind, ...base, radius: 0.15 };
     if (kind === "box") return { kind, ...base, width: 0.4, height: 0.25 };
     const corners = [0, 1, 2, 3, 4].map((k) => {
@@ -262,7 +272,6 @@ const qboundLiveScene = (() => {
     armOf,
     checked,
     freeName,
-    localCorners,
     newObstacle,
     robotFile,
     sceneOf,
