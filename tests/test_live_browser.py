@@ -10,7 +10,7 @@ from axe_playwright_python.sync_playwright import Axe
 
 from qbound import load_robot
 from qbound.explorer.page import engine_script, engine_style, shorter_script
-from support.browser import drag, eventually, refuse_remote, settle
+from support.browser import drag, eventually, settle
 
 PLAY = Path(__file__).resolve().parents[1] / "book" / "_static" / "play"
 SCRIPTS = ("parts", "live_geometry", "live_fibres", "live_scene", "live", "play")
@@ -36,25 +36,12 @@ def files(tmp_path_factory):
 
 
 @pytest.fixture
-def open_page(browser, files):
-    """Open the page; at the end it has not complained, nor asked for anything."""
-    pages, complaints, requests = [], [], []
+def open_page(open_quietly, files):
+    def open_one(theme="light", width=1100, text=""):
+        address = (files / f"{theme}.html").as_uri() + text
+        return open_quietly(address, viewport={"width": width, "height": 900})
 
-    def open_one(theme="light", width=1100, text="", **options):
-        page = browser.new_page(viewport={"width": width, "height": 900}, **options)
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto((files / f"{theme}.html").as_uri() + text)
-        settle(page)
-        pages.append(page)
-        return page
-
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+    return open_one
 
 
 def totals(page):
