@@ -65,6 +65,12 @@ Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 h
 POSITIVE: Final = 1e-11
 """Value (coefficients scaled to 1) above which a form is positive on a critical line."""
 
+UNREAL_AREA: Final = 1e-13
+"""Area of a component (rad, or parts of a slide's farthest limit) that rounding can make up.
+
+Two edges that slide along each other leave gaps as wide as a double root is uncertain, 1e-8, over
+slabs as wide as critical values are."""
+
 TRANSVERSAL: Final = 1e-6
 """Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
 

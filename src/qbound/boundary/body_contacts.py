@@ -23,7 +23,7 @@ from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 
 Floats = NDArray[np.float64]
-Found = tuple[str, Features, float]
+Found = tuple[str, Features]
 
 
 def body_contacts(
@@ -85,7 +85,7 @@ def _of_pair(
     near, far = (_cores(robot, body) for body in (bodies[::-1] if swapped else bodies))
     for (one, radius), (other, other_radius) in product(near, far):
         keep = radius + other_radius + boundary.clearance
-        yield boundary.name, features(one, other, moved, keep, swapped=swapped), keep
+        yield boundary.name, features(one, other, moved, keep, swapped=swapped)
 
 
 def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Found]:
@@ -95,7 +95,7 @@ def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Fo
     level = wall.offset - off * float(wall.normal @ robot.plane.normal)
     for core, radius in _cores(robot, body):
         for one in heights(core, moved, normal, level + radius):
-            yield wall.name, one, 0.0
+            yield wall.name, one
 
 
 def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:

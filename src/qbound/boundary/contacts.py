@@ -199,6 +199,8 @@ class Features:
         What is negative in no contact; constant 1 where there are fewer.
     corners : ndarray of bool, shape (f,)
         Whether it is of two corners.
+    touching : ndarray of bool, shape (f,)
+        Whether it can bound what the pair forbids; else it only parts.
     clause : ndarray of int, shape (f,)
         The separating test that it belongs to, ascending: an edge against all corners, or one pair
         of corners.
@@ -209,6 +211,7 @@ class Features:
     forms: Floats
     sides: Floats
     corners: Bools
+    touching: Bools
     clause: Ints
     names: tuple[str, ...]
 
@@ -238,10 +241,14 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
         found.append(_corners(one, other, ahead, back, moved, keep))
         names += [(a, b) for a in one.corner_names for b in other.corner_names]
         clause = np.concatenate([clause, e + j + np.arange(i * k)])
+    corners = np.arange(len(names)) >= of_edges
+    # What is kept at no distance from a point forbids nothing, unless it has an inside.
+    forbids = keep > 0 or i + k > 3
     return Features(
         forms=np.concatenate([forms for forms, _ in found]),
         sides=np.concatenate([sides for _, sides in found]),
-        corners=np.arange(len(names)) >= of_edges,
+        corners=corners,
+        touching=(~corners | (keep > 0)) & forbids,
         clause=clause,
         names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
     )
@@ -256,8 +263,8 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
     for form, name in zip(forms, core.corner_names, strict=True):
         free = np.zeros((1, SIDES, 3, 3))
         free[..., 0, 0] = 1.0
-        no = np.zeros(1, dtype=np.bool_)
-        yield Features(form[None], free, no, np.zeros(1, dtype=np.int64), (name,))
+        no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
+        yield Features(form[None], free, no, ~no, clause, (name,))
 
 
 def _edges(
@@ -361,20 +368,20 @@ class Contacts:
         )
 
 
-def gathered(found: Sequence[tuple[str, Features, float]]) -> Contacts:
-    """Gather the features of pairs of parts: boundary, features, and the distance R they keep."""
+def gathered(found: Sequence[tuple[str, Features]]) -> Contacts:
+    """Gather the features of pairs of parts, each with its boundary."""
     if not found:
         return NO_CONTACTS
-    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows, _ in found)])
+    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows in found)])
     return Contacts(
-        np.concatenate([rows.forms for _, rows, _ in found]),
-        np.concatenate([rows.sides for _, rows, _ in found]),
-        np.concatenate([rows.corners for _, rows, _ in found]),
-        np.concatenate([rows.clause + n for (_, rows, _), n in zip(found, clauses, strict=False)]),
-        tuple(name for _, rows, _ in found for name in rows.names),
-        np.concatenate([np.full(len(rows.forms), k) for k, (_, rows, _) in enumerate(found)]),
-        np.concatenate([~rows.corners | (keep > 0) for _, rows, keep in found]),
-        tuple(boundary for boundary, _, _ in found),
+        np.concatenate([rows.forms for _, rows in found]),
+        np.concatenate([rows.sides for _, rows in found]),
+        np.concatenate([rows.corners for _, rows in found]),
+        np.concatenate([rows.clause + n for (_, rows), n in zip(found, clauses, strict=False)]),
+        tuple(name for _, rows in found for name in rows.names),
+        np.concatenate([np.full(len(rows.forms), k) for k, (_, rows) in enumerate(found)]),
+        np.concatenate([rows.touching for _, rows in found]),
+        tuple(boundary for boundary, _ in found),
     )
 
 

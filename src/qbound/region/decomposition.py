@@ -76,13 +76,24 @@ class Decomposition:
 
 
 def decompose(plane: Plane) -> Decomposition:
-    """Find all critical base values and all feasible cells."""
+    """Find all critical base values and all feasible cells.
+
+    A slab so narrow that only the rounding of critical values can have made it, in which contacts
+    contradict each other, is left to its neighbour.
+    """
     pieces = find_pieces(plane)
     lines = critical_values(plane, pieces)
-    # Off the middle where bodies touch: it may be a place of symmetry.
-    part = INSIDE if plane.contacts.pairs else 0.5
-    cells = _cells(plane, lines[:-1] + part * np.diff(lines), pieces)
-    return _without_idle_lines(Decomposition(plane, lines, cells, pieces.walls))
+    while True:
+        # Off the middle where bodies touch: it may be a place of symmetry.
+        part = INSIDE if plane.contacts.pairs else 0.5
+        cells, doubtful = _cells(plane, lines[:-1] + part * np.diff(lines), pieces)
+        unreal = np.flatnonzero(doubtful & (np.diff(lines) < BEYOND_JUMP))
+        if not len(unreal):
+            return _without_idle_lines(Decomposition(plane, lines, cells, pieces.walls))
+        last = len(lines) - 1
+        lines = np.delete(
+            lines, np.where(unreal + 1 == last, unreal, unreal + 1) if last > 1 else []
+        )
 
 
 # --- critical base values -------------------------------------------------------------------------
@@ -168,15 +179,17 @@ class _Fibres:
         return after, tops
 
 
-def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> list[Cell]:
-    """Return the feasible cells over one base value inside each slab."""
+def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[list[Cell], Bools]:
+    """Return the feasible cells over one base value in each slab, and which slabs are doubtful."""
     fibres = _fibres(plane, middles, pieces)
+    doubtful = np.zeros(len(middles), dtype=np.bool_)
     if plane.contacts.pairs:
-        fibres = _once(plane, fibres, pieces)
+        fibres, doubtful = _once(plane, fibres, pieces)
     after, tops = fibres.gaps()
     wide = np.flatnonzero(tops > fibres.values)
     if plane.contacts.pairs:
-        wide = wide[_apart(plane, fibres, pieces, tops)[wide]]
+        apart, doubtful = _apart(plane, fibres, pieces, tops, doubtful)
+        wide = wide[apart[wide]]
     t, low, high = middles[fibres.slab[wide]], fibres.values[wide], tops[wide]
     free = wide[plane.open(t, low, high, NEGLIGIBLE)]
     cells = []
@@ -185,7 +198,7 @@ def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> list[Cell]:
         upper = upper if after[k] > k else upper._replace(turns=upper.turns + 1)
         slab = int(fibres.slab[k])
         cells.append(Cell(slab, lower, upper if upper.form >= 0 else HIGHEST))
-    return cells
+    return cells, doubtful
 
 
 def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
@@ -232,11 +245,13 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
 # --- bodies ---------------------------------------------------------------------------------------
 
 
-def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> _Fibres:
+def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools]:
     """Keep one of contacts that are one: along a fibre a pair comes into collision and out in turn.
 
     Two convex bodies collide on intervals of the lift; where two features meet, and along parallel
-    edges, one contact is found twice.
+    edges, one contact is found twice. A slab in which a pair comes in, or out, twice at places that
+    are apart is left as it is, and said to be doubtful: where bodies only touch, coming in and out
+    are at one place, in no order.
     """
     touching = np.flatnonzero(fibres.piece >= 0)
     piece = fibres.piece[touching]
@@ -244,45 +259,62 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> _Fibres:
         fibres.slab[touching] * plane.contacts.pairs + plane.contacts.pair[pieces.feature[piece]]
     )
     order = np.argsort(group, kind="stable")
-    group, enters = group[order], pieces.enters[piece[order]]
-    same = np.diff(group, prepend=-1) == 0
-    again = same & (enters == np.roll(enters, 1))
-    if fibres.circle and len(group):  # the first comes after the last
-        first = np.flatnonzero(~same)
-        last = np.append(first[1:], len(group)) - 1
-        again[first] |= (first != last) & (enters[first] == enters[last])
-    return fibres.only(np.setdiff1d(np.arange(len(fibres.slab)), touching[order[again]]))
+    rows, group = touching[order], group[order]
+    enters, values = pieces.enters[fibres.piece[rows]], fibres.values[rows]
+    before = np.roll(np.arange(len(rows)), 1)
+    first = np.flatnonzero(np.diff(group, prepend=-1))
+    last = np.append(first[1:], len(group))[: len(first)] - 1
+    before[first] = last  # on a circle the first comes after the last
+    gap = np.abs(values - values[before])
+    again = (enters == enters[before]) & (before != np.arange(len(rows)))
+    if fibres.circle:
+        gap[first] = TURN - gap[first]
+    else:
+        again[first] = False
+    doubtful = np.zeros(len(fibres.t), dtype=np.bool_)
+    doubtful[fibres.slab[rows[again & (gap > THIN * plane.lift_unit)]]] = True
+    dropped = rows[again & ~doubtful[fibres.slab[rows]]]
+    return fibres.only(np.setdiff1d(np.arange(len(fibres.slab)), dropped)), doubtful
 
 
-def _apart(plane: Plane, fibres: _Fibres, pieces: Pieces, tops: Floats) -> Bools:
-    """Tell of the gap above each row whether all bodies are apart in it.
+def _apart(
+    plane: Plane, fibres: _Fibres, pieces: Pieces, tops: Floats, doubtful: Bools
+) -> tuple[Bools, Bools]:
+    """Tell of the gap above each row whether all bodies are apart in it, and of slabs if doubtful.
 
     The number of pairs in collision is counted from the widest gap of the slab, where it is tested.
-    A slab in which the contacts do not say what the test says is tested gap by gap.
+    A slab in which the count does not return to itself round a circle, or is not what a second test
+    finds at an end of a range, is doubtful, too. Such slabs are tested gap by gap, and so is what
+    is thin.
     """
     slabs, widths = len(fibres.t), np.nan_to_num(tops - fibres.values, nan=-1.0)
     start = np.searchsorted(fibres.slab, np.arange(slabs))
-    widest = start + _first_largest(widths, start, fibres.slab)
-    place = fibres.values[widest] + INSIDE * widths[widest]
+    places = [start + _first_largest(widths, start, fibres.slab)]
+    if not fibres.circle:
+        places += [start, np.append(start[1:], len(fibres.slab)) - 2]
     moving = Separation(plane, ~pieces.base_only & ~pieces.idle)
-    collides = moving.heights(fibres.t, place) <= 0
-    change, state = _changes(plane, fibres, pieces, widest)
+    change, found = _changes(plane, fibres, pieces), []
     count = np.cumsum(change)
-    count += (collides.sum(axis=1) - count[widest])[fibres.slab]
-    known = state[:, moving.pairs]
-    doubtful = ((known >= 0) & (known != collides)).any(axis=1)
-    doubtful |= np.bincount(fibres.slab, change, slabs) != 0 if fibres.circle else False
-    still = Separation(plane, pieces.base_only | pieces.idle)
-    blocked: Bools = np.asarray((still.heights(fibres.t, place) <= 0).any(axis=1))
-    apart: Bools = np.asarray((count == 0) & ~blocked[fibres.slab])
-    looked = np.flatnonzero(
-        (widths > 0)
-        & ((apart & (widths < THIN * plane.lift_unit)) | doubtful[fibres.slab])
-        & ~blocked[fibres.slab]
-    )
+    for row in places:
+        middle = fibres.values[row] + INSIDE * widths[row]
+        found.append((moving.heights(fibres.t, middle) <= 0).sum(axis=1))
+        if row is places[0]:
+            still = Separation(plane, pieces.base_only | pieces.idle)
+            blocked = np.asarray((still.heights(fibres.t, middle) <= 0).any(axis=1))
+            count = count + (found[0] - count[row])[fibres.slab]
+        else:
+            doubtful = doubtful | (
+                (found[-1] != count[row]) & (widths[row] > THIN * plane.lift_unit)
+            )
+    if fibres.circle:
+        doubtful = doubtful | (np.bincount(fibres.slab, change, slabs) != 0)
+    possible = ~blocked[fibres.slab] & (widths > 0)
+    thin = (count == 0) & (widths < THIN * plane.lift_unit)
+    looked = np.flatnonzero(possible & (thin | doubtful[fibres.slab]))
+    apart: Bools = np.asarray(possible & (count == 0))
     t, low = fibres.t[fibres.slab[looked]], fibres.values[looked]
     apart[looked] = plane.apart(t, low, tops[looked], NEGLIGIBLE)
-    return apart
+    return apart, doubtful & ~blocked
 
 
 def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
@@ -293,28 +325,12 @@ def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
     return where[first] - start
 
 
-def _changes(
-    plane: Plane, fibres: _Fibres, pieces: Pieces, widest: Ints
-) -> tuple[Ints, NDArray[np.int8]]:
-    """Return by how much each row changes the count, and what contacts say of the widest gap.
-
-    Of each slab and pair: 1 in collision, 0 apart, -1 where it has no contact on the fibre.
-    """
+def _changes(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
+    """Return by how much each row changes the number of pairs in collision."""
     change = np.zeros(len(fibres.slab), dtype=np.int64)
     touching = np.flatnonzero(fibres.piece >= 0)
-    piece = fibres.piece[touching]
-    enters, pair = pieces.enters[piece], plane.contacts.pair[pieces.feature[piece]]
-    change[touching] = np.where(enters, 1, -1)
-    state = np.full((len(fibres.t), plane.contacts.pairs), -1, dtype=np.int8)
-    slab = fibres.slab[touching]
-    below = touching <= widest[slab]
-    # The last contact below decides; without one the first above, or on a circle the last of all.
-    above = np.flatnonzero(~below)
-    order = above if fibres.circle else above[::-1]
-    state[slab[order], pair[order]] = enters[order] == fibres.circle
-    order = np.flatnonzero(below)
-    state[slab[order], pair[order]] = enters[order]
-    return change, state
+    change[touching] = np.where(pieces.enters[fibres.piece[touching]], 1, -1)
+    return change
 
 
 def _without_idle_lines(found: Decomposition) -> Decomposition:

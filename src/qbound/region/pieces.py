@@ -124,24 +124,28 @@ def _contacts(
 ) -> tuple[Ints, Ints, Floats, Floats, Bools, Floats]:
     """Return feature, branch, start, end and sense of contacts of some features, and the lines."""
     of, start, end, event = _intervals(plane, chosen, forms, sides)
-    after = np.append(of[1:] == of[:-1], False)
-    before = np.append(False, after[:-1])
-    following = np.append(event[1:], OWN)
+    after = np.append(of[1:] == of[:-1], False)[: len(of)]
+    before = np.append(False, after[:-1])[: len(of)]
     t = start + INSIDE * (end - start)
-    values = _both_roots(plane, plane.table[plane.count :][chosen[of]], t)
-    touching = _in_contact(plane, chosen[of], sides, t, values)
+    touching = (_sides_at(plane, chosen[of], t) >= -CONTACT_SIDE).all(axis=2)
+    # Where a side condition touches zero, and a contact goes on, two of them may meet.
+    near = np.abs(_sides_at(plane, chosen[of], start)) <= WALL
+    varied = sides.reshape(len(sides), -1, 9)[chosen[of], :, 1:].any(axis=2)
+    met: Bools = np.asarray((near & varied[:, None]).any(axis=2))
     enters = _falls(plane, plane.table[plane.count :][chosen[of]], t)
     found, lines = [], [np.zeros(0)]
     for branch in (0, 1):
         here = touching[:, branch]
-        goes_on, went_on = here & after & np.append(here[1:], False), np.append(False, here[:-1])
-        went_on = here & before & went_on
-        first = np.flatnonzero(here & ~(went_on & (event == NONE)))
+        kind = np.where(met[:, branch], OWN, event)
+        following = np.append(kind[1:], OWN)[: len(kind)]
+        goes_on = here & after & np.append(here[1:], False)[: len(here)]
+        went_on = here & before & np.append(False, here[:-1])[: len(here)]
+        first = np.flatnonzero(here & ~(went_on & (kind == NONE)))
         last = np.flatnonzero(here & ~(goes_on & (following == NONE)))
         sign = np.full(len(first), 2 * branch - 1)
         found.append((chosen[of[first]], sign, start[first], end[last], enters[first, branch]))
         # A contact that only turns back along the lift goes on: that is no line.
-        lines += [start[here & ~(went_on & (event != OWN))]]
+        lines += [start[here & ~(went_on & (kind != OWN))]]
         lines += [end[here & ~(goes_on & (following != OWN))]]
     feature, branches, starts, ends, senses = (np.concatenate(x) for x in zip(*found, strict=True))
     return feature, branches, starts, ends, senses, np.concatenate(lines)
@@ -193,18 +197,17 @@ def _along_base(plane: Plane, tables: Floats) -> Floats:
     return slope / np.where(largest > 0, largest, 1.0)
 
 
-def _both_roots(plane: Plane, tables: Floats, t: Floats) -> Floats:
-    """Return both roots of one form over each base value, shape (len(t), 2); NaN where none."""
+def _sides_at(plane: Plane, feature: Ints, t: Floats) -> Floats:
+    """Return the side conditions of features at both roots over base values, (n, 2, sides).
+
+    NaN where there is no root.
+    """
+    tables = plane.table[plane.count :][feature]
     c = np.einsum("ni,nij->nj", basis(plane.base_kind, t), tables)
-    return plane.roots_of(c).T
-
-
-def _in_contact(plane: Plane, feature: Ints, sides: Floats, t: Floats, values: Floats) -> Bools:
-    """Tell at which roots, (n, 2), no side condition of the feature is negative."""
+    lift = basis(plane.lift_kind, plane.roots_of(c).T / plane.lift_unit)
     factors = basis(plane.base_kind, t / plane.base_unit)
-    over = np.einsum("ni,nsij->nsj", factors, sides[feature])
-    lift = basis(plane.lift_kind, values / plane.lift_unit)
-    return np.asarray((np.einsum("nsj,nrj->nrs", over, lift) >= -CONTACT_SIDE).all(axis=-1))
+    over = np.einsum("ni,nsij->nsj", factors, plane.sides[feature])
+    return np.asarray(np.einsum("nsj,nrj->nrs", over, lift))
 
 
 def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:

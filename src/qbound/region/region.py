@@ -21,6 +21,7 @@ from qbound.region.decomposition import Decomposition, decompose
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
+from qbound.tolerances import UNREAL_AREA
 from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
@@ -211,7 +212,7 @@ class Region:
         (1,)
         """
         placed = closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
-        return tuple(sorted({self.owner[one.cell] for one in placed}))
+        return tuple(sorted({self.owner[one.cell] for one in placed if one.cell in self.owner}))
 
     def component_of(self, q: ArrayLike) -> int | None:
         """Return the first of `components_of`, None where there is none.
@@ -400,6 +401,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     if not cells.cells:
         return Region((), problem, cells, base, {}, _irreducible(inner, base))
     found = measured(cells, problem, home, base)
+    if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
+        found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
     bounding = [
         [BoundaryLoop(w, f.windings, f.shift) for w in cells.loops(f.windings)] for f in found
     ]
