@@ -127,10 +127,11 @@ def _contacts(
     after = np.append(of[1:] == of[:-1], False)[: len(of)]
     before = np.append(False, after[:-1])[: len(of)]
     t = start + INSIDE * (end - start)
-    touching = (_sides_at(plane, chosen[of], t) >= -CONTACT_SIDE).all(axis=2)
+    held = (_sides_at(plane, chosen[of], t) >= -CONTACT_SIDE).all(axis=2)
+    touching: Bools = np.asarray(held)
     # Where a side condition touches zero, and a contact goes on, two of them may meet.
-    near = np.abs(_sides_at(plane, chosen[of], start)) <= WALL
-    varied = sides.reshape(len(sides), -1, 9)[chosen[of], :, 1:].any(axis=2)
+    near: Bools = np.asarray(np.abs(_sides_at(plane, chosen[of], start)) <= WALL)
+    varied: Bools = np.asarray(sides.reshape(len(sides), -1, 9)[chosen[of], :, 1:].any(axis=2))
     met: Bools = np.asarray((near & varied[:, None]).any(axis=2))
     enters = _falls(plane, plane.table[plane.count :][chosen[of]], t)
     found, lines = [], [np.zeros(0)]
