@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from importlib import resources
 
+import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
@@ -79,6 +80,27 @@ def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
     assert lines[2].endswith("cm: B3")
     assert lines[-1].startswith("nearest boundary: B3 at q1 = ")
     assert lines[-1].endswith("q2 = 43.8598 deg, distance 43.8598 deg")
+
+
+def test_contains_names_two_bodies_and_their_features(capsys):
+    arm = "two-links-on-a-table"
+    status, out, _ = run(capsys, "contains", arm, "30deg", "0")
+    assert status == 1
+    violated, _, beside, *_ = out.splitlines()
+    assert violated == (
+        "violated: forearm, post, margin -0.0565064 m (edge 0 of forearm overlaps corner 0 of post)"
+    )
+    assert beside.endswith(
+        " m: upper arm, post (corner 1 of upper arm is nearest to corner 0 of post)"
+    )
+    status, out, _ = run(capsys, "contains", arm, "30deg", "0", "--json", "-")
+    deepest = json.loads(out)["margins"][0]
+    assert (deepest["between"], deepest["features"]) == (
+        ["forearm", "post"],
+        ["edge 0", "corner 0"],
+    )
+    places = np.array(deepest["places"])
+    assert np.linalg.norm(places[1] - places[0]) == pytest.approx(-deepest["distance"])
 
 
 def test_contains_writes_json(capsys):

@@ -54,14 +54,15 @@ def run(options: argparse.Namespace) -> int:
 
 def _lines(robot: Robot, content: dict[str, Any]) -> Iterator[str]:
     amounts = dict(_margins(robot, content))
+    features = {item["boundary"]: _features(item) for item in content["margins"]}
     violated = [item["boundary"] for item in content["margins"] if item["margin"] < 0]
     for name in violated:
-        yield f"violated: {name}, margin {amounts[name]}"
+        yield f"violated: {name}, margin {amounts[name]}{features[name]}"
     if not violated:
         yield "feasible" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
     for name in (name for name in amounts if name not in violated):
-        yield f"  margin {amounts[name]}: {name}"
+        yield f"  margin {amounts[name]}: {name}{features[name]}"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
 
@@ -73,6 +74,17 @@ def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]
     for item in content["margins"]:
         name, margin = item["boundary"], item["margin"]
         yield name, margin_text(robot, name, margin, limited, rounding[name])
+
+
+def _features(item: dict[str, Any]) -> str:
+    """Say which corners and edges of two bodies are nearest, or overlap."""
+    if "features" not in item:
+        return ""
+    (one, other), (feature, other_feature) = item["between"], item["features"]
+    if other == item["boundary"]:  # a half-space
+        return f" ({feature} of {one})"
+    verb = "overlaps" if item["distance"] < 0 else "is nearest to"
+    return f" ({feature} of {one} {verb} {other_feature} of {other})"
 
 
 def _component(content: dict[str, Any]) -> str:

@@ -7,6 +7,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from qbound.boundary.nearest import nearest_features
+from qbound.boundary.parts import bounds_bodies
 from qbound.export.formats import heading
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
@@ -70,12 +72,27 @@ def configuration_document(
         "component": None,
         "components": None,
         "contains_home": None,
-        "margins": [{"boundary": name, "margin": margin} for name, margin in found],
+        "margins": [_margin_content(robot, q, name, margin) for name, margin in found],
         "nearest": None,
     }
     if len(robot.joints) == 2:
         content |= _place_content(find_region(robot), q, weights)
     return content
+
+
+def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) -> dict[str, Any]:
+    """Return a margin, and of bodies which of their corners and edges are nearest, and where."""
+    content: dict[str, Any] = {"boundary": name, "margin": margin}
+    boundary = next((each for each in robot.used if each.name == name), None)
+    if boundary is None or not bounds_bodies(boundary):
+        return content
+    near = nearest_features(robot, boundary, q)
+    return content | {
+        "between": list(near.names),
+        "features": list(near.features),
+        "places": near.places.tolist(),
+        "distance": near.distance,
+    }
 
 
 def vertex_content(vertex: Vertex) -> dict[str, Any]:
