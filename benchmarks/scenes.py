@@ -1,8 +1,9 @@
 """Compare regions of arms among obstacles with shapely, configuration by configuration.
 
 `python benchmarks/scenes.py --scenes 1000 --configurations 100000`: half of the scenes at random,
-half in whole numbers, of all four kinds of joints. Where two of the first tenth of the configurations
-are on two sides of a boundary, both are moved up to it by bisection. The suite has 30 such scenes.
+half in whole numbers, of all four kinds of joints. Where neighbours among the first tenth of the
+configurations lie on two sides of a boundary, both are moved up to it by bisection. The suite has
+30 such scenes.
 """
 
 from __future__ import annotations
