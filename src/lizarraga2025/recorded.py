@@ -29,6 +29,7 @@ CHAPTERS = (
     "every_region",
     "exact_workspace",
     "bodies",
+    "obstacles",
     "proof",
     "certainty",
     "what_holds",
