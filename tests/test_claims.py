@@ -251,7 +251,7 @@ def test_a_verdict_of_the_prose_is_that_of_the_entry_named_beside_it() -> None:
 
 
 def test_the_recorded_ledger_is_the_computed_one() -> None:
-    """Chapter 15 writes it; after a new entry run that chapter and commit results/claims.json."""
+    """What holds writes it; after a new entry run that chapter, commit results/claims.json."""
     assert [from_content(c) for c in recorded.claims()] == [computed(n) for n in identifiers()]
 
 

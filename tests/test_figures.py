@@ -166,6 +166,17 @@ def test_a_number_at_the_middle_itself_has_a_place(ax) -> None:
     assert np.isfinite(number.xyann).all()
 
 
+def test_numbers_that_would_overlap_are_turned_aside_and_others_stay() -> None:
+    ax = Figure().subplots()
+    ax.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
+    places = np.array([[90.0, 0.0], [92.0, -3.0], [-90.0, 10.0]])
+    apart = figures.number_apart(ax, places, [0.0, 0.0])
+    plain = figures.number_points(ax, places, [0.0, 0.0])
+    assert [text.get_text() for text in apart] == ["1", "2", "3"]
+    assert apart[2].xyann == pytest.approx(plain[2].xyann)
+    assert apart[1].xyann != pytest.approx(plain[1].xyann, abs=1)
+
+
 @pytest.mark.parametrize("closed", [False, True])
 def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
     path = traverse(MINERVA, SIX[:5], closed=closed)

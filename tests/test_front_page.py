@@ -47,17 +47,32 @@ def rule_of(file: str, name: str) -> str:
 
 
 def test_the_narrow_cover_is_what_its_script_draws(tmp_path):
-    """Each number of the drawing, to a tenth of a point: other systems round differently."""
     fonts = os.environ | {"MPLCONFIGDIR": str(tmp_path)}  # none but matplotlib's own, listed anew
     subprocess.run(
         [sys.executable, BOOK / "cover.py", tmp_path / "cover.svg"], env=fonts, check=True
     )
-    files = (tmp_path / "cover-narrow.svg", BOOK / "_static" / "cover-narrow.svg")
-    drawn, committed = (file.read_text("utf-8") for file in files)
-    number = r"-?\d+\.\d+"
+    same_drawing(tmp_path / "cover-narrow.svg", BOOK / "_static" / "cover-narrow.svg")
+
+
+def same_drawing(one, other):
+    """Each number of the drawing, to a tenth of a point: other systems round differently."""
+    drawn, committed = (file.read_text("utf-8") for file in (one, other))
+    number = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
     assert re.sub(number, "#", drawn) == re.sub(number, "#", committed)
     mine, theirs = ([float(x) for x in re.findall(number, t)] for t in (drawn, committed))
     assert mine == pytest.approx(theirs, abs=0.1)
+
+
+def test_the_picture_of_an_arm_in_readme_is_what_its_command_draws(tmp_path):
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    [robot] = re.findall(r"(?s)```toml\n(.*?)```", readme)
+    (tmp_path / "arm.toml").write_text(robot, encoding="utf-8")
+    command = [sys.executable, "-m", "qbound", "draw", "arm.toml", "-o", "arm.svg"]
+    assert " ".join(command[2:]) in readme
+    fonts = os.environ | {"MPLCONFIGDIR": str(tmp_path)}
+    subprocess.run(command, cwd=tmp_path, env=fonts, check=True, capture_output=True)
+    assert 'src="book/_static/own-arm.svg"' in readme
+    same_drawing(tmp_path / "arm.svg", BOOK / "_static" / "own-arm.svg")
 
 
 def test_readme_and_front_page_show_the_cover_for_a_wide_page_and_for_a_narrow_one():

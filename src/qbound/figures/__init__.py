@@ -289,6 +289,42 @@ def number_points(
     return artists
 
 
+def number_apart(
+    ax: Axes, places: ArrayLike, middle: ArrayLike, distance: float = 12
+) -> list[Artist]:
+    """Write 1, 2, ... beside places as `number_points`, but turned aside where two would overlap.
+
+    The axes' limits have to be set.
+    """
+    p = np.asarray(places, dtype=float)
+    seen = _points_a_unit(ax) * p
+    away = p - np.asarray(middle)
+    artists: list[Artist] = []
+    taken = list(seen)  # the marks, then the labels too
+    for k, preferred in enumerate(np.arctan2(away[:, 1], away[:, 0])):
+        others = np.array([*taken[:k], *taken[k + 1 :], np.full(2, np.inf)])
+        shift = _free_shift(seen[k], others, float(preferred), distance)
+        taken.append(seen[k] + shift)
+        artists += number_points(ax, p[k : k + 1], p[k] - shift, distance, [k + 1])
+    return artists
+
+
+def _points_a_unit(ax: Axes) -> Floats:
+    """Return how many typographic points a unit of either axis is, as far as can be told yet."""
+    across = np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
+    points = np.array(ax.bbox.size) * 72 / ax.figure.dpi / across
+    return np.full(2, points.min()) if ax.get_aspect() != "auto" else points
+
+
+def _free_shift(place: Floats, others: Floats, preferred: float, distance: float) -> Floats:
+    """Return the first shift, turning away from the preferred one, that is clear of the others."""
+    turns = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * math.pi / 8
+    shifts = distance * np.stack([np.cos(preferred + turns), np.sin(preferred + turns)], axis=-1)
+    gaps = np.linalg.norm((place + shifts)[:, None] - others, axis=-1).min(axis=1)
+    clear = gaps >= 1.25 * distance  # two digits are wider than high
+    return np.asarray(shifts[int(clear.argmax() if clear.any() else gaps.argmax())])
+
+
 def draw_path(
     ax: Axes,
     path: ArrayLike,

@@ -186,7 +186,7 @@ def _joint_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats
         rounds = [ends is None for ends in ranges]  # there the copy within one turn is shown
         corners = np.where(rounds, nearest_turn(corners, 0), corners) * scales
         ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)
-        figures.number_points(ax, corners, corners.mean(axis=0))
+        figures.number_apart(ax, corners, corners.mean(axis=0))
 
 
 def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
