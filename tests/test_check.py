@@ -280,7 +280,8 @@ CORRUPTED = {
         lambda text: text.replace('name = "q1"', 'name = "q1"\nlimits = [-90, 90]')
     ),
     "two boundaries of a name": rehashed(lambda text: text.replace('"B2"', '"B1"')),
-    "another schema": put(("schema",), "qbound/certificate/3"),
+    "another schema": put(("schema",), "qbound/certificate/4"),
+    "the schema of bodies": put(("schema",), "qbound/certificate/3"),
     "the other verdict": put(("verdict",), "refuted"),
     "no verdict": put(("verdict",), "maybe"),
 }

@@ -218,7 +218,7 @@ REFUSED = {
     "an unknown key of the statement": put(path(SQUARE), "statement", "note", value="safe"),
     "an unknown key": put(path(SQUARE), "note", value="every configuration of every robot"),
     "a witness beside a proof": put(path(SQUARE), "boundary", value="floor"),
-    "an unknown schema": put(path(SQUARE), "schema", value="qbound/certificate/3"),
+    "an unknown schema": put(path(SQUARE), "schema", value="qbound/certificate/4"),
     "a schema that is a list": put(path(SQUARE), "schema", value=["qbound/certificate/1"]),
     "beyond a limit": box(["0", "-171"], ["1", "170"], 2),
     # polygons

@@ -12,6 +12,7 @@ refused here. Read from top to bottom:
     cells         the set is cut into simplices or is one box; trees cut them further
     balls         complex numbers with their error, made of whole numbers
     waves         each boundary as a sum of waves, from the robot's joints and points
+    bodies        outlines in the plane of motion, and what separates two of them
     the bound     on each leaf of a tree, why the boundary is positive there
     the answer    a statement that is written from what was verified, and an exit status
 
@@ -29,8 +30,8 @@ import os
 import re
 import sys
 import tomllib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -297,21 +298,53 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Boundary:
-    """A pair keeps `distance` plus both radii apart; else one place keeps to a side of a plane."""
+class Body:
+    """All places no farther than the radius from a core: a corner, a segment, or an outline.
+
+    An outline is three corners or more, in order round it. A corner is written as three numbers, or
+    as the two across the common axis of the joints.
+    """
 
     name: str
-    places: tuple[Place, ...]
+    frame: int
+    corners: tuple[Point, ...]
+    radius: Fraction
+
+    @property
+    def is_outline(self) -> bool:
+        """Tell whether the core has an inside."""
+        return len(self.corners) > 2
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """Two places or bodies keep `distance` plus both radii apart; with a normal, one keeps a side.
+
+    A side of a plane: normal . place is at least `distance` plus the radius.
+    """
+
+    name: str
+    ends: tuple[Place, ...] | tuple[Body, ...]
     normal: Point | None
     distance: Fraction
 
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """Return the two bodies that it keeps apart, or none."""
+        found = tuple(end for end in self.ends if isinstance(end, Body))
+        return found if self.normal is None else ()
+
     def gap(self, margin: Fraction) -> Fraction:
         """Return the distance that is asked for: with radii and margin."""
-        return self.distance + sum(place.radius for place in self.places) + margin
+        return self.distance + sum(end.radius for end in self.ends) + margin
 
     def needs_proof(self, margin: Fraction) -> bool:
-        """Tell whether anything can violate it: two places are always at least 0 apart."""
-        return self.normal is not None or self.gap(margin) != 0
+        """Tell whether anything can violate it: what has no inside is always at least 0 apart.
+
+        (But for two segments, which can cross.)
+        """
+        corners = sum(len(body.corners) for body in self.bodies)
+        return self.normal is not None or corners > 3 or self.gap(margin) != 0
 
 
 @dataclass(frozen=True)
@@ -323,6 +356,12 @@ class Robot:
     angle_unit: str
     joints: tuple[Joint, ...]
     boundaries: tuple[Boundary, ...]
+
+    @property
+    def outlines(self) -> dict[str, Body]:
+        """Return the bodies with an inside that a boundary keeps from others, by name."""
+        bodies = [body for boundary in self.boundaries for body in boundary.bodies]
+        return {body.name: body for body in bodies if body.is_outline}
 
     def unit(self, j: int) -> str:
         """Return the unit of a joint's values."""
@@ -342,7 +381,8 @@ class Robot:
 def read_robot(text: str) -> Robot:
     """Read the robot's text: every table, key, type and bound is known."""
     required = ("schema", "name", "length_unit", "angle_unit", "home", "tool", "joint", "point")
-    file = table_of(read_toml(text), "robot", required, ("boundary", "body"))
+    optional = ("boundary", "body", "obstacle", "collisions", "clearance", "allowed")
+    file = table_of(read_toml(text), "robot", required, optional)
     demand(type(file["schema"]) is int and file["schema"] == 1, "robot: schema: 1 is wanted")
     angle_unit = one_of(file["angle_unit"], "robot: angle_unit", ("deg", "rad"))
     rows = list_of(file["joint"], "robot: joint", 1, MAX_JOINTS)
@@ -351,14 +391,14 @@ def read_robot(text: str) -> Robot:
     places = _places(file["point"], frames)
     _read_home(file["home"], joints)
     _known(file["tool"], "robot: tool", places)
-    _read_bodies(file.get("body", []), frames)
+    bodies = _bodies(file.get("body", []), file.get("obstacle", []), frames)
     _different("joint", [joint.name for joint in joints])
     return Robot(
         name=_label(file["name"], "robot: name"),
         length_unit=one_of(file["length_unit"], "robot: length_unit", ("m", "cm", "mm")),
         angle_unit=angle_unit,
         joints=joints,
-        boundaries=_boundaries(file.get("boundary", []), places, joints),
+        boundaries=_boundaries(file, places, bodies, joints),
     )
 
 
@@ -433,13 +473,15 @@ def _places(value: Any, frames: Sequence[str]) -> dict[str, Place]:
 
 
 def _boundaries(
-    value: Any, places: dict[str, Place], joints: Sequence[Joint]
+    file: Table, places: dict[str, Place], bodies: dict[str, Body], joints: Sequence[Joint]
 ) -> tuple[Boundary, ...]:
-    """Read all boundaries and return those in use."""
+    """Read all boundaries, add the pairs that `collisions` makes, and return those in use."""
     rows = [
-        _boundary(row, f"robot: boundary[{i}]", places)
-        for i, row in enumerate(list_of(value, "robot: boundary", 0, MAX_ROWS))
+        _boundary(row, f"robot: boundary[{i}]", places, bodies)
+        for i, row in enumerate(list_of(file.get("boundary", []), "robot: boundary", 0, MAX_ROWS))
     ]
+    named = [frozenset(body.name for body in boundary.bodies) for boundary, _ in rows]
+    rows += [(pair, True) for pair in _collisions(file, bodies, {*named})]
     limits = [f"{joint.name}.{side}" for joint in joints for side in ("lower", "upper")]
     names = [boundary.name for boundary, _ in rows]
     _different("boundary", names)
@@ -447,27 +489,74 @@ def _boundaries(
     return tuple(boundary for boundary, used in rows if used)
 
 
-def _boundary(value: Any, where: str, places: dict[str, Place]) -> tuple[Boundary, bool]:
+def _collisions(
+    file: Table, bodies: dict[str, Body], named: set[frozenset[str]]
+) -> Iterable[Boundary]:
+    """Return the pairs that `collisions` makes: of two frames, neither allowed nor named already.
+
+    `bodies` are in their order along the chain, obstacles last.
+    """
+    clearance = size_of(file.get("clearance", 0), "robot: clearance")
+    rows = list_of(file.get("allowed", []), "robot: allowed", 0, MAX_ROWS)
+    apart = named | {_two_names(row, "robot: allowed", bodies) for row in rows}
+    if "collisions" not in file:
+        return
+    one_of(file["collisions"], "robot: collisions", ("all",))
+    pairs = itertools.combinations(bodies.values(), 2)
+    for count, (one, other) in enumerate(p for p in pairs if p[0].frame != p[1].frame):
+        demand(count < MAX_ROWS, f"robot: collisions: more than {MAX_ROWS} pairs of bodies")
+        if frozenset((one.name, other.name)) not in apart:
+            yield Boundary(f"{one.name}, {other.name}", (one, other), None, clearance)
+
+
+def _two_names(value: Any, where: str, known: Iterable[str]) -> frozenset[str]:
+    names = frozenset(_known(name, where, known) for name in list_of(value, where, 2, 2))
+    demand(len(names) == 2, f"{where}: two different names are wanted")
+    return names
+
+
+KEYS_OF = {
+    "pair": (("points",), ("clearance",)),
+    "bodies": (("bodies",), ("clearance",)),
+    "half-space": (("normal", "offset"), ("point", "body")),
+}
+"""Of each type of boundary: the keys that it needs, and those that it may have."""
+
+
+def _boundary(
+    value: Any, where: str, places: dict[str, Place], bodies: dict[str, Body]
+) -> tuple[Boundary, bool]:
     """Return a boundary, and whether it is in use."""
     sort = value.get("type") if type(value) is dict else None
-    pair = one_of(sort, f"{where}: type", ("pair", "half-space")) == "pair"
-    required, optional = (
-        (("points",), ("clearance",)) if pair else (("point", "normal", "offset"), ())
-    )
+    sort = one_of(sort, f"{where}: type", [*KEYS_OF])
+    required, optional = KEYS_OF[sort]
     row = table_of(value, where, ("name", "type", *required), ("used", *optional))
     used = row.get("used", True)
     demand(type(used) is bool, f"{where}.used: true or false is wanted")
-    ends = list_of(row["points"], f"{where}.points", 2, 2) if pair else [row["point"]]
-    names = [_known(end, f"{where}: point", places) for end in ends]
-    demand(len({*names}) == len(names), f"{where}.points: two different points are wanted")
+    ends: tuple[Place, ...] | tuple[Body, ...]
+    if sort == "half-space":
+        demand(("point" in row) != ("body" in row), f"{where}: a point or a body is wanted")
+        key = "point" if "point" in row else "body"
+        names = [_known(row[key], f"{where}.{key}", places if key == "point" else bodies)]
+    else:
+        key = "points" if sort == "pair" else "bodies"
+        known = places if sort == "pair" else bodies
+        names = list_of(row[key], f"{where}.{key}", 2, 2)
+        _two_names(names, f"{where}.{key}", known)
+    if key in ("point", "points"):
+        ends = tuple(places[name] for name in names)
+    else:
+        ends = tuple(bodies[name] for name in names)
     boundary = Boundary(
         name=_label(row["name"], f"{where}.name"),
-        places=tuple(places[name] for name in names),
-        normal=None if pair else direction_of(row["normal"], f"{where}.normal"),
-        distance=size_of(row.get("clearance", 0), f"{where}.clearance")
-        if pair
-        else toml_number(row["offset"], f"{where}.offset"),
+        ends=ends,
+        normal=direction_of(row["normal"], f"{where}.normal") if "normal" in row else None,
+        distance=toml_number(row["offset"], f"{where}.offset")
+        if "offset" in row
+        else size_of(row.get("clearance", 0), f"{where}.clearance"),
     )
+    frames = {end.frame for end in ends}
+    demand(sort != "bodies" or len(frames) == 2, f"{where}.bodies: both are of one frame")
     return boundary, used
 
 
@@ -477,15 +566,53 @@ def _read_home(value: Any, joints: Sequence[Joint]) -> None:
         toml_number(angle, f"robot: home: {shown(name)}")
 
 
-def _read_bodies(value: Any, frames: Sequence[str]) -> None:
-    """Verify the outlines of bodies, which bear on no statement."""
-    for i, item in enumerate(list_of(value, "robot: body", 0, MAX_ROWS)):
-        where = f"robot: body[{i}]"
-        row = table_of(item, where, ("frame", "polygon"))
-        _known(row["frame"], f"{where}.frame", frames)
-        for corner in list_of(row["polygon"], f"{where}.polygon", 3, MAX_CORNERS):
-            for x in list_of(corner, f"{where}.polygon", 2, 2):
-                toml_number(x, f"{where}.polygon")
+def _bodies(links: Any, obstacles: Any, frames: Sequence[str]) -> dict[str, Body]:
+    """Return all bodies by name, in their order along the chain, obstacles last."""
+    rows = [
+        (item, f"robot: {kind}[{i}]")
+        for kind, items in (("body", links), ("obstacle", obstacles))
+        for i, item in enumerate(list_of(items, f"robot: {kind}", 0, MAX_ROWS))
+    ]
+    count, bodies = len(links), list[Body]()
+    for item, where in rows[:count]:
+        bodies.append(_body(item, where, frames, bodies))
+    bodies.sort(key=lambda body: body.frame)
+    for item, where in rows[count:]:
+        table_of(item, where, (), ("name", *SHAPES))
+        bodies.append(_body({**item, "frame": frames[0]}, where, frames, bodies))
+    _different("body", [body.name for body in bodies])
+    return {body.name: body for body in bodies}
+
+
+SHAPES = ("polygon", "capsule", "disc")
+
+
+def _body(item: Any, where: str, frames: Sequence[str], before: Sequence[Body]) -> Body:
+    """Return a body; one without a name is called by its frame: 1, 1/2, 1/3, ..."""
+    row = table_of(item, where, ("frame",), ("name", *SHAPES))
+    frame = frames.index(_known(row["frame"], f"{where}.frame", frames))
+    number = 1 + sum(body.frame == frame for body in before)
+    usual = frames[frame] if number == 1 else f"{frames[frame]}/{number}"
+    shapes = [shape for shape in SHAPES if shape in row]
+    demand(len(shapes) == 1, f"{where}: {' or '.join(SHAPES)} is wanted, one of them")
+    where, value, radius = f"{where}.{shapes[0]}", row[shapes[0]], Fraction(0)
+    if shapes == ["polygon"]:
+        corners = list_of(value, where, 3, MAX_CORNERS)
+    else:
+        ends = ("from", "to") if shapes == ["capsule"] else ("at",)
+        table = table_of(value, where, (*ends, "radius"))
+        corners, radius = [table[end] for end in ends], size_of(table["radius"], where)
+    return Body(
+        name=_label(row["name"], f"{where}.name") if "name" in row else usual,
+        frame=frame,
+        corners=tuple(_corner(corner, where) for corner in corners),
+        radius=radius,
+    )
+
+
+def _corner(value: Any, where: str) -> Point:
+    """Return two or three numbers."""
+    return tuple(toml_number(x, where) for x in list_of(value, where, 2, 3))
 
 
 # --- cells ----------------------------------------------------------------------------------------
@@ -635,7 +762,7 @@ def _box_cells(corners: Sequence[Point], grammar: int) -> tuple[Cell, ...]:
     low, high = corners
     rises = all(a <= b for a, b in zip(low, high, strict=True))
     demand(rises, "statement: points[0]: the first corner of a box is the low one in every joint")
-    return (Box(low, high),) if grammar == 2 else tuple(_orders(low, high))
+    return (Box(low, high),) if grammar > 1 else tuple(_orders(low, high))
 
 
 def _orders(low: Point, high: Point) -> Iterable[Simplex]:
@@ -1009,7 +1136,8 @@ class Kinematics:
 def boundary_form(kinematics: Kinematics, boundary: Boundary, gap: Fraction) -> Form:
     """Return the boundary function: |r|^2 - gap^2 of a pair, normal . r - gap of a half-space."""
     still = (0,) * len(kinematics.moves)
-    *near, far = sorted(boundary.places, key=lambda place: place.frame)
+    ends = [end for end in boundary.ends if isinstance(end, Place)]
+    *near, far = sorted(ends, key=lambda place: place.frame)
     u, square = kinematics.seen(near[0].frame if near else 0, far)
     if boundary.normal is not None:
         normal = unit_vector(boundary.normal)
@@ -1141,6 +1269,307 @@ def monomial(powers: Key, q: Point) -> Ball:
     return real(math.prod((q[j] for j in factors(powers)), start=Fraction(1)))
 
 
+# --- bodies in the plane of motion ----------------------------------------------------------------
+# The axes of an arm that moves in a plane are parallel to one axis of the base; slides are at right
+# angles to it. Bodies are seen along it: places are complex numbers, x + iz along y, x + iy along
+# z, y + iz along x, and a turn by q multiplies what it carries by exp(iq) or exp(-iq).
+
+ACROSS = ((1, 2), (0, 2), (0, 1))
+"""The two coordinates across x, y and z, in the order in which places are written."""
+
+ANTICLOCKWISE = (1, -1, 1)
+"""How a turn about x, y and z turns the plane of the two."""
+
+NEARLY_ZERO = Fraction(1, 10**9)
+"""What rounded mounts may leave of a coordinate that is 0."""
+
+
+def is_nearly_zero(x: Ball) -> bool:
+    """Tell whether a number is certainly 0 but for what a rounded angle makes of it."""
+    return x.size.x <= real(NEARLY_ZERO).x
+
+
+class Plane:
+    """An arm in its plane of motion.
+
+    At joint values 0 each frame stands in the base as all mounts before it turn it. These are
+    `stands`; from there on all turns are about the common axis.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        stands = [IDENTITY]
+        for joint in robot.joints:
+            stands.append(product(stands[-1], mount(joint, robot.angle_unit)))
+        pairs = zip(robot.joints, stands[1:], strict=True)
+        axes = [image(stand, unit_vector(joint.axis)) for joint, stand in pairs]
+        common = [k for k in (1, 2, 0) if all(map(_fits, robot.joints, axes, [k] * len(axes)))]
+        demand(common, "robot: bodies, and joints that do not move in a plane across x, y or z")
+        self.turning = tuple(joint.turns for joint in robot.joints)
+        self.still = (0,) * len(robot.joints)
+        self.stands, self.common = stands, common[0]
+        self.moves = [
+            (
+                self._seen(image(stand, vector(joint.origin))),
+                ANTICLOCKWISE[self.common] * (1 if axis[self.common].x > 0 else -1),
+                self._seen(axis),
+            )
+            for joint, stand, axis in zip(robot.joints, stands[:-1], axes, strict=True)
+        ]
+        """Of each joint: its origin, the sense of its turn, the direction of its slide."""
+
+    def _seen(self, u: Vector) -> Ball:
+        a, b = ACROSS[self.common]
+        return u[a] + IMAGINARY * u[b]
+
+    def own(self, frame: int) -> int:
+        """Return the axis of a frame, 0 to 2, that is parallel to the common one."""
+        a, b = ACROSS[self.common]
+        stand = self.stands[frame]
+        found = [k for k in range(3) if is_nearly_zero(stand[a][k]) and is_nearly_zero(stand[b][k])]
+        demand(found, "robot: a body in a frame of which no axis is that of the joints")
+        return found[0]
+
+    def corner(self, frame: int, corner: Point) -> Point:
+        """Return a corner as three numbers of its frame."""
+        own = self.own(frame)
+        return corner if len(corner) == 3 else (*corner[:own], Fraction(0), *corner[own:])
+
+    def place(self, frame: int, corner: Point) -> Ball:
+        """Return a corner from its frame's origin, at joint values 0."""
+        return self._seen(image(self.stands[frame], vector(self.corner(frame, corner))))
+
+    def is_mirrored(self, frame: int) -> bool:
+        """Tell whether a frame's two coordinates are seen the other way round."""
+        units = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))
+        one, other = (self.place(frame, unit) for unit in units)
+        return (one.conjugate * other).y < 0
+
+    def carried(self, near: int, frame: int, place: Ball, *, direction: bool = False) -> Form:
+        """Return a place of a frame, or a direction, as it is seen from a frame before it."""
+        form = {self.still: place}
+        for j in reversed(range(near, frame)):
+            origin, sense, slide = self.moves[j]
+            if self.turning[j]:
+                form = {(*key[:j], sense, *key[j + 1 :]): z for key, z in form.items()}
+            elif not direction:
+                form[(*self.still[:j], 1, *self.still[j + 1 :])] = slide
+            if not direction:
+                add_to(form, self.still, origin)
+        return form
+
+    def dot(self, u: Form, v: Form) -> Form:
+        """Return the dot product of two vectors, the real part of conjugate(u) v."""
+        form: Form = {}
+        for (one, x), (other, y) in itertools.product(u.items(), v.items()):
+            z = HALF * x.conjugate * y
+            minus = tuple(-k if turns else k for k, turns in zip(one, self.turning, strict=True))
+            key = tuple(a + b for a, b in zip(minus, other, strict=True))
+            mirrored = tuple(-k if turns else k for k, turns in zip(key, self.turning, strict=True))
+            add_to(form, key, z)
+            add_to(form, mirrored, z.conjugate)
+        return form
+
+
+def _fits(joint: Joint, axis: Vector, k: int) -> bool:
+    """Tell whether a joint turns about an axis of the base, or slides across it."""
+    a, b = ACROSS[k]
+    return all(map(is_nearly_zero, (axis[a], axis[b]) if joint.turns else (axis[k],)))
+
+
+def less(u: Form, v: Form) -> Form:
+    """Subtract."""
+    form = {**u}
+    for key, z in v.items():
+        add_to(form, key, ZERO - z)
+    return form
+
+
+@dataclass(frozen=True)
+class Core:
+    """A convex core: corners in order, and the outward normal of each edge, as long as the edge.
+
+    Edge i goes from corner i to the next one. A segment has two edges, there and back; a lone
+    corner has none.
+    """
+
+    frame: int
+    corners: tuple[Ball, ...]
+    normals: tuple[Ball, ...]
+
+    def around(self, i: int) -> list[Ball]:
+        """Return the steps from a corner to its neighbours."""
+        count = len(self.corners)
+        others = {(i + 1) % count, (i - 1) % count} - {i}
+        return [self.corners[k] - self.corners[i] for k in sorted(others)]
+
+
+def cores_of(plane: Plane, body: Body, parts: Iterable[Sequence[int]]) -> list[Core]:
+    """Return the cores of some parts of a body, by the numbers of their corners."""
+    places = [plane.place(body.frame, corner) for corner in body.corners]
+    outward = ZERO - IMAGINARY  # a quarter turn to the right of an edge that goes anticlockwise
+    if body.is_outline and (_sense_of(plane, body) < 0) != plane.is_mirrored(body.frame):
+        outward = IMAGINARY
+    cores = []
+    for part in parts:
+        corners = tuple(places[k] for k in part)
+        steps = [b - a for a, b in zip(corners, (*corners[1:], corners[0]), strict=True)]
+        normals = tuple(outward * step for step in steps) if len(corners) > 1 else ()
+        cores.append(Core(body.frame, corners, normals))
+    return cores
+
+
+def _written_corners(plane: Plane, body: Body) -> list[tuple[int, ...]]:
+    """Return the two coordinates of each corner, times a number that makes them whole.
+
+    A third one, along the axis, is the same for all.
+    """
+    own = plane.own(body.frame)
+    places = [plane.corner(body.frame, corner) for corner in body.corners]
+    where = f"robot: {shown(body.name)}"
+    demand(len({place[own] for place in places}) == 1, f"{where}: corners not in one plane")
+    rows = [place[:own] + place[own + 1 :] for place in places]
+    whole = math.lcm(*(x.denominator for row in rows for x in row))
+    return [tuple(int(x * whole) for x in row) for row in rows]
+
+
+def _cross(a: Sequence[int], b: Sequence[int], c: Sequence[int]) -> int:
+    """Return a number that is positive if c lies on the left of the line from a to b."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _sense_of(plane: Plane, body: Body) -> int:
+    """Return 1 for an outline that is written anticlockwise, else -1."""
+    corners = _written_corners(plane, body)
+    area = sum(_cross(corners[0], a, b) for a, b in itertools.pairwise(corners))
+    demand(area, f"robot: {shown(body.name)}: an outline without an area")
+    return 1 if area > 0 else -1
+
+
+def read_parts(plane: Plane, body: Body, value: Any) -> list[list[int]]:
+    """Verify that an outline is made of convex parts, and return the corners of each.
+
+    As with the triangles of a polygon: each part goes round in the sense of the outline, inner
+    edges occur in pairs, one there and one back, all others are the outline. Then the edges of all
+    parts add up to it, and it winds around a place as often as parts hold that place: a place that
+    it winds around lies in a part, and a part in the body.
+    """
+    where = f"parts: {shown(body.name)}"
+    corners, sense = _written_corners(plane, body), _sense_of(plane, body)
+    numbers = {place: k for k, place in enumerate(corners)}
+    parts, inner = list[list[int]](), set[tuple[int, int]]()
+    for item in list_of(value, where, 1, len(corners)):
+        part = [index_of(k, where, len(corners)) for k in list_of(item, where, 3, len(corners))]
+        spend(len(part) ** 2 // 4)
+        for a, b in _edges([numbers[corners[k]] for k in part]):
+            sides = [sense * _cross(corners[a], corners[b], corners[k]) for k in part]
+            demand(min(sides) >= 0 < max(sides), f"{where}: a part is not convex, or inside out")
+            demand((a, b) not in inner, f"{where}: another part lies on this side of an edge")
+            inner.add((a, b))
+        parts.append(part)
+    for a, b in _edges([numbers[place] for place in corners]):
+        demand(
+            (a, b) in inner and (b, a) not in inner, f"{where}: an edge is of no part, or of two"
+        )
+        inner.remove((a, b))
+    for a, b in inner:
+        demand((b, a) in inner, f"{where}: an edge of one part alone is not of the outline")
+    return parts
+
+
+MAX_FUNCTIONS = 2_000
+"""Functions of two cores that are kept: each has some kilobytes."""
+
+
+class Separation:
+    """The features of two cores, numbered: edges of one, edges of the other, pairs of corners.
+
+    A feature separates the cores by more than a gap where each of its functions is positive.
+    """
+
+    def __init__(self, robot: Robot, plane: Plane, cores: Sequence[Core], gap: Fraction) -> None:
+        self.robot, self.plane, self.cores, self.gap = robot, plane, cores, gap
+        self.near = min(core.frame for core in cores)
+        self.known: dict[int, list[Function]] = {}
+
+    def functions(self, number: int | None, where: str) -> list[Function]:
+        """Return the functions of a feature."""
+        one, other = self.cores
+        edges = len(one.normals), len(other.normals)
+        pairs = len(one.corners) * len(other.corners)
+        named = number is not None and number < sum(edges) + pairs
+        demand(named, f"{where}: a leaf has the number of a feature of its two parts")
+        if number not in self.known:
+            if sum(map(len, self.known.values())) > MAX_FUNCTIONS:
+                self.known.clear()
+            k = int(number or 0)
+            if k < edges[0]:
+                forms = self._edge(one, k, other)
+            elif k < sum(edges):
+                forms = self._edge(other, k - edges[0], one)
+            else:
+                forms = self._corners(*divmod(k - sum(edges), len(other.corners)))
+            self.known[k] = [function_of(self.robot, form) for form in forms]
+        return self.known[int(number or 0)]
+
+    def _edge(self, core: Core, i: int, other: Core) -> list[Form]:
+        """Each corner p of the other core is beyond the edge: normal . (p - a) > gap |normal|."""
+        normal = self._direction(core, core.normals[i])
+        least = {self.plane.still: real(self.gap) * core.normals[i].size}
+        a = self._place(core, core.corners[i])
+        return [
+            less(self.plane.dot(normal, less(self._place(other, p), a)), least)
+            for p in other.corners
+        ]
+
+    def _corners(self, i: int, j: int) -> list[Form]:
+        """Two corners p and r are nearest to each other, and |r - p| > gap.
+
+        The step r - p goes away from all neighbours of p, and those of r go away along it. So the
+        cores lie on either side of the strip between p and r at right angles to the step.
+        """
+        one, other = self.cores
+        step = less(self._place(other, other.corners[j]), self._place(one, one.corners[i]))
+        square = less(self.plane.dot(step, step), {self.plane.still: real(self.gap**2)})
+        behind = [less({}, self.plane.dot(self._direction(one, e), step)) for e in one.around(i)]
+        beyond = [self.plane.dot(self._direction(other, f), step) for f in other.around(j)]
+        return [square, *behind, *beyond]
+
+    def _place(self, core: Core, place: Ball) -> Form:
+        return self.plane.carried(self.near, core.frame, place)
+
+    def _direction(self, core: Core, step: Ball) -> Form:
+        return self.plane.carried(self.near, core.frame, step, direction=True)
+
+    def overlap(self, weights: Sequence[Sequence[Fraction]], q: Point) -> bool:
+        """Verify that the cores are nearer than the gap at a configuration, by a place of each.
+
+        Each place is a mean of corners. It will do that they are nearer than the gap, or that one
+        is strictly inside the other core.
+        """
+        places = [
+            sum((real(w) * p for w, p in zip(row, core.corners, strict=True)), ZERO)
+            for row, core in zip(weights, self.cores, strict=True)
+        ]
+        one, other = (self._place(*pair) for pair in zip(self.cores, places, strict=True))
+        step = less(one, other)
+        square = less(self.plane.dot(step, step), {self.plane.still: real(self.gap**2)})
+        inside = (self._inside(self.cores[1], one, q), self._inside(self.cores[0], other, q))
+        return self._is_negative(square, q) or any(inside)
+
+    def _inside(self, core: Core, place: Form, q: Point) -> bool:
+        """Tell whether a place is certainly on the inner side of every edge of an outline."""
+        edges = zip(core.corners, core.normals, strict=True) if len(core.corners) > 2 else ()
+        sides = [
+            self.plane.dot(self._direction(core, n), less(place, self._place(core, a)))
+            for a, n in edges
+        ]
+        return bool(sides) and all(self._is_negative(side, q) for side in sides)
+
+    def _is_negative(self, form: Form, q: Point) -> bool:
+        value, _ = function_of(self.robot, form).value_and_slopes(q)
+        return value.x + value.r < 0
+
+
 # --- the bound ------------------------------------------------------------------------------------
 
 
@@ -1197,15 +1626,22 @@ def least_of_twice(
     return fixed + least - error
 
 
-def prove(function: Function, cell: Cell, tree: str, where: str) -> None:
-    """Walk a tree: a letter cuts the next cell in two, a dot is a leaf, where all is positive."""
+TREE = re.compile(r"(?P<number>0|[1-9][0-9]{0,8})?[.]|.", re.DOTALL)
+
+
+def prove(asked: Asked, cell: Cell, tree: str, where: str) -> None:
+    """Walk a tree: a letter cuts the next cell in two; at a leaf, a dot, all is positive."""
     todo = [(cell, 0)]
-    for letter in tree:
+    for token in TREE.finditer(tree):
         spend(CELL_WORK)
         demand(todo, f"{where}: the tree goes on after its last leaf")
         cell, depth = todo.pop()
-        if letter == ".":
-            demand(is_positive(function, cell), f"{where}: the bound is not positive on a leaf")
+        letter = token.group()
+        if letter.endswith("."):
+            number = token["number"]
+            for function in asked(None if number is None else int(number), where):
+                positive = is_positive(function, cell)
+                demand(positive, f"{where}: the bound is not positive on a leaf")
         else:
             demand(depth < MAX_DEPTH, f"{where}: more than {MAX_DEPTH} cuts on top of each other")
             first, second = cell.halves(letter)
@@ -1215,39 +1651,134 @@ def prove(function: Function, cell: Cell, tree: str, where: str) -> None:
 
 # --- proofs and witnesses -------------------------------------------------------------------------
 
+Parts = dict[str, list[list[int]]]
+"""The convex parts of outlines, each by its corners."""
 
-def verify_proof(robot: Robot, statement: Statement, value: Any) -> None:
+Asked = Callable[[int | None, str], list[Function]]
+"""What is positive on a leaf, by the number that the leaf has."""
+
+
+class Proving:
+    """What has to be positive for a boundary: for bodies, by the features of their parts."""
+
+    def __init__(self, robot: Robot, parts: Any, margin: Fraction) -> None:
+        self.robot, self.margin = robot, margin
+        self.kinematics = Kinematics(robot)
+        table = table_of(parts, "parts", robot.outlines)
+        self.parts = {
+            name: read_parts(self.plane, body, table[name]) for name, body in robot.outlines.items()
+        }
+
+    @cached_property
+    def plane(self) -> Plane:
+        """Return the arm in its plane of motion, if it has one."""
+        return Plane(self.robot)
+
+    def count(self, boundary: Boundary) -> int:
+        """Return how many proofs a boundary asks for: one for each pair of parts."""
+        return math.prod(len(self.parts.get(body.name, [[0]])) for body in boundary.bodies)
+
+    def asked(self, boundary: Boundary) -> Iterator[Asked]:
+        """Return what each of them asks for."""
+        if boundary.bodies:
+            for one, other in itertools.product(*map(self.cores, boundary.bodies)):
+                yield self.separation(boundary, one, other).functions
+            return
+        forms = [self.form(single) for single in self.singles(boundary)]
+        functions = [function_of(self.robot, form) for form in forms]
+
+        def plain(number: int | None, where: str) -> list[Function]:
+            demand(number is None, f"{where}: a leaf has a number, but there are no features")
+            return functions
+
+        yield plain
+
+    def singles(self, boundary: Boundary) -> list[Boundary]:
+        """Return a boundary; of a half-space for a body, that of each of its corners."""
+        bodies = [end for end in boundary.ends if isinstance(end, Body)]
+        if not bodies:
+            return [boundary]
+        [body] = bodies
+        corners = [self.plane.corner(body.frame, corner) for corner in body.corners]
+        places = [Place(body.frame, corner, body.radius) for corner in corners]
+        return [replace(boundary, ends=(place,)) for place in places]
+
+    def form(self, boundary: Boundary) -> Form:
+        """Return the form of a boundary of points."""
+        return boundary_form(self.kinematics, boundary, boundary.gap(self.margin))
+
+    def cores(self, body: Body) -> list[Core]:
+        """Return the cores of the parts of a body."""
+        every = [*range(len(body.corners))]
+        return cores_of(self.plane, body, self.parts.get(body.name, [every]))
+
+    def separation(self, boundary: Boundary, one: Core, other: Core) -> Separation:
+        """Return the features of two cores."""
+        return Separation(self.robot, self.plane, (one, other), boundary.gap(self.margin))
+
+    def is_violated(self, boundary: Boundary, q: Point, places: Any) -> bool:
+        """Tell whether a configuration certainly violates a boundary."""
+        if boundary.bodies:
+            pair, weights = self._read_places(boundary, places)
+            return pair.overlap(weights, q)
+        values = [
+            function_of(self.robot, self.form(single)).value_and_slopes(q)[0]
+            for single in self.singles(boundary)
+        ]
+        return any(value.x + value.r < 0 for value in values)
+
+    def _read_places(
+        self, boundary: Boundary, value: Any
+    ) -> tuple[Separation, list[list[Fraction]]]:
+        """Read a place of a part of either body, as a mean of its corners."""
+        cores, weights = list[Core](), list[list[Fraction]]()
+        for item, body in zip(list_of(value, "places", 2, 2), boundary.bodies, strict=True):
+            row, known = table_of(item, "places", ("part", "weights")), self.cores(body)
+            cores.append(known[index_of(row["part"], "places: part", len(known))])
+            weights.append(mean_of(row["weights"], "places: weights", len(cores[-1].corners)))
+        return self.separation(boundary, *cores), weights
+
+
+def mean_of(value: Any, where: str, count: int) -> list[Fraction]:
+    """Return the weights of a mean of some corners."""
+    weights = [number(x, where) for x in list_of(value, where, count, count)]
+    mean = min(weights) >= 0 and sum(weights) == 1
+    demand(mean, f"{where}: numbers of 0 or more whose sum is 1 are wanted")
+    return weights
+
+
+def verify_proof(proving: Proving, statement: Statement, value: Any) -> None:
     """Verify that the whole set keeps all limits and all boundaries in use."""
+    robot = proving.robot
     for cell in statement.cells:  # cells are convex: their corners stand for them
         for q in cell.corners:
             beyond = robot.beyond(q)
             demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
     needed = [b for b in robot.boundaries if b.needs_proof(statement.margin)]
     proof = table_of(value, "proof", [boundary.name for boundary in needed])
-    count = len(statement.cells)
-    for name, trees in proof.items():
-        for tree in list_of(trees, f"proof: {shown(name)}", count, count):
-            demand(type(tree) is str and tree, f"proof: {shown(name)}: a tree is a text")
-    kinematics = Kinematics(robot)
     for boundary in needed:
-        form = boundary_form(kinematics, boundary, boundary.gap(statement.margin))
-        function = function_of(robot, form)
-        for i, (cell, tree) in enumerate(zip(statement.cells, proof[boundary.name], strict=True)):
-            prove(function, cell, tree, f"proof: {shown(boundary.name)}[{i}]")
+        where = f"proof: {shown(boundary.name)}"
+        count = proving.count(boundary) * len(statement.cells)
+        trees = list_of(proof[boundary.name], where, count, count)
+        pairs = ((asked, cell) for asked in proving.asked(boundary) for cell in statement.cells)
+        for i, ((asked, cell), tree) in enumerate(zip(pairs, trees, strict=True)):
+            demand(type(tree) is str and tree, f"{where}: a tree is a text")
+            prove(asked, cell, tree, f"{where}[{i}]")
 
 
-def verify_witness(robot: Robot, statement: Statement, name: str, q: Point) -> None:
+def verify_witness(proving: Proving, name: str, q: Point, places: Any) -> None:
     """Verify that a configuration violates a boundary or a limit."""
-    if name in robot.beyond(q):
+    boundary = next((b for b in proving.robot.boundaries if b.name == name), None)
+    apart = boundary is not None and bool(boundary.bodies)
+    demand(apart == (places is not None), "places: wanted for a pair of bodies, and for no other")
+    if name in proving.robot.beyond(q):
         return
-    boundary = next((b for b in robot.boundaries if b.name == name), None)
     if boundary is None:
         raise Refused(
             f"boundary: {shown(name)} is no boundary in use and no limit that is violated"
         )
-    form = boundary_form(Kinematics(robot), boundary, boundary.gap(statement.margin))
-    value, _ = function_of(robot, form).value_and_slopes(q)
-    demand(value.x + value.r < 0, f"boundary: the witness does not violate {shown(name)}")
+    violated = proving.is_violated(boundary, q, places)
+    demand(violated, f"boundary: the witness does not violate {shown(name)}")
 
 
 def read_witness(content: Table, statement: Statement, joints: int) -> Point:
@@ -1259,10 +1790,7 @@ def read_witness(content: Table, statement: Statement, joints: int) -> Point:
         demand(inside, "at: the witness is not in the box")
         return q
     cell = statement.cells[index_of(content["cell"], "cell", len(statement.cells))]
-    count = len(cell.corners)
-    weights = [number(x, "weights") for x in list_of(content["weights"], "weights", count, count)]
-    mean = min(weights) >= 0 and sum(weights) == 1
-    demand(mean, "weights: numbers of 0 or more whose sum is 1 are wanted")
+    weights = mean_of(content["weights"], "weights", len(cell.corners))
     return tuple(_dot(weights, column) for column in zip(*cell.corners, strict=True))
 
 
@@ -1309,15 +1837,18 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
     demand(content["sha256"] == sha256, f"sha256: the hash of the robot is {sha256}")
     demand(pin in (None, sha256), f"it is about another robot: its sha256 is {sha256}")
     robot = read_robot(robot_text)
+    bodies = any(boundary.bodies for boundary in robot.boundaries)
+    demand(grammar == 3 or not bodies, "schema: of a robot with pairs of bodies 3 is wanted")
     statement = read_statement(content["statement"], grammar, len(robot.joints))
     _check_angles(robot, statement)
+    proving = Proving(robot, content.get("parts", {}), statement.margin)
     if refuted:
-        name = text_of(content["boundary"], "boundary", 300)
+        name = text_of(content["boundary"], "boundary", 1_000)
         q = read_witness(content, statement, len(robot.joints))
-        verify_witness(robot, statement, name, q)
+        verify_witness(proving, name, q, content.get("places"))
         found = refutation(robot, statement, name, q)
     else:
-        verify_proof(robot, statement, content["proof"])
+        verify_proof(proving, statement, content["proof"])
         found = proof_of(robot, statement)
     lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
     return Answer(refuted, "\n".join(lines))
@@ -1326,14 +1857,17 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
 def _read_heading(content: Any) -> tuple[int, bool]:
     """Return the number of the grammar, and whether the file refutes; verify its keys."""
     demand(type(content) is dict, "the file is no JSON object")
-    schemas = ("qbound/certificate/1", "qbound/certificate/2")
+    schemas = tuple(f"qbound/certificate/{number}" for number in (1, 2, 3))
     grammar = 1 + schemas.index(one_of(content.get("schema"), "schema", schemas))
     refuted = one_of(content.get("verdict"), "verdict", ("proved", "refuted")) == "refuted"
     statement = content.get("statement")
     box = type(statement) is dict and statement.get("set") == "box"
-    witness = ("at",) if grammar == 2 and box else ("cell", "weights")
+    witness = ("at",) if grammar > 1 and box else ("cell", "weights")
     evidence = ("boundary", *witness) if refuted else ("proof",)
-    table_of(content, "the file", ("schema", "verdict", "statement", "robot", "sha256", *evidence))
+    evidence += ("parts",) if grammar == 3 else ()
+    optional = ("places",) if grammar == 3 and refuted else ()
+    keys = ("schema", "verdict", "statement", "robot", "sha256", *evidence)
+    table_of(content, "the file", keys, optional)
     return grammar, refuted
 
 

@@ -12,6 +12,7 @@ import tomllib
 from typing import Any
 
 import numpy as np
+import shapely
 
 Array = np.ndarray
 ROUNDING = 1e-9
@@ -29,7 +30,7 @@ def tells_the_truth(text: str, seed: int = 0, samples: int = 400) -> bool:
         found = margins(robot, statement, q[None])
         return belongs(statement, q) and bool(found[content["boundary"]][0] < ROUNDING)
     rng = np.random.default_rng(seed)
-    names = [row["name"] for row in robot.get("boundary", []) if row.get("used", True)]
+    names = [row["name"] for row in boundaries(robot) if row.get("used", True)]
     names += [f"{j['name']}.{side}" for j in robot["joint"] for side in ("lower", "upper")]
     q = configurations(statement, rng, samples)
     found = margins(robot, statement, q)
@@ -41,7 +42,10 @@ def margins(robot: dict[str, Any], statement: dict[str, Any], q: Array) -> dict[
     """Return how far every boundary and limit is kept, lengths and joint values of shape (N,)."""
     margin, found = float(statement["margin"]), {}
     points = {row["name"]: row for row in robot["point"]}
-    for row in robot.get("boundary", []):
+    for row in boundaries(robot):
+        if "bodies" in row or "body" in row:
+            found[row["name"]] = of_bodies(robot, row, q) - margin
+            continue
         ends = [points[name] for name in row.get("points", [row.get("point")])]
         places = [place(robot, end, q) for end in ends]
         radii = sum(end.get("radius", 0) for end in ends)
@@ -55,6 +59,92 @@ def margins(robot: dict[str, Any], statement: dict[str, Any], q: Array) -> dict[
         low, high = joint.get("limits", (-math.inf, math.inf))
         found |= {f"{joint['name']}.lower": x - low, f"{joint['name']}.upper": high - x}
     return found
+
+
+# --- bodies ---------------------------------------------------------------------------------------
+
+
+def bodies(robot: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return all bodies by their names: of links by their frames, obstacles last."""
+    frames = [robot["joint"][0]["parent"], *(joint["frame"] for joint in robot["joint"])]
+    rows = [(row, row["frame"], 0) for row in robot.get("body", [])]
+    rows += [(row, frames[0], 1) for row in robot.get("obstacle", [])]
+    found, counts = [], dict.fromkeys(frames, 0)
+    for row, frame, last in rows:
+        counts[frame] += 1
+        usual = frame if counts[frame] == 1 else f"{frame}/{counts[frame]}"
+        found.append((last, frames.index(frame), {"name": usual, "frame": frame} | row))
+    ordered = sorted(found, key=lambda row: row[:2])
+    return {row["name"]: row for _, _, row in ordered}
+
+
+def boundaries(robot: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the boundaries of the file, and the pairs that `collisions` makes."""
+    rows = list(robot.get("boundary", []))
+    apart = [set(row["bodies"]) for row in rows if "bodies" in row]
+    apart += map(set, robot.get("allowed", []))
+    pairs = itertools.combinations(bodies(robot).values(), 2) if "collisions" in robot else ()
+    for one, other in pairs:
+        names = [one["name"], other["name"]]
+        if one["frame"] != other["frame"] and set(names) not in apart:
+            row = {"name": ", ".join(names), "type": "bodies", "bodies": names}
+            rows.append(row | {"clearance": robot.get("clearance", 0)})
+    return rows
+
+
+def of_bodies(robot: dict[str, Any], row: dict[str, Any], q: Array) -> Array:
+    """Return the margins of a pair of bodies, or of a half-space for one; overlap is negative."""
+    known = bodies(robot)
+    if "body" in row:
+        body = known[row["body"]]
+        heights = [place(robot, {"frame": body["frame"], "at": corner}, q) @ unit(row["normal"])
+                   for corner in corners(robot, body)]  # fmt: skip
+        return np.min(heights, axis=0) - row["offset"] - radius(body)
+    pair = [known[name] for name in row["bodies"]]
+    asked = row.get("clearance", 0) + sum(map(radius, pair))
+    one, other = (core(robot, body, q) for body in pair)
+    overlap = np.sqrt(shapely.area(shapely.intersection(one, other)))
+    return shapely.distance(one, other) - overlap - asked
+
+
+def radius(body: dict[str, Any]) -> float:
+    return body.get("capsule", body.get("disc", {})).get("radius", 0)
+
+
+def corners(robot: dict[str, Any], body: dict[str, Any]) -> list[list[float]]:
+    """Return the corners of a core as three numbers."""
+    shape = body.get("capsule", body.get("disc", body.get("polygon")))
+    places = [shape[key] for key in ("from", "to", "at") if key in shape] or shape
+    flat = int(np.abs(directions(robot, body["frame"])[:, axis_of(robot)]).argmax())
+    return [list(np.insert(p, flat, 0.0)) if len(p) == 2 else list(p) for p in places]
+
+
+def directions(robot: dict[str, Any], frame: str) -> Array:
+    """Return the axes of a frame, seen from the base with all joint values 0; rows."""
+    still = np.zeros((1, len(robot["joint"])))
+    ends = [place(robot, {"frame": frame, "at": at}, still)[0] for at in (*np.eye(3), np.zeros(3))]
+    return np.array(ends[:3]) - ends[3]
+
+
+def axis_of(robot: dict[str, Any]) -> int:
+    """Return the coordinate of the base across the plane of motion."""
+    normal = np.zeros(3)
+    slides = []
+    for joint in robot["joint"]:
+        axis = unit(joint["axis"]) @ directions(robot, joint["frame"])
+        normal += np.abs(axis) * (joint["type"] == "revolute")
+        slides += [axis] * (joint["type"] == "prismatic")
+    normal = normal if normal.any() else np.cross(slides[0], slides[-1])
+    return int(np.abs(normal).argmax())
+
+
+def core(robot: dict[str, Any], body: dict[str, Any], q: Array) -> Array:
+    """Return the core of a body as it is seen along the common axis: shapes, one for each q."""
+    seen = np.delete(np.arange(3), axis_of(robot))
+    places = [place(robot, {"frame": body["frame"], "at": at}, q) for at in corners(robot, body)]
+    rows = np.stack(places, axis=1)[..., seen]
+    makers = {1: lambda x: shapely.points(x[:, 0]), 2: shapely.linestrings}
+    return makers.get(rows.shape[1], shapely.polygons)(rows)
 
 
 def place(robot: dict[str, Any], point: dict[str, Any], q: Array) -> Array:

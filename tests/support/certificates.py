@@ -2,24 +2,35 @@
 
 import hashlib
 import json
+from collections.abc import Iterator
 from fractions import Fraction
-from itertools import combinations
+from itertools import chain, combinations, count
 from typing import Any
 
 from qbound import check
 
 
-def certificate(robot: str, statement: dict[str, Any], grammar: int = 2, depth: int = 14) -> str:
+def certificate(
+    robot: str,
+    statement: dict[str, Any],
+    grammar: int = 2,
+    depth: int = 14,
+    parts: dict[str, list[list[int]]] | None = None,
+) -> str:
     """Prove a statement, cutting where a cell is longest; `ValueError` where that does not end."""
     ours = check.read_robot(robot)
     read = check.read_statement(statement, grammar, len(ours.joints))
-    kinematics, proof, check.Ball.work = check.Kinematics(ours), {}, 0
-    for boundary in ours.boundaries:
-        gap = boundary.gap(read.margin)
-        if boundary.needs_proof(read.margin):
-            function = check.function_of(ours, check.boundary_form(kinematics, boundary, gap))
-            proof[boundary.name] = [tree(function, cell, depth) for cell in read.cells]
-    return text(robot, statement, grammar, verdict="proved", proof=proof)
+    whole = {name: [[*range(len(body.corners))]] for name, body in ours.outlines.items()}
+    proving, check.Ball.work = check.Proving(ours, parts or whole, read.margin), 0
+    proof = {
+        boundary.name: [
+            tree(asked, cell, depth) for asked in proving.asked(boundary) for cell in read.cells
+        ]
+        for boundary in ours.boundaries
+        if boundary.needs_proof(read.margin)
+    }
+    evidence = {"proof": proof} | ({"parts": parts or whole} if grammar == 3 else {})
+    return text(robot, statement, grammar, verdict="proved", **evidence)
 
 
 def text(robot: str, statement: dict[str, Any], grammar: int, **evidence: Any) -> str:
@@ -29,14 +40,25 @@ def text(robot: str, statement: dict[str, Any], grammar: int, **evidence: Any) -
     return json.dumps(content | {"sha256": digest} | evidence)
 
 
-def tree(function: check.Function, cell: check.Cell, depth: int) -> str:
-    """Cut a cell until the bound is positive."""
-    if check.is_positive(function, cell):
-        return "."
+def tree(asked: check.Asked, cell: check.Cell, depth: int) -> str:
+    """Cut a cell until a bound is positive: the only one, or that of a feature."""
+    for leaf, functions in leaves(asked):
+        if all(check.is_positive(function, cell) for function in functions):
+            return leaf
     if not depth:
         raise ValueError("not proved")
     letter = longest(cell)
-    return letter + "".join(tree(function, half, depth - 1) for half in cell.halves(letter))
+    return letter + "".join(tree(asked, half, depth - 1) for half in cell.halves(letter))
+
+
+def leaves(asked: check.Asked) -> Iterator[tuple[str, list[check.Function]]]:
+    """Return what may be named at a leaf: nothing, or each feature by its number."""
+    for number in chain([None], count()):
+        try:
+            yield "." if number is None else f"{number}.", asked(number, "")
+        except check.Refused:
+            if number is not None:
+                return
 
 
 def longest(cell: check.Cell) -> str:

@@ -238,7 +238,16 @@ def drop_or_rename(rng: random.Random, data: Json) -> None:
 def another_head(rng: random.Random, data: Json) -> None:
     key, values = rng.choice(
         [
-            ("schema", ["qbound/certificate/1", "qbound/certificate/2", "qbound/certificate/3", 2]),
+            (
+                "schema",
+                [
+                    "qbound/certificate/1",
+                    "qbound/certificate/2",
+                    "qbound/certificate/3",
+                    "qbound/certificate/4",
+                    2,
+                ],
+            ),
             ("verdict", ["proved", "refuted", "undecided"]),
             ("sha256", ["0" * 64, ""]),
             ("boundary", ["B1", "B7", "q1.lower", "q1.upper", "lift.lower", "nothing"]),

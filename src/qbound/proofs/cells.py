@@ -88,7 +88,7 @@ def cells_of(statement: Statement, grammar: int) -> list[Cell]:
         points = statement.points
         return [Simplex((points[a], points[b], points[c])) for a, b, c in statement.triangles]
     low, high = statement.lists[0]
-    return [Box(low, high)] if grammar == 2 else list(_risings(low, high))
+    return [Box(low, high)] if grammar > 1 else list(_risings(low, high))
 
 
 def _risings(low: Point, high: Point) -> Iterator[Simplex]:

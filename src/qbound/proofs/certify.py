@@ -22,14 +22,23 @@ from qbound.export.formats import json_text
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
-from qbound.model.robot import Robot
+from qbound.model.robot import BodyPair, Boundary, Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.boxes import search_box
 from qbound.proofs.cells import Cell, cells_of
+from qbound.proofs.features import (
+    Features,
+    Parts,
+    all_features,
+    asked_distance,
+    is_of_bodies,
+    parts_of,
+)
 from qbound.proofs.forest import Forest, Search, Tell, silent
-from qbound.proofs.grammar import GRAMMAR, read_statement
+from qbound.proofs.grammar import GRAMMAR, GRAMMAR_OF_BODIES, read_statement
 from qbound.proofs.grammar_robot import read_robot
 from qbound.proofs.minorant import Bound
+from qbound.proofs.separating import Simplices, box_cell, search_features, together
 from qbound.proofs.statements import (
     Statement,
     decimal,
@@ -144,13 +153,14 @@ def certify(
     robot = parse_robot(tomllib.loads(text))
     exact = read_robot(text)
     cells = cells_of(read_statement(statement, exact), GRAMMAR)
+    parts = parts_of(robot, exact)
     evidence = beyond_limits(exact, statement, cells)
     if evidence is not None:
-        return _refuted(text, robot, statement, cells, evidence)
+        return _refuted(text, robot, statement, cells, evidence, parts)
     corners = [cell.corners for cell in cells]
     for few in (min(most, FIRST_LOOK), most):
         searches = search_all(
-            robot, statement, corners, few, bound, lambda part: tell(SEARCHING * part)
+            robot, statement, corners, few, bound, lambda part: tell(SEARCHING * part), parts=parts
         )
         verdict = _verdict(searches)
         if verdict is not Verdict.UNDECIDED:
@@ -159,10 +169,10 @@ def certify(
         return Certificate(verdict, "", _left(searches), searches)
     if verdict is Verdict.PROVED:
         proof = {name: list(found.trees) for name, found in searches.items()}
-        return _confirmed(text, statement, verdict, searches, proof=proof)
+        return _confirmed(text, statement, verdict, searches, parts, proof=proof)
     violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
-    evidence = deepest(robot, statement, cells, violated)
-    return _refuted(text, robot, statement, cells, evidence, searches)
+    evidence = deepest(robot, statement, cells, violated, parts)
+    return _refuted(text, robot, statement, cells, evidence, parts, searches)
 
 
 def certify_region(
@@ -195,11 +205,12 @@ def _refuted(
     statement: Statement,
     cells: Sequence[Cell],
     evidence: Evidence,
+    parts: Parts | None,
     searches: dict[str, Search] | None = None,
 ) -> Certificate:
     """Write a refutation, and say how deep its witness lies."""
-    answer = _confirmed(text, statement, Verdict.REFUTED, searches or {}, **evidence)
-    return replace(answer, witness=witness(robot, statement, cells, evidence))
+    answer = _confirmed(text, statement, Verdict.REFUTED, searches or {}, parts, **evidence)
+    return replace(answer, witness=witness(robot, statement, cells, evidence, parts))
 
 
 def _verdict(searches: dict[str, Search]) -> Verdict:
@@ -215,6 +226,8 @@ def search_all(
     most: int,
     bound: Bound = second_order,
     tell: Tell = silent,
+    *,
+    parts: Parts | None = None,
 ) -> dict[str, Search]:
     """Search every boundary in use that can be violated at all.
 
@@ -222,17 +235,37 @@ def search_all(
     ----------
     cells : sequence of sequence of point
         Corners of simplices; of a box the low and the high one. In the file's units.
+    parts : mapping, optional
+        From `parts_of`; needed of a robot with pairs of bodies.
     """
     corners = np.array(cells, dtype=float) * units(robot)
-    forms = _forms(robot, statement)
-    found = {}
+    forms, bodies = _forms(robot, statement), _between_bodies(robot, statement)
+    count, found = len(forms) + len(bodies), {}
     for k, (name, form) in enumerate(forms.items()):
-        told = partial(_tell_of_all, tell, k, len(forms))
+        told = partial(_tell_of_all, tell, k, count)
         if statement["set"] == "box":
             found[name] = search_box(form, corners[0, 0], corners[0, 1], most, told)
         else:
             found[name] = search(form, corners, most, bound, told)
+    for k, (asked, boundary) in enumerate(bodies, len(forms)):
+        told = partial(_tell_of_all, tell, k, count)
+        features = all_features(asked, boundary, parts or {})
+        found[boundary.name] = _search_bodies(features, corners, statement["set"], most, told)
     return found
+
+
+def _search_bodies(
+    features: Sequence[Features], corners: Floats, kind: str, most: int, tell: Tell
+) -> Search:
+    """Search all pairs of parts of two bodies, or the places of one above a plane."""
+    cells = box_cell(corners[0, 0], corners[0, 1]) if kind == "box" else Simplices(corners)
+    found = []
+    for k, pair in enumerate(features):
+        told = partial(_tell_of_all, tell, k, len(features))
+        found.append(search_features(pair, cells, most, told))
+        if found[-1].violation is not None:
+            break
+    return together(found)
 
 
 def _tell_of_all(tell: Tell, k: int, count: int, part: float) -> None:
@@ -295,24 +328,47 @@ def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
 
 
 def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
-    """Forms of the boundaries in use, by name; without those that nothing can violate."""
+    """Forms of the boundaries of points in use, by name; without those that nothing can violate."""
     asked = wider(robot, statement)
     return {
         boundary.name: clearance(asked, boundary)
         for boundary in asked.used
-        if asked.least_distance(boundary) != 0
+        if not is_of_bodies(boundary) and asked.least_distance(boundary) != 0
     }
+
+
+def _between_bodies(robot: Robot, statement: Statement) -> list[tuple[Robot, Boundary]]:
+    """Return the boundaries of bodies that anything can violate, with the robot that asks."""
+    asked = wider(robot, statement)
+    bodies = [boundary for boundary in asked.used if is_of_bodies(boundary)]
+    return [(asked, boundary) for boundary in bodies if _can_be_violated(asked, boundary)]
+
+
+def _can_be_violated(robot: Robot, boundary: Boundary) -> bool:
+    """Tell whether it needs a proof: what has no inside is 0 apart, but for two segments."""
+    if not isinstance(boundary, BodyPair):
+        return True
+    bodies = [robot.body(name) for name in boundary.bodies]
+    corners = sum(len(body.shape.places) for body in bodies)
+    return corners > 3 or asked_distance(robot, boundary) != 0
 
 
 # --- the file -------------------------------------------------------------------------------------
 
 
 def _confirmed(
-    robot: str, statement: Statement, verdict: Verdict, searches: dict[str, Search], **evidence: Any
+    robot: str,
+    statement: Statement,
+    verdict: Verdict,
+    searches: dict[str, Search],
+    parts: Parts | None = None,
+    **evidence: Any,
 ) -> Certificate:
     """Write the file and hand it to the checker: what that does not confirm is not answered."""
+    if parts is not None:
+        evidence = {"parts": parts, **evidence}
     content = {
-        "schema": f"qbound/certificate/{GRAMMAR}",
+        "schema": f"qbound/certificate/{GRAMMAR if parts is None else GRAMMAR_OF_BODIES}",
         "verdict": verdict,
         "statement": statement,
         "robot": robot,
@@ -365,10 +421,10 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
         Scales above it are not tried.
     """
     robot = parse_robot(tomllib.loads(text))
-    corners = home_vertices(robot)
+    corners, parts = home_vertices(robot), parts_of(robot, read_robot(text))
     low, high, tries = 0.0, 0.0, highest
     while low < highest and (not low or not high or high - low > width) and tries > width:
-        answer = _tried(robot, scaled_polygon(robot, corners, tries))
+        answer = _tried(robot, scaled_polygon(robot, corners, tries), parts)
         if answer is Verdict.UNDECIDED:
             break
         low, high = (tries, high) if answer is Verdict.PROVED else (low, tries)
@@ -376,10 +432,10 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
     return Bracket(*(_at_scale(text, robot, corners, scale) for scale in (low, high)))
 
 
-def _tried(robot: Robot, statement: Statement) -> Verdict:
+def _tried(robot: Robot, statement: Statement, parts: Parts | None) -> Verdict:
     loop = statement["points"][0]
     cells = [[loop[k] for k in triangle] for triangle in statement["triangles"]]
-    return _verdict(search_all(robot, statement, cells, 20 * FIRST_LOOK))
+    return _verdict(search_all(robot, statement, cells, 20 * FIRST_LOOK, parts=parts))
 
 
 def _at_scale(

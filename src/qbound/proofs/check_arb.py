@@ -8,13 +8,19 @@ of that page.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
+from itertools import product
 from typing import Any
 
 from qbound.extras import require
 from qbound.proofs.cells import Box, Cell, Simplex, cells_of
+from qbound.proofs.flat_balls import Core, Features, FlatArm, cores_of
 from qbound.proofs.grammar import Content, Witness, read_certificate
-from qbound.proofs.grammar_robot import Boundary, Robot
+from qbound.proofs.grammar_robot import Boundary, Place, Robot
 from qbound.proofs.grammar_values import refuse, shown
 from qbound.proofs.interpolation import (
     Waves,
@@ -43,13 +49,20 @@ WAVES_WORK, CUT_WORK = 30, 50
 """Products for each value of a boundary function that is interpolated, and for each letter."""
 
 
+PART_WORK = 2
+"""Products for each corner of a part and each of its edges."""
+
+MOST_FUNCTIONS = 2_000
+"""Functions of the features of two parts that are kept."""
+
+
 def verify(text: str | bytes) -> Verdict:
     """Return what a certificate proves: that its statement is true, or that it is not.
 
     Parameters
     ----------
     text : str or bytes
-        The certificate, grammar 1 or 2.
+        The certificate, grammar 1, 2 or 3.
 
     Raises
     ------
@@ -89,10 +102,11 @@ def verify(text: str | bytes) -> Verdict:
 def _verified(text: str | bytes) -> Verdict:
     content = read_certificate(text)
     cells = _exact_cells(content)
+    asked = _Asked(content)
     if content.witness is not None:
-        _check_witness(content, cells, content.witness)
+        _check_witness(asked, cells, content.witness)
     else:
-        _check_proof(content, cells)
+        _check_proof(asked, cells)
     return content.verdict
 
 
@@ -120,8 +134,9 @@ class _Work:
             refuse("it asks for too much work")
 
 
-def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
-    robot, margin, work = content.robot, content.statement.margin, _Work()
+def _check_proof(asked: _Asked, cells: Sequence[Cell]) -> None:
+    content, robot, work = asked.content, asked.robot, asked.work
+    margin = content.statement.margin
     for point in content.statement.points:
         beyond = _beyond_limits(robot, [exact(x) for x in point])
         if beyond:
@@ -129,33 +144,132 @@ def _check_proof(content: Content, cells: Sequence[Cell]) -> None:
     needed = [b for b in robot.boundaries if b.used and _can_be_violated(b, margin)]
     if {boundary.name for boundary in needed} != set(content.proof):
         refuse("the boundaries of the proof are not those that need one")
-    reach = reach_of(robot, content.statement.points)
-    work.add(sum(WAVES_WORK * values_of(robot, boundary) for boundary in needed))
+    asked.count_singles(needed)
     for boundary in needed:
         trees = content.proof[boundary.name]
-        if len(trees) != len(cells):
-            refuse(f"{shown(boundary.name)}: {len(trees)} trees for {len(cells)} cells")
-        waves = waves_of(robot, boundary, margin, reach)
-        leaf = _Leaf(robot, waves, work)
-        for cell, tree in zip(cells, trees, strict=True):
-            if not _covers(leaf, cell, tree, work):
-                refuse(f"{shown(boundary.name)}: not proved on every leaf")
+        pairs = asked.pairs(boundary)
+        if len(trees) != pairs * len(cells):
+            refuse(f"{shown(boundary.name)}: {len(trees)} trees for {pairs} x {len(cells)} cells")
+        for k, functions in enumerate(asked.of(boundary)):
+            own = trees[k * len(cells) : (k + 1) * len(cells)]
+            for cell, tree in zip(cells, own, strict=True):
+                if not _covers(functions, cell, tree, work):
+                    refuse(f"{shown(boundary.name)}: not proved on every leaf")
 
 
 def _can_be_violated(boundary: Boundary, margin: Any) -> bool:
-    return boundary.normal is not None or boundary.least + margin != 0
+    """Tell whether a distance of 0 is asked of what can be nearer than that, by crossing."""
+    crossing = boundary.apart and sum(len(body.places) for body in boundary.bodies) > 3
+    return boundary.normal is not None or crossing or boundary.least + margin != 0
 
 
-def _covers(leaf: _Leaf, cell: Cell, tree: str, work: _Work) -> bool:
-    """Tell whether a tree ends with its last leaf, and the form is positive on every leaf."""
+Functions = Callable[[str], list["_Leaf"]]
+"""From what stands before the point of a leaf to the functions that are positive there."""
+
+
+class _Asked:
+    """What has to be positive, for each boundary, or for each pair of parts of two bodies."""
+
+    def __init__(self, content: Content) -> None:
+        self.content, self.work, self.robot = content, _Work(), content.robot
+        self.reach = reach_of(self.robot, content.statement.points)
+        self.cores = self._cores()
+
+    @cached_property
+    def arm(self) -> FlatArm:
+        """The arm in its plane of motion."""
+        return FlatArm(self.robot)
+
+    def _cores(self) -> dict[str, list[Core]]:
+        """Return the convex cores of all bodies that are kept from others, by their names."""
+        found, parts = dict[str, list[Core]](), self.content.parts
+        bodies = [
+            b for pair in self.robot.boundaries if pair.used and pair.apart for b in pair.bodies
+        ]
+        for body in bodies:
+            if body.name not in found:
+                own = parts.get(body.name)
+                self.work.add(PART_WORK * sum(len(part) ** 2 for part in own or ()))
+                found[body.name] = cores_of(self.arm, body, own)
+        return found
+
+    def pairs(self, boundary: Boundary) -> int:
+        """Return how many proofs a boundary needs for each cell."""
+        return math.prod(len(self.cores[b.name]) for b in boundary.bodies) if boundary.apart else 1
+
+    def count_singles(self, boundaries: Sequence[Boundary]) -> None:
+        """Count the work of all functions that have no features, before any is made."""
+        singles = [b for b in boundaries if not b.apart]
+        for b in singles:
+            values = values_of(self.robot, b) * max(1, sum(len(body.places) for body in b.bodies))
+            self.work.add(WAVES_WORK * values)
+
+    def of(self, boundary: Boundary) -> Iterator[Functions]:
+        """Return the functions of a boundary for each pair of parts, else once."""
+        if not boundary.apart:
+            margin = self.content.statement.margin
+            waves = [
+                waves_of(self.robot, single, margin, self.reach)
+                for single in self.singles(boundary)
+            ]
+            leaves = [_Leaf(self.robot, wave, self.work) for wave in waves]
+            yield partial(_without_number, leaves)
+            return
+        for one, other in product(*(self.cores[body.name] for body in boundary.bodies)):
+            yield _ByNumber(self, self.features(boundary, one, other))
+
+    def features(self, boundary: Boundary, one: Core, other: Core) -> Features:
+        """Return the features of two cores."""
+        gap = exact(boundary.least + self.content.statement.margin)
+        return Features(self.arm, one, other, gap, self.reach)
+
+    def singles(self, boundary: Boundary) -> list[Boundary]:
+        """Return the half-spaces of all places of a body; any other boundary as it is."""
+        if not boundary.bodies:
+            return [boundary]
+        [body] = boundary.bodies
+        return [
+            replace(boundary, places=(Place("", body.frame, (x, y, z), body.radius),), bodies=())
+            for x, y, z in self.arm.in_space(body)
+        ]
+
+
+def _without_number(leaves: list[_Leaf], number: str) -> list[_Leaf]:
+    if number:
+        refuse("a leaf names a feature where there are none")
+    return leaves
+
+
+class _ByNumber:
+    """The functions of features, each made when a leaf first names it."""
+
+    def __init__(self, asked: _Asked, features: Features) -> None:
+        self.asked, self.features = asked, features
+        self.known: dict[int, list[_Leaf]] = {}
+
+    def __call__(self, number: str) -> list[_Leaf]:
+        if not number or int(number) >= self.features.count:
+            refuse("a leaf names no feature of its parts")
+        k = int(number)
+        if k not in self.known:
+            if sum(map(len, self.known.values())) > MOST_FUNCTIONS:
+                self.known.clear()
+            self.asked.work.add(WAVES_WORK * self.features.size(k))
+            robot, work = self.asked.robot, self.asked.work
+            self.known[k] = [_Leaf(robot, waves, work) for waves in self.features.waves(k)]
+        return self.known[k]
+
+
+def _covers(functions: Functions, cell: Cell, tree: str, work: _Work) -> bool:
+    """Tell whether a tree ends with its last leaf, and all is positive on every leaf."""
     todo = [(cell, 0)]
     work.add(CUT_WORK * len(tree))
-    for letter in tree:
+    for letter in re.findall("[a-z]|[0-9]*[.]", tree):
         if not todo:
             refuse("something follows a tree")
         top, depth = todo.pop()
-        if letter == ".":
-            if not leaf.is_positive(top):
+        if letter.endswith("."):
+            if not all(leaf.is_positive(top) for leaf in functions(letter[:-1])):
                 return False
         elif depth == DEEPEST:
             refuse(f"more than {DEEPEST} cuts on top of each other")
@@ -213,18 +327,42 @@ def _beyond_limits(robot: Robot, point: Sequence[Any]) -> list[str]:
     return found
 
 
-def _check_witness(content: Content, cells: Sequence[Cell], witness: Witness) -> None:
+def _check_witness(asked: _Asked, cells: Sequence[Cell], witness: Witness) -> None:
     from flint import ctx
 
-    point, robot = _place(cells, witness), content.robot
+    point, robot = _place(cells, witness), asked.robot
     if witness.boundary in _beyond_limits(robot, point):
         return
     for boundary in robot.boundaries:
         if boundary.name == witness.boundary and boundary.used:
             with ctx.workprec(WITNESS_BITS):
-                if boundary_value(robot, boundary, content.statement.margin, point) < 0:
+                if _is_violated(_Asked(asked.content), boundary, point, witness):
                     return
     refuse("the witness violates nothing")
+
+
+def _is_violated(asked: _Asked, boundary: Boundary, point: Sequence[Any], witness: Witness) -> bool:
+    robot, margin = asked.robot, asked.content.statement.margin
+    if not boundary.apart:
+        return any(
+            boundary_value(robot, single, margin, point) < 0 for single in asked.singles(boundary)
+        )
+    cores, weights = [], []
+    for body, (part, numbers) in zip(boundary.bodies, witness.places, strict=True):
+        if part >= len(asked.cores[body.name]):
+            refuse("places: there is no such part")
+        cores.append(asked.cores[body.name][part])
+        weights.append(_mean(numbers, len(cores[-1].places)))
+    q = [unit * x for unit, x in zip(units(robot), point, strict=True)]
+    return asked.features(boundary, *cores).overlap(weights, q)
+
+
+def _mean(numbers: Sequence[Any], count: int) -> list[Any]:
+    """Return weights as Arb's rationals, if they are those of a mean of so many corners."""
+    weights = [exact(w) for w in numbers]
+    if len(weights) != count or min(weights) < 0 or sum(weights) != 1:
+        refuse("the weights are not those of a mean of corners")
+    return weights
 
 
 def _place(cells: Sequence[Cell], witness: Witness) -> tuple[Any, ...]:
@@ -237,9 +375,8 @@ def _place(cells: Sequence[Cell], witness: Witness) -> tuple[Any, ...]:
         return place
     if witness.cell >= len(cells):
         refuse(f"there is no cell {witness.cell}")
-    corners, weights = cells[witness.cell].corners, [exact(w) for w in witness.weights]
-    if len(weights) != len(corners) or min(weights) < 0 or sum(weights) != 1:
-        refuse("the weights are not those of a mean of the corners of a cell")
+    corners = cells[witness.cell].corners
+    weights = _mean(witness.weights, len(corners))
     return tuple(
         sum(x * w for x, w in zip(column, weights, strict=True))
         for column in zip(*corners, strict=True)

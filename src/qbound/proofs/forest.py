@@ -51,10 +51,12 @@ class Forest:
         self.size, self.letters = size, ["?"] * size
         self.children: dict[int, int] = {}
 
-    def close(self, numbers: Sequence[int] | NDArray[Any]) -> None:
-        """Note that cells are leaves."""
-        for number in numbers:
-            self.letters[number] = "."
+    def close(
+        self, numbers: Sequence[int] | NDArray[Any], leaves: Sequence[str] | None = None
+    ) -> None:
+        """Note that cells are leaves, each written as a point or in another way."""
+        for k, number in enumerate(numbers):
+            self.letters[number] = "." if leaves is None else leaves[k]
 
     def cut(self, numbers: Sequence[int] | NDArray[Any], edges: NDArray[Any]) -> NDArray[Any]:
         """Note the cuts and return the numbers of the halves."""

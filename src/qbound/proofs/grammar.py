@@ -14,21 +14,27 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NoReturn
 
-from qbound.proofs.grammar_robot import LARGEST_ANGLE, LARGEST_NUMBER, Robot, read_robot
+from qbound.proofs.grammar_robot import (
+    LARGEST_ANGLE,
+    LARGEST_NUMBER,
+    MOST_CORNERS,
+    Robot,
+    read_robot,
+)
 from qbound.proofs.grammar_values import items, keys, refuse, shown, text_of
 from qbound.proofs.verdict import Verdict
 
 MOST_BYTES = 2_000_000
 MOST_POINTS = 20_000
 MOST_TRIANGLES = 20_000
-GRAMMAR = 2
-"""What the producers write."""
+GRAMMAR, GRAMMAR_OF_BODIES = 2, 3
+"""What the producers write: of robots without pairs of bodies, and of others."""
 
-SCHEMAS = {"qbound/certificate/1": 1, "qbound/certificate/2": 2}
+SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3)}
 
 DECIMAL = re.compile(r"-?[0-9]{1,40}([.][0-9]{1,40})?([eE][+-]?[0-9]{1,2})?")
 INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
-TREE = re.compile(r"[a-z.]+")
+TREE = re.compile(r"([a-z]|([0-9]|[1-9][0-9]{1,8})?[.])+")
 HASH = re.compile(r"[0-9a-f]{64}")
 
 Point = tuple[Fraction, ...]
@@ -68,6 +74,8 @@ class Witness:
     at: Point | None = None
     cell: int = 0
     weights: tuple[Fraction, ...] = ()
+    places: tuple[tuple[int, tuple[Fraction, ...]], ...] = ()
+    """Of a pair of bodies: a part of each, and the weights of its corners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +85,12 @@ class Content:
     Attributes
     ----------
     grammar : int
-        1 or 2.
+        1, 2 or 3.
     proof : dict of str to tuple of str
         Trees by the name of the boundary; empty where it is refuted.
     witness : Witness or None
+    parts : dict of str to tuple of tuple of int
+        Corners of the convex parts of outlines, by the name of the body.
     """
 
     grammar: int
@@ -90,6 +100,7 @@ class Content:
     sha256: str
     proof: dict[str, tuple[str, ...]]
     witness: Witness | None
+    parts: dict[str, tuple[tuple[int, ...], ...]]
 
 
 def read_certificate(text: str | bytes) -> Content:
@@ -109,25 +120,32 @@ def read_certificate(text: str | bytes) -> Content:
     schema = text_of(data.get("schema"), "schema")
     if schema not in SCHEMAS:
         refuse(f"schema: {shown(schema)} is none of {', '.join(SCHEMAS)}")
-    keys(data, "the file", _keys_of(SCHEMAS[schema], verdict, kind))
+    grammar = SCHEMAS[schema]
+    others = ("places",) if (grammar, verdict) == (3, "refuted") else ()
+    keys(data, "the file", _keys_of(grammar, verdict, kind), others)
     robot = read_robot(text_of(data["robot"], "robot"))
+    if grammar < GRAMMAR_OF_BODIES and any(b.used and b.apart for b in robot.boundaries):
+        refuse(f"schema: pairs of bodies need {GRAMMAR_OF_BODIES}")
     return Content(
-        SCHEMAS[schema],
+        grammar,
         Verdict(verdict),
         read_statement(statement, robot),
         robot,
         _sha256(data),
         _proof(data["proof"]) if verdict == "proved" else {},
         _witness(data, robot) if verdict == "refuted" else None,
+        _parts(data["parts"], robot) if grammar == GRAMMAR_OF_BODIES else {},
     )
 
 
 def _keys_of(grammar: int, verdict: str, kind: Any) -> tuple[str, ...]:
     """Return the keys that the file has, all of them."""
-    common = ("schema", "verdict", "statement", "robot", "sha256")
+    common: tuple[str, ...] = ("schema", "verdict", "statement", "robot", "sha256")
+    if grammar == GRAMMAR_OF_BODIES:
+        common = (*common, "parts")
     if verdict == "proved":
         return (*common, "proof")
-    if grammar == 2 and kind == "box":
+    if grammar > 1 and kind == "box":
         return (*common, "boundary", "at")
     return (*common, "boundary", "cell", "weights")
 
@@ -267,14 +285,44 @@ def _trees(name: str, rows: Any) -> tuple[str, ...]:
     where = f"proof of {shown(name)}"
     trees = items(rows, where, 1, MOST_BYTES)
     if not all(isinstance(tree, str) and TREE.fullmatch(tree) for tree in trees):
-        refuse(f"{where}: a tree is written with the letters a to z and points")
+        refuse(f"{where}: a tree is written with the letters a to z, points and numbers")
     return tuple(trees)
 
 
 def _witness(data: dict[str, Any], robot: Robot) -> Witness:
     name = text_of(data["boundary"], "boundary")
+    boundary = next((b for b in robot.boundaries if b.name == name and b.used), None)
+    if (boundary is not None and boundary.apart) != ("places" in data):
+        refuse("places: a pair of bodies has them, and nothing else")
+    places = _named_places(data["places"]) if "places" in data else ()
     if "at" in data:
-        return Witness(name, _point(data["at"], robot, "at"))
+        return Witness(name, _point(data["at"], robot, "at"), places=places)
     cell = index(data["cell"], "cell", 10**9)
-    weights = items(data["weights"], "weights", 1, len(robot.joints) + 1)
-    return Witness(name, None, cell, tuple(decimal(w, "weights") for w in weights))
+    return Witness(name, None, cell, _weights(data["weights"], "weights"), places)
+
+
+def _weights(value: Any, where: str) -> tuple[Fraction, ...]:
+    return tuple(decimal(w, where) for w in items(value, where, 1, MOST_CORNERS))
+
+
+def _named_places(value: Any) -> tuple[tuple[int, tuple[Fraction, ...]], ...]:
+    rows = items(value, "places", 2, 2)
+    for row in rows:
+        keys(row, "places", ("part", "weights"))
+    return tuple(
+        (index(row["part"], "part of places", MOST_CORNERS), _weights(row["weights"], "places"))
+        for row in rows
+    )
+
+
+def _parts(value: Any, robot: Robot) -> dict[str, tuple[tuple[int, ...], ...]]:
+    """Read the parts of each outline that a boundary in use keeps from another body."""
+    bodies = [body for b in robot.boundaries if b.used and b.apart for body in b.bodies]
+    outlines = {body.name: len(body.places) for body in bodies if len(body.places) > 2}
+    keys(value, "parts", list(outlines))
+    return {name: _part_list(value[name], count) for name, count in outlines.items()}
+
+
+def _part_list(value: Any, count: int) -> tuple[tuple[int, ...], ...]:
+    rows = [items(row, "parts", 3, count) for row in items(value, "parts", 1, count)]
+    return tuple(tuple(index(k, "parts", count) for k in row) for row in rows)

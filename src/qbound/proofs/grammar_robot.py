@@ -74,14 +74,36 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False)
+class Body:
+    """A core in a frame, by places of two or three numbers, with a radius.
+
+    One place is a disc, two are a capsule, three or more an outline in order.
+    """
+
+    name: str
+    frame: int
+    places: tuple[tuple[Fraction, ...], ...]
+    radius: Fraction
+
+
+@dataclass(frozen=True, eq=False)
 class Boundary:
-    """A pair of points (no normal) or a half-space of one point; `least` is without the margin."""
+    """A pair of points or bodies (no normal), or a half-space of one point or body.
+
+    `least` is what is asked for, radii included, without the margin.
+    """
 
     name: str
     used: bool
     places: tuple[Place, ...]
     normal: Vector | None
     least: Fraction
+    bodies: tuple[Body, ...] = ()
+
+    @property
+    def apart(self) -> bool:
+        """Tell whether it keeps two bodies apart."""
+        return len(self.bodies) == 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,17 +126,18 @@ def read_robot(text: str) -> Robot:
     except tomllib.TOMLDecodeError as error:
         refuse(f"robot: no TOML: {shown(str(error))}")
     wanted = ("schema", "name", "tool", "length_unit", "angle_unit", "home", "joint", "point")
-    keys(table, "robot", wanted, ("boundary", "body"))
+    others = ("boundary", "body", "obstacle", "collisions", "clearance", "allowed")
+    keys(table, "robot", wanted, others)
     if type(table["schema"]) is not int or table["schema"] != 1:
         refuse("robot: the schema is not 1")
     _one_of(table["length_unit"], "length_unit", ("m", "cm", "mm"))
     degrees = _one_of(table["angle_unit"], "angle_unit", ("deg", "rad")) == "deg"
     frames, joints = _joints(table["joint"], degrees)
     places = _places(table["point"], frames)
-    boundaries = _boundaries(table.get("boundary", []), places)
+    bodies = _bodies(table, frames)
+    boundaries = _boundaries(table.get("boundary", []), places, bodies)
+    boundaries += _between_bodies(table, bodies, boundaries)
     _check_names(table, frames, joints, places, boundaries)
-    for row in items(table.get("body", []), "body", 0, MOST_ROWS):
-        _check_body(row, frames)
     return Robot(_label(table["name"], "name"), degrees, joints, boundaries)
 
 
@@ -273,39 +296,113 @@ def _frame(value: Any, frames: Sequence[str]) -> int:
     return frames.index(name)
 
 
-def _boundaries(rows: Any, places: Sequence[Place]) -> tuple[Boundary, ...]:
-    known = {place.name: place for place in places}
-    return tuple(_boundary(row, known) for row in items(rows, "robot: boundary", 0, MOST_ROWS))
+def _boundaries(rows: Any, places: Sequence[Place], bodies: Sequence[Body]) -> tuple[Boundary, ...]:
+    points = {place.name: place for place in places}
+    named = {body.name: body for body in bodies}
+    rows = items(rows, "robot: boundary", 0, MOST_ROWS)
+    return tuple(_boundary(row, points, named) for row in rows)
 
 
-def _boundary(row: Any, known: dict[str, Place]) -> Boundary:
+def _boundary(row: Any, points: dict[str, Place], bodies: dict[str, Body]) -> Boundary:
     kind = row.get("type") if isinstance(row, dict) else None
-    pair = _one_of(kind, "type of a boundary", ("pair", "half-space")) == "pair"
-    own = (("points",), ("clearance",)) if pair else (("point", "normal", "offset"), ())
-    keys(row, "robot: boundary", ("name", "type", *own[0]), ("used", *own[1]))
+    kind = _one_of(kind, "type of a boundary", ("pair", "half-space", "bodies"))
+    if kind == "half-space":
+        which = "body" if "body" in row else "point"
+        keys(row, "robot: boundary", ("name", "type", which, "normal", "offset"), ("used",))
+        labels = [row[which]]
+    else:
+        which = "points" if kind == "pair" else "bodies"
+        keys(row, "robot: boundary", ("name", "type", which), ("used", "clearance"))
+        labels = items(row[which], f"robot: {which}", 2, 2)
     name, used = _label(row["name"], "boundary name"), row.get("used", True)
     if not isinstance(used, bool):
         refuse(f"robot: {shown(name)}: used is neither true nor false")
-    names = items(row["points"], "robot: points", 2, 2) if pair else [row["point"]]
-    labels = [_label(label, "point") for label in names]
+    labels = [_label(label, which) for label in labels]
+    known: dict[str, Any] = points if which in ("point", "points") else bodies
     if len(set(labels)) != len(labels) or not set(labels) <= set(known):
-        refuse(f"robot: {shown(name)} is not between points of the robot")
+        refuse(f"robot: {shown(name)} is not about different {which} of the robot")
     ends = tuple(known[label] for label in labels)
-    normal = None if pair else _direction(row["normal"], "normal")
-    own_least = (
-        _not_negative(row.get("clearance", 0), "clearance")
-        if pair
-        else _number(row["offset"], "offset")
+    if kind == "bodies" and ends[0].frame == ends[1].frame:
+        refuse(f"robot: {shown(name)}: two bodies of one frame")
+    normal = _direction(row["normal"], "normal") if kind == "half-space" else None
+    own = (
+        _number(row["offset"], "offset")
+        if kind == "half-space"
+        else _not_negative(row.get("clearance", 0), "clearance")
     )
-    return Boundary(name, used, ends, normal, sum((end.radius for end in ends), own_least))
+    least = sum((end.radius for end in ends), own)
+    if known is points:
+        return Boundary(name, used, ends, normal, least)
+    return Boundary(name, used, (), normal, least, ends)
 
 
-def _check_body(row: Any, frames: Sequence[str]) -> None:
-    keys(row, "robot: body", ("frame", "polygon"))
-    _frame(row["frame"], frames)
-    for corner in items(row["polygon"], "robot: polygon", 3, MOST_CORNERS):
-        for x in items(corner, "robot: polygon", 2, 2):
-            _number(x, "polygon")
+# --- bodies ---------------------------------------------------------------------------------------
+
+
+def _bodies(table: dict[str, Any], frames: Sequence[str]) -> tuple[Body, ...]:
+    """Return the bodies of links, inner ones first, and then the obstacles."""
+    found: list[tuple[bool, Body]] = []
+    for kind, own in (("body", ("frame",)), ("obstacle", ())):
+        for row in items(table.get(kind, []), f"robot: {kind}", 0, MOST_ROWS):
+            keys(row, f"robot: {kind}", own, ("name", "polygon", "capsule", "disc"))
+            frame = _frame(row["frame"], frames) if own else 0
+            number = 1 + sum(body.frame == frame for _, body in found)
+            usual = f"{frames[frame]}/{number}" if number > 1 else frames[frame]
+            name = _label(row["name"], "body name") if "name" in row else usual
+            found.append((not own, Body(name, frame, *_shape(row, name))))
+    found.sort(key=lambda row: (row[0], row[1].frame))
+    bodies = tuple(body for _, body in found)
+    if len({body.name for body in bodies}) != len(bodies):
+        refuse("robot: a name is given to two bodies")
+    return bodies
+
+
+def _shape(row: dict[str, Any], name: str) -> tuple[tuple[tuple[Fraction, ...], ...], Fraction]:
+    """Return the places of a core, and the radius."""
+    kinds = [kind for kind in ("polygon", "capsule", "disc") if kind in row]
+    if len(kinds) != 1:
+        refuse(f"robot: {shown(name)} has {len(kinds)} shapes, wanted one")
+    value = row[kinds[0]]
+    if kinds == ["polygon"]:
+        corners = items(value, "robot: polygon", 3, MOST_CORNERS)
+        return tuple(_corner(corner) for corner in corners), Fraction(0)
+    ends = ("from", "to") if kinds == ["capsule"] else ("at",)
+    keys(value, f"robot: {kinds[0]}", (*ends, "radius"))
+    places = tuple(_corner(value[end]) for end in ends)
+    return places, _not_negative(value["radius"], "radius")
+
+
+def _corner(value: Any) -> tuple[Fraction, ...]:
+    numbers = items(value, "robot: a place of a body", 2, 3)
+    return tuple(_number(x, "a place of a body") for x in numbers)
+
+
+def _between_bodies(
+    table: dict[str, Any], bodies: Sequence[Body], boundaries: Sequence[Boundary]
+) -> tuple[Boundary, ...]:
+    """Return the pairs that `collisions` asks for, the body nearer to the base first."""
+    clearance = _not_negative(table.get("clearance", 0), "clearance")
+    names = {body.name for body in bodies}
+    settled = [{body.name for body in b.bodies} for b in boundaries if b.apart]
+    for row in items(table.get("allowed", []), "robot: allowed", 0, MOST_ROWS):
+        pair = {_label(name, "allowed") for name in items(row, "robot: allowed", 2, 2)}
+        if len(pair) != 2 or not pair <= names:
+            refuse("robot: allowed: two different bodies are wanted")
+        settled.append(pair)
+    if "collisions" not in table:
+        return ()
+    _one_of(table["collisions"], "collisions", ("all",))
+    done, found, count = {frozenset(pair) for pair in settled}, [], 0
+    for k, one in enumerate(bodies):
+        for other in bodies[k + 1 :]:
+            count += one.frame != other.frame
+            if count > MOST_ROWS:
+                refuse(f"robot: more than {MOST_ROWS} pairs of bodies")
+            if one.frame != other.frame and frozenset((one.name, other.name)) not in done:
+                least = clearance + one.radius + other.radius
+                name = f"{one.name}, {other.name}"
+                found.append(Boundary(name, True, (), None, least, (one, other)))
+    return tuple(found)
 
 
 def _check_names(

@@ -17,7 +17,7 @@ from itertools import product
 from typing import Any
 
 from qbound.proofs.grammar import Point
-from qbound.proofs.grammar_robot import Boundary, Joint, Robot, Vector
+from qbound.proofs.grammar_robot import Body, Boundary, Joint, Place, Robot, Vector
 
 SMALL = 100
 """Waves that are ``2**-SMALL`` of the largest, or less, are put together into one number."""
@@ -162,7 +162,8 @@ def reach_of(robot: Robot, points: Sequence[Point]) -> list[Any]:
 
 def joints_of(boundary: Boundary) -> range:
     """Return the joints on which a boundary depends: those between its ends, or below its point."""
-    frames = sorted(place.frame for place in boundary.places)
+    ends: tuple[Place | Body, ...] = (*boundary.places, *boundary.bodies)
+    frames = sorted(end.frame for end in ends)
     return range(frames[0] if boundary.normal is None else 0, frames[-1])
 
 
@@ -183,34 +184,35 @@ def _values(robot: Robot, boundary: Boundary, margin: Fraction, nodes: Sequence[
     ends = sorted(boundary.places, key=lambda place: place.frame)
     seen = arb_mat(4, 1, [*map(exact, ends[-1].at), 1])
     for j, values in reversed(list(zip(joints_of(boundary), nodes, strict=True))):
-        fixed = _mount(robot, robot.joints[j])
+        fixed = mount(robot, robot.joints[j])
         parts = [(fixed * _moved(robot.joints[j], value) * seen).tolist() for value in values]
         seen = arb_mat([[x for part in parts for x in part[row]] for row in range(4)])
     least = exact(boundary.least + margin)
     if boundary.normal is not None:
-        normal = _unit(boundary.normal)
+        normal = unit_vector(boundary.normal)
         rows = zip(*seen.tolist()[:3], strict=True)
-        return [_dot(normal, place) - least for place in rows]
+        return [dot(normal, place) - least for place in rows]
     gaps = [
         [x - y for x in row]
         for row, y in zip(seen.tolist()[:3], map(exact, ends[0].at), strict=True)
     ]
-    return [_dot(gap, gap) - least * least for gap in zip(*gaps, strict=True)]
+    return [dot(gap, gap) - least * least for gap in zip(*gaps, strict=True)]
 
 
-def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    """Return the sum of products."""
     return sum((x * y for x, y in zip(u, v, strict=True)), 0)
 
 
-def _unit(vector: Vector) -> list[Any]:
+def unit_vector(vector: Vector) -> list[Any]:
     """Give a direction the length 1; its numbers may be far from 1."""
     from flint import arb
 
-    length = arb(exact(_dot(vector, vector))).sqrt()
+    length = arb(exact(dot(vector, vector))).sqrt()
     return [exact(x) / length for x in vector]
 
 
-def _mount(robot: Robot, joint: Joint) -> Any:
+def mount(robot: Robot, joint: Joint) -> Any:
     """Return the frame in which a joint moves, seen from its parent: origin, then Rz Ry Rx."""
     from flint import arb
 
@@ -223,7 +225,7 @@ def _mount(robot: Robot, joint: Joint) -> Any:
 
 
 def _moved(joint: Joint, value: Any) -> Any:
-    axis = _unit(joint.axis)
+    axis = unit_vector(joint.axis)
     return _rotation(axis, value) if joint.turns else _shift([value * x for x in axis])
 
 
@@ -249,11 +251,28 @@ def _rotation(axis: Sequence[Any], angle: Any) -> Any:
 
 
 def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence[Any]) -> Waves:
-    """Return a boundary function as waves: each amplitude is a sum of weighted values."""
+    """Return a boundary function as waves."""
+    joints = joints_of(boundary)
+    kinds = [kind_of(robot, j, straight=boundary.normal is not None) for j in joints]
+    values = _values(robot, boundary, margin, [kind.nodes for kind in kinds])
+    return interpolated(joints, kinds, values, [reach[j] for j in joints])
+
+
+def interpolated(
+    joints: range, kinds: Sequence[JointKind], values: Sequence[Any], reach: Sequence[Any]
+) -> Waves:
+    """Return the function of some joints that has given values: each amplitude is a weighted sum.
+
+    Parameters
+    ----------
+    values : sequence of arb
+        At all combinations of the joints' nodes; that of the last joint varies first.
+    reach : sequence of arb
+        The largest length of each of these joints.
+    """
     from flint import acb, acb_mat
 
-    joints, kinds = joints_of(boundary), _kinds(robot, boundary)
-    values = [acb(value) for value in _values(robot, boundary, margin, [k.nodes for k in kinds])]
+    values = [acb(value) for value in values]
     for kind in kinds:  # each joint in turn comes first, and goes to the end
         along_first = acb_mat(len(kind.nodes), len(values) // len(kind.nodes), values)
         values = (kind.weights * along_first).transpose().entries()
@@ -263,7 +282,7 @@ def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence
         first = next((k for k in turns if k), 0)
         if first >= 0:  # the other half are mirror images
             rows.append(Wave(amplitude * (2 if first else 1), turns, lengths))
-    return _gathered(joints, rows, [reach[j] for j in joints])
+    return _gathered(joints, rows, reach)
 
 
 def values_of(robot: Robot, boundary: Boundary) -> int:
@@ -273,7 +292,7 @@ def values_of(robot: Robot, boundary: Boundary) -> int:
 
 
 @dataclass(frozen=True, eq=False)
-class _Kind:
+class JointKind:
     """How a function goes along one joint: from values at nodes, by weights, to amplitudes."""
 
     nodes: Sequence[Any]
@@ -282,20 +301,19 @@ class _Kind:
     powers: tuple[int, ...]
 
 
-def _kinds(robot: Robot, boundary: Boundary) -> list[_Kind]:
-    """Return how a boundary function goes along each of its joints."""
+def kind_of(robot: Robot, j: int, *, straight: bool = False) -> JointKind:
+    """Return how boundary functions go along a joint; `straight`: a slide has no square in them."""
     from flint import acb, acb_mat, arb, fmpq
 
-    third, root, half = 2 * arb.pi() / 3, acb(fmpq(2, 3)).exp_pi_i(), fmpq(1, 2)
-    thirds = acb_mat(3, 3, [root ** (-w * k) / 3 for w in (0, 1, -1) for k in range(3)])
-    turning = _Kind([0 * third, third, 2 * third], thirds, (0, 1, -1), (0, 0, 0))
-    if boundary.normal is not None:
-        line = acb_mat(2, 2, [1, 0, -1, 1])
-        sliding = _Kind([arb(0), arb(1)], line, (0, 0), (0, 1))
-    else:
-        square = acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
-        sliding = _Kind([arb(0), arb(1), arb(-1)], square, (0, 0, 0), (0, 1, 2))
-    return [turning if robot.joints[j].turns else sliding for j in joints_of(boundary)]
+    if robot.joints[j].turns:
+        third, root = 2 * arb.pi() / 3, acb(fmpq(2, 3)).exp_pi_i()
+        thirds = acb_mat(3, 3, [root ** (-w * k) / 3 for w in (0, 1, -1) for k in range(3)])
+        return JointKind([0 * third, third, 2 * third], thirds, (0, 1, -1), (0, 0, 0))
+    if straight:
+        return JointKind([arb(0), arb(1)], acb_mat(2, 2, [1, 0, -1, 1]), (0, 0), (0, 1))
+    half = fmpq(1, 2)
+    square = acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
+    return JointKind([arb(0), arb(1), arb(-1)], square, (0, 0, 0), (0, 1, 2))
 
 
 def _gathered(joints: range, rows: Sequence[Wave], reach: Sequence[Any]) -> Waves:
