@@ -64,6 +64,20 @@ def test_plane_axes_name_the_unit_of_the_file(ax) -> None:
     assert ax.get_aspect() == 1
 
 
+def test_obstacles_and_round_bodies_are_drawn_in_the_arms_own_plane(ax) -> None:
+    """About z: seen from above. Posts, box, triangle, then both links as capsules."""
+    robot = load_robot("two-links-on-a-table")
+    post, thin, box, _, arm, forearm, *_ = figures.draw_robot(ax, robot, [0.0, np.pi / 2])
+    for disc, (x, y), radius in ((post, (0.5, 0.25), 0.06), (thin, (-0.2, 0.5), 0.03)):
+        assert_allclose(np.linalg.norm(disc.get_xy() - [x, y], axis=1), radius, atol=1e-12)
+    assert_allclose(box.get_xy()[:4], robot.obstacles[2].shape.places[:, :2])
+    assert_allclose(arm.get_xy().min(axis=0), [-0.04, -0.04], atol=1e-5)
+    assert_allclose(arm.get_xy().max(axis=0), [0.44, 0.04], atol=1e-5)
+    assert_allclose(forearm.get_xy().max(axis=0), [0.43, 0.38], atol=1e-5)
+    figures.plane_axes(ax, robot)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$ / m", "$y$ / m")
+
+
 def test_robot_is_drawn_where_it_stands(ax) -> None:
     """Bodies, links, joints, tool and named points by 4 x 4 matrices, in the plane x, z."""
     table, q = packaged_table(), [0.4, -1.2]

@@ -18,7 +18,10 @@ UNCHECKED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 PACKAGED = Path(__file__).parents[1] / "src/qbound/robots"
 FILES = [file.read_text("utf-8") for file in sorted(PACKAGED.glob("*.toml"))]
 LINES = [line for text in FILES for line in text.splitlines()]
-TEXT = (PACKAGED / "minervabot-v2.toml").read_text("utf-8")
+TEXTS = [
+    (PACKAGED / f"{name}.toml").read_text("utf-8")
+    for name in ("minervabot-v2", "two-links-on-a-table")
+]
 VALUES = [
     "nan", "-inf", "1e400", "0", "-1", "1e-300", "9" * 400, "true", '""', '"q1"', '"\\u0000"',
     "[]", "[0, 0]", "[[0]]", "{}", "1979-05-27", "{ q1 = 0 }", "'''x", "\ufeff", "[0, 0, 0]", '"3"',
@@ -27,8 +30,8 @@ VALUES = [
 
 @st.composite
 def mutated(draw) -> str:
-    """The paper's file with lines changed, doubled, dropped, moved, or taken from other files."""
-    lines = TEXT.splitlines()
+    """A file of points or bodies; lines changed, doubled, dropped, moved, or from other files."""
+    lines = draw(st.sampled_from(TEXTS)).splitlines()
     for _ in range(draw(st.integers(1, 4))):
         i = draw(st.integers(0, len(lines) - 1))
         key = lines[i].partition("=")[0]

@@ -88,13 +88,33 @@ def test_a_convex_polygon_is_one_part_without_the_corners_in_its_edges() -> None
     assert convex_parts(corners[::-1]) == ((5, 3, 2, 1),)
 
 
-def test_a_corner_a_hair_off_its_edge_is_seen() -> None:
-    """The last bit of a double decides; a cross product of doubles is 0 here."""
+def test_a_corner_within_rounding_of_its_edge_is_on_it() -> None:
+    """2^-38 of the size is 4e-12; beyond that a bend is seen, either way."""
     found = []
-    for last in (np.nextafter(2e9, 3e9), 2e9, np.nextafter(2e9, 0)):
-        parts = convex_parts([[0.0, 0.0], [1e9, 1e9], [2e9, last], [0.0, 2e9]])
+    for off in (1e-10, 1e-14, 0.0, -1e-14, -1e-10):
+        parts = convex_parts([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0 + off], [0.0, 2.0]])
         found.append([len(part) for part in parts])
-    assert found == [[4], [3], [3, 3]]
+    assert found == [[4], [3], [3], [3], [3, 3]]
+
+
+@given(st.floats(0, 7), st.lists(st.integers(1, 3), min_size=6, max_size=6))
+def test_corners_typed_along_turned_edges_leave_no_splinters(angle, counts) -> None:
+    """An L with corners on its edges, whose last bits are off where it is turned."""
+    ell = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
+    edges = zip(ell, np.roll(ell, -1, axis=0), counts, strict=True)
+    places = [a + t * (b - a) for a, b, n in edges for t in np.linspace(0, 1, n, endpoint=False)]
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    corners = np.array(places) @ turn + [5.0, -3.0]
+    parts = [corners[list(loop)] for loop in convex_parts(corners)]
+    assert len(parts) == 2
+    assert float(sum(map(area, parts))) == pytest.approx(6.0, rel=1e-12)
+
+
+def test_a_polygon_thinner_than_rounding_is_refused() -> None:
+    assert (
+        polygon_fault([[0, 0], [1, 0], [1, 1e-13]]) == "it is thinner than rounding beside its size"
+    )
+    assert polygon_fault([[0, 0], [1, 0], [1, 1e-10]]) is None
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-9, 1.0, LARGEST])

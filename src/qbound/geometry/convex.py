@@ -1,12 +1,14 @@
 """Is this outline a simple polygon, and into which convex parts is it cut? Decided exactly.
 
 Floats are fractions with a power of two below: multiplied by one of them, all coordinates are whole
-numbers, and the side on which a corner lies is a whole number too. Nothing here is rounded.
+numbers, and the side on which a corner lies is a whole number too. Nothing here is rounded; what a
+user's corners may be rounded by is stated in one place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -44,6 +46,8 @@ def polygon_fault(corners: ArrayLike) -> str | None:
             return f"corners {j} and {i} are one place"
     if not any(_side(p[0], p[1], corner) for corner in p[2:]):
         return "all corners lie on one line: it has no area"
+    if len(_bends(_outline(corners), range(n))) < 3:
+        return "it is thinner than rounding beside its size"
     if _is_convex(p):
         return None
     for i in range(n):
@@ -59,7 +63,8 @@ def polygon_fault(corners: ArrayLike) -> str | None:
 def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
     """Cut a simple polygon into strictly convex parts that together are exactly the polygon.
 
-    Ears are cut off one by one; then every cut without which both sides are convex together is
+    A corner within rounding (2^-38 of the polygon's size) of a straight edge counts as on it. Ears
+    are cut off one by one; then every cut without which both sides are convex together is
     undone (Hertel and Mehlhorn): at most four times as many parts as there need be.
 
     Parameters
@@ -85,13 +90,42 @@ def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
     """
     if (fault := polygon_fault(corners)) is not None:
         raise ValueError(f"no simple polygon: {fault}")
-    p = _whole(corners)
-    loop = _bends(p, range(len(p)))
-    if _doubled_area([p[i] for i in loop]) < 0:
+    outline = _outline(corners)
+    loop = _bends(outline, range(len(outline.at)))
+    if _doubled_area([outline.at[i] for i in loop]) < 0:
         loop = loop[::-1]
-    if all(_turn(p, loop, k) > 0 for k in range(len(loop))):
+    if all(_turn(outline, loop, k) > 0 for k in range(len(loop))):
         return (loop,)
-    return tuple(_bends(p, part) for part in _merged(p, _triangles(p, loop)))
+    parts = (_bends(outline, part) for part in _merged(outline, _triangles(outline, loop)))
+    return tuple(part for part in parts if len(part) > 2)
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Corners in whole numbers.
+
+    Attributes
+    ----------
+    at : list of (int, int)
+    slack : int
+        A corner no farther than this, divided by 2^48, from a straight edge is on it.
+    """
+
+    at: list[Whole]
+    slack: int
+
+
+def _outline(corners: ArrayLike) -> Outline:
+    """Return the corners as whole numbers, and what is rounding beside their size.
+
+    Of a typed or turned corner that is meant to lie on an edge the last bits are off. To see a bend
+    there would cut a polygon into splinters that no distance can be taken of.
+    """
+    at = _whole(corners)
+    columns = list(zip(*at, strict=True))
+    size = max(max(column) - min(column) for column in columns)
+    farthest = max(abs(x) for column in columns for x in column)
+    return Outline(at, max(size << 10, farthest))
 
 
 def _whole(corners: ArrayLike) -> list[Whole]:
@@ -145,50 +179,75 @@ def _doubled_area(p: Sequence[Whole]) -> int:
     return sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise([*p, p[0]]))
 
 
-def _turn(p: Sequence[Whole], loop: Sequence[int], k: int) -> int:
-    """Return a positive number where a loop turns left at its k-th corner."""
-    return _side(p[loop[k - 1]], p[loop[k]], p[loop[(k + 1) % len(loop)]])
+def _turn(outline: Outline, loop: Sequence[int], k: int) -> int:
+    """Return 1 where a loop turns left at its k-th corner, -1 right, 0 straight on."""
+    a, b, c = (outline.at[i] for i in (loop[k - 1], loop[k], loop[(k + 1) % len(loop)]))
+    side = _side(a, b, c)
+    return 0 if abs(side) << 48 <= outline.slack * _extent(a, c) else _sign(side)
 
 
-def _bends(p: Sequence[Whole], loop: Iterable[int]) -> Loop:
+def _bends(outline: Outline, loop: Iterable[int]) -> Loop:
     """Return a loop without the corners at which it goes straight on."""
-    loop = tuple(loop)
-    return tuple(corner for k, corner in enumerate(loop) if _turn(p, loop, k))
+    left, k = list(loop), 0
+    while k < len(left) > 2:
+        if _turn(outline, left, k) == 0:
+            del left[k]
+        else:
+            k += 1
+    return tuple(left)
 
 
-def _triangles(p: Sequence[Whole], loop: Loop) -> Iterator[Loop]:
+def _triangles(outline: Outline, loop: Loop) -> Iterator[Loop]:
     """Cut ears off an anticlockwise loop until a triangle is left.
 
-    An ear holds no other corner, on its edges neither; of a simple polygon there always is one.
+    An ear holds no other corner, on its edges neither; of a simple polygon there always is one. One
+    that is more than rounding away from all other corners comes first: it leaves no splinters.
     """
     left = list(loop)
+    turns = [_turn(outline, left, k) for k in range(len(left))]
     while len(left) > 3:
-        reflex = [left[k] for k in range(len(left)) if _turn(p, left, k) <= 0]
-        k = next(k for k in range(len(left)) if _is_ear(p, left, k, reflex))
+        reflex = [corner for corner, turn in zip(left, turns, strict=True) if turn <= 0]
+        k = next(
+            k
+            for clear in (True, False)
+            for k, turn in enumerate(turns)
+            if turn >= clear and _is_ear(outline, left, k, reflex, clear=clear)
+        )
         yield left[k - 1], left[k], left[(k + 1) % len(left)]
-        del left[k]
+        del left[k], turns[k]
+        for near in (k - 1, k % len(left)):
+            turns[near] = _turn(outline, left, near)
     yield tuple(left)
 
 
-def _is_ear(p: Sequence[Whole], loop: Sequence[int], k: int, reflex: Sequence[int]) -> bool:
-    """Tell whether the corner is an ear: what lies in a triangle first is a reflex corner."""
+def _is_ear(
+    outline: Outline, loop: Sequence[int], k: int, reflex: Sequence[int], *, clear: bool
+) -> bool:
+    """Tell whether a corner is an ear: what comes to lie in a triangle first is a reflex corner.
+
+    `clear`: none is within rounding of it, either.
+    """
     ear = (loop[k - 1], loop[k], loop[(k + 1) % len(loop)])
-    if _turn(p, loop, k) <= 0:
+    a, b, c = (outline.at[i] for i in ear)
+    if _side(a, b, c) <= 0:
         return False
-    a, b, c = (p[i] for i in ear)
+    room = [-((outline.slack * _extent(*edge)) >> 48) * clear for edge in ((a, b), (b, c), (c, a))]
     return not any(
-        _side(a, b, p[i]) >= 0 and _side(b, c, p[i]) >= 0 and _side(c, a, p[i]) >= 0
-        for i in reflex
-        if i not in ear
+        _side(a, b, p) >= room[0] and _side(b, c, p) >= room[1] and _side(c, a, p) >= room[2]
+        for p in (outline.at[i] for i in reflex if i not in ear)
     )
 
 
-def _merged(p: Sequence[Whole], triangles: Iterable[Loop]) -> list[Loop]:
+def _extent(a: Whole, b: Whole) -> int:
+    return max(abs(b[0] - a[0]), abs(b[1] - a[1]))
+
+
+def _merged(outline: Outline, triangles: Iterable[Loop]) -> list[Loop]:
     """Join parts over every cut at whose ends the whole is convex, one cut after the other."""
     by_edge: dict[tuple[int, int], Loop] = {}
     for part in triangles:
         joined = part
-        while (found := _neighbour(p, joined, by_edge)) is not None:
+        while (found := _neighbour(outline, joined, by_edge)) is not None:
             other, joined = found
             for edge in _edges(other):
                 del by_edge[edge]
@@ -197,7 +256,7 @@ def _merged(p: Sequence[Whole], triangles: Iterable[Loop]) -> list[Loop]:
 
 
 def _neighbour(
-    p: Sequence[Whole], part: Loop, by_edge: Mapping[tuple[int, int], Loop]
+    outline: Outline, part: Loop, by_edge: Mapping[tuple[int, int], Loop]
 ) -> tuple[Loop, Loop] | None:
     """Find a part that is convex together with this one: that part, and both as one loop."""
     for i, (a, b) in enumerate(_edges(part)):
@@ -206,7 +265,7 @@ def _neighbour(
         j = other.index(a)
         on = (*other[j + 1 :], *other[:j])  # from behind a round the other one to b
         whole = (*part[i + 1 :], *part[: i + 1], *on[:-1])
-        if all(_turn(p, whole, whole.index(end)) >= 0 for end in (a, b)):
+        if all(_turn(outline, whole, whole.index(end)) >= 0 for end in (a, b)):
             return other, whole
     return None
 
