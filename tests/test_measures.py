@@ -62,7 +62,7 @@ def over_chords(problem, component) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(16)
     total = 0.0
     for arc in (a for loop in component.loops for a in loop):
-        q, dq = along(problem, arc, (1 + nodes) / 2)
+        q, dq = along(arc, (1 + nodes) / 2)
         cross = q[..., 0] * dq[..., 1] - q[..., 1] * dq[..., 0]
         total += (cross @ weights).sum() / 4
     return total
@@ -110,7 +110,7 @@ def test_points_between_the_points_of_an_arc_lie_on_it(seed):
     region = find_region(random_robot(seed))
     for component in (c for c in region.components if c.area > 1e-3):
         for arc in (a for loop in component.loops for a in loop):
-            q, dq = along(region.problem, arc, [0.0, 0.31, 0.5, 1.0])
+            q, dq = along(arc, [0.0, 0.31, 0.5, 1.0])
             assert_allclose(q[:, 0], arc.points[:-1], atol=1e-9)
             assert_allclose(q[:, -1], arc.points[1:], atol=1e-9)
             if arc.boundary in region.problem.names:
@@ -155,7 +155,7 @@ def test_a_step_from_an_arc_into_the_region_is_in_its_component(seed):
     region = find_region(random_robot(seed))
     for i, component in enumerate(region.components):
         for arc in (a for loop in component.loops for a in loop):
-            q, dq = (x[len(arc.points) // 2 - 1, 0] for x in along(region.problem, arc, [0.5]))
+            q, dq = (x[len(arc.points) // 2 - 1, 0] for x in along(arc, [0.5]))
             left = np.array([-dq[1], dq[0]]) / max(hypot(*dq), 1e-300)
             inside = q + 1e-4 * left
             nearest = nearest_boundary(region, inside)

@@ -102,7 +102,8 @@ def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
     joints = zip(robot.joints, nearest["q"], strict=True)
     place = ", ".join(f"{joint.name} = {_joint_text(robot, joint, x)}" for joint, x in joints)
     distance = _distance(robot, nearest)
-    return f"nearest boundary: {nearest['boundary']} at {place}, distance {distance}"
+    feature = f" ({nearest['feature']})" if "feature" in nearest else ""
+    return f"nearest boundary: {nearest['boundary']}{feature} at {place}, distance {distance}"
 
 
 def _distance(robot: Robot, nearest: dict[str, Any]) -> str:

@@ -240,16 +240,17 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
         return None
     vertices = np.array([vertex.q for vertex in home.vertices])
     forms = [region.problem.forms[i] for i in range(len(region.problem.names))]
+    names = (*region.problem.names, *region.problem.contacts.boundaries)
     try:
         centre = polygon.centroid(vertices)
-        largest = largest_safe_scale(vertices, centre, forms)
+        largest = largest_safe_scale(vertices, centre, forms, contacts=region.problem.contacts)
     except (ValueError, ArithmeticError):  # its centroid is not safe, or an edge lies in a wall
         return None
     return {
         "vertices": vertices.tolist(),
         "centroid": centre.tolist(),
         "largest": largest.scale,
-        "binds": None if largest.form < 0 else region.problem.names[largest.form],
+        "binds": None if largest.form < 0 else names[largest.form],
         "walks": _walks(len(vertices), walks),
     }
 

@@ -38,17 +38,22 @@ def region_document(region: Region) -> dict[str, Any]:
 
 def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
     """Return a boundary loop as JSON holds it."""
+    return {"arcs": [_arc_content(arc) for arc in loop]}
+
+
+def _arc_content(arc: Arc) -> dict[str, Any]:
     return {
-        "arcs": [
-            {
-                "boundary": arc.boundary,
-                "branch": arc.branch,
-                "from": arc.start.tolist(),
-                "to": arc.end.tolist(),
-            }
-            for arc in loop
-        ]
+        "boundary": arc.boundary,
+        **_feature(arc.feature),
+        "branch": arc.branch,
+        "from": arc.start.tolist(),
+        "to": arc.end.tolist(),
     }
+
+
+def _feature(feature: str) -> dict[str, str]:
+    """Return what touches, where it is known."""
+    return {"feature": feature} if feature else {}
 
 
 def configuration_document(
@@ -145,6 +150,7 @@ def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> di
         nearest = {
             "q": found.q.tolist(),
             "boundary": found.boundary,
+            **_feature(found.feature),
             "component": found.component,
             "distance": found.distance,
             "weights": list(weights),

@@ -170,6 +170,8 @@ def closest(one: ArrayLike, other: ArrayLike) -> Closest:
     _, edge, corner, sense, which = min(reached)
     place = cores[1 - which][corner]
     foot, feature, normal = _foot(cores[which], edge, place, distance)
+    if sense < 0 and feature == "edge 0":  # a segment has an edge on either side
+        feature = "edge 1"
     outward = sense * normal if distance <= 0 else (place - foot) / distance
     turned = 1 - 2 * which
     features, places = (feature, f"corner {corner}"), np.array([foot, place])

@@ -53,6 +53,8 @@ class BoundaryPoint:
         On the turn of the configuration asked for.
     boundary : str
         Name of the boundary or of the joint limit.
+    feature : str
+        Of two bodies, what touches there: "corner 2 on edge 3".
     component : int
         Index of the component that the boundary belongs to.
     distance : float
@@ -63,12 +65,13 @@ class BoundaryPoint:
     boundary: str
     component: int
     distance: float
+    feature: str = ""
 
 
 # --- on an arc ------------------------------------------------------------------------------------
 
 
-def along(problem: Problem, arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
+def along(arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
     """Return exact points of an arc and the derivatives along it, piece by piece.
 
     Parameters
@@ -85,18 +88,16 @@ def along(problem: Problem, arc: Arc, fractions: ArrayLike) -> tuple[Floats, Flo
     ends = arc.points[:-1], arc.points[1:]
     pieces = len(ends[0])
     u = np.broadcast_to(fractions, (pieces, np.shape(fractions)[-1]))
-    return _over_chords(problem, arc.boundary, *ends, u)
+    return _over_chords(arc, *ends, u)
 
 
-def _over_chords(
-    problem: Problem, boundary: str, start: Floats, end: Floats, u: Floats
-) -> tuple[Floats, Floats]:
+def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Floats, Floats]:
     """Points and derivatives as in `along`, over chords (n, 2) at fractions (n, m)."""
     chord = (end - start)[:, None]
     q = start[:, None] + u[..., None] * chord
-    if boundary not in problem.names:  # a limit is straight
+    if arc.form is None:  # a limit is straight
         return q, np.broadcast_to(chord, q.shape)
-    form = problem.forms[problem.names.index(boundary)]
+    form = arc.form
     normal = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
     for _ in range(3):
         rise = _quotient(form(q), _dot(form.gradient(q), normal))
@@ -219,7 +220,7 @@ def nearest_boundary(
         limit = math.inf if best is None else best.distance
         place, distance = _nearest_on(region.problem, arc, q, w, limit)
         if distance < limit:
-            best = BoundaryPoint(place, arc.boundary, i, distance)
+            best = BoundaryPoint(place, arc.boundary, i, distance, arc.feature)
     if best is None:
         raise ValueError("there is no boundary: every configuration is feasible, or none is")
     return best
@@ -239,7 +240,7 @@ def _nearest_on(
     """Return the nearest point of an arc, on the turn of q, and its distance, if below a limit."""
     place, best = q, limit
     for shift in _turns(problem, arc, q, w, limit):
-        for p in _candidates(problem, arc, q + shift, w, best):
+        for p in _candidates(arc, q + shift, w, best):
             distance = float(np.hypot(*(w * (p - q - shift))))
             if distance < best:
                 place, best = p - shift, distance
@@ -264,7 +265,7 @@ def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> It
             yield shift
 
 
-def _candidates(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
+def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
     """Return the nearest of the arc's points, and where the distance stops falling between two."""
     gaps = np.hypot(*(w * (arc.points - q)).T)
     reach = np.hypot(*(w * np.diff(arc.points, axis=0)).T)
@@ -273,20 +274,20 @@ def _candidates(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) 
     start, end = arc.points[:-1][near], arc.points[1:][near]
     if not len(start):
         return nearest
-    slope = _slope(problem, arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
+    slope = _slope(arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
     falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
-    return np.concatenate([nearest, _flat(problem, arc, start[falls], end[falls], q, w)])
+    return np.concatenate([nearest, _flat(arc, start[falls], end[falls], q, w)])
 
 
-def _flat(problem: Problem, arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
+def _flat(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
     """Return where the distance stops falling over each chord: false position (Illinois)."""
     low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
     ends = np.broadcast_to([[0.0, 1.0]], (len(start), 2))
-    below, above = np.split(_slope(problem, arc, start, end, ends, q, w)[1], 2, axis=1)
+    below, above = np.split(_slope(arc, start, end, ends, q, w)[1], 2, axis=1)
     falls = above < below  # nowhere
     for _ in range(60):
         u = (low * above - high * below) / (above - below)
-        p, slope = _slope(problem, arc, start, end, u, q, w)
+        p, slope = _slope(arc, start, end, u, q, w)
         if (np.abs(slope) <= 2.0**-50 * (above - below)).all():
             break
         before, falls = falls, slope < 0  # an end that stays twice loses half its weight
@@ -297,9 +298,9 @@ def _flat(problem: Problem, arc: Arc, start: Floats, end: Floats, q: Floats, w: 
 
 
 def _slope(
-    problem: Problem, arc: Arc, start: Floats, end: Floats, u: Floats, q: Floats, w: Floats
+    arc: Arc, start: Floats, end: Floats, u: Floats, q: Floats, w: Floats
 ) -> tuple[Floats, Floats]:
     """Points over chords, and the derivative of half the squared distance from q there."""
     u = np.broadcast_to(u, (len(start), u.shape[1]))
-    p, dp = _over_chords(problem, arc.boundary, start, end, u)
+    p, dp = _over_chords(arc, start, end, u)
     return p, _dot(w * w * (p - q), dp)

@@ -1,7 +1,8 @@
 """Scaling a polygon about a point until it is safe, and how far is far enough.
 
 Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
-the scale found is covered by triangles on each of which every form is shown to be positive.
+the scale found is covered by triangles on each of which every form is shown to be positive, and of
+bodies all forms of one of the tests that part them (`conditions`).
 """
 
 from __future__ import annotations
@@ -12,10 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.functions import clearance, margin_of
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
+from qbound.measures.conditions import Conditions, conditions
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
 
@@ -24,6 +27,9 @@ Floats = NDArray[np.float64]
 ROUNDS, PLACES = 14, 33
 MOST_TRIANGLES = 2_000_000
 """Triangles looked at before a proof gives up; the paper's polygon takes about a thousand."""
+
+MOST_VALUES = 2**22
+"""Values of forms that are held at once: some 32 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +47,8 @@ class SafeScale:
     edge : int
         Index of the edge (from vertex `edge` to the next) that touches.
     form : int
-        Index of the form that it touches; -1 where none binds below the scale searched.
+        Index of the form that it touches; after the forms come the pairs of convex parts, as in
+        `Contacts.boundaries`. -1 where none binds below the scale searched.
     """
 
     scale: float
@@ -52,9 +59,16 @@ class SafeScale:
 
 
 def largest_safe_scale(
-    vertices: ArrayLike, centre: ArrayLike, forms: Sequence[HarmonicForm], *, highest: float = 1.0
+    vertices: ArrayLike,
+    centre: ArrayLike,
+    forms: Sequence[HarmonicForm],
+    *,
+    highest: float = 1.0,
+    contacts: Contacts = NO_CONTACTS,
 ) -> SafeScale:
     """Return the largest scale up to which a polygon stays where every form is >= 0.
+
+    And where bodies keep apart. The joints' limits are not looked at.
 
     Parameters
     ----------
@@ -65,6 +79,8 @@ def largest_safe_scale(
     forms : sequence of HarmonicForm of two joints
     highest : float
         Scales above it are not searched.
+    contacts : Contacts, optional
+        Features of bodies that are to keep apart, as `Problem.contacts` has them.
 
     Raises
     ------
@@ -99,24 +115,28 @@ def largest_safe_scale(
     (0.5, -1)
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    stacked = _stacked(forms, g + highest * (p - g), g)
-    if not (stacked(g) > 0).all():
+    asked = _checked(forms, contacts, g + highest * (p - g), g)
+    if not (asked.together(asked.forms(g)) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
-    best = _coarse(stacked, p, g, highest)
+    best = _coarse(asked, p, g, highest)
     while True:
-        best = _touch(stacked, p, g, best, highest)
+        best = _touch(asked, p, g, best, highest)
         proved = best.scale * (1 - PROVED_SCALE)
-        witness = _violation(stacked, _fan(g + proved * (p - g), g))
+        witness = violation(asked, _fan(g + proved * (p - g), g))
         if witness is None:
             if best.form < 0:
                 return SafeScale(best.scale, proved, best.q, -1, -1)
-            q = _contact(forms[best.form], p, best)
+            q = _contact(asked.forms[best.row], p, best)
             return SafeScale(best.scale, proved, q, best.edge, best.form)
         best = _ray_through(p, g, witness)
 
 
 def first_exit(
-    forms: Sequence[HarmonicForm], centre: ArrayLike, rays: ArrayLike, highest: float = 1.0
+    forms: Sequence[HarmonicForm],
+    centre: ArrayLike,
+    rays: ArrayLike,
+    highest: float = 1.0,
+    contacts: Contacts = NO_CONTACTS,
 ) -> tuple[Floats, NDArray[np.intp]]:
     """Return how far along each ray every form stays positive, and which form stops it.
 
@@ -124,16 +144,21 @@ def first_exit(
     ----------
     rays : array_like, shape (n, 2)
         Joint values added to the centre at scale 1.
+    contacts : Contacts, optional
+        Of bodies that are to keep apart.
 
     Returns
     -------
     scale : ndarray, shape (n,)
-        The first zero of any form along ``centre + scale ray``, at most `highest`.
+        The first zero of any form along ``centre + scale ray``, or the first contact of bodies, at
+        most `highest`.
     form : ndarray of int, shape (n,)
-        Its index; -1 where none stops the ray.
+        Its index, as in `SafeScale`; -1 where none stops the ray.
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
-    return _exits(_stacked(forms, g + highest * rays, g), g, rays, highest)
+    asked = _checked(forms, contacts, g + highest * rays, g)
+    scales, stopped, _ = _exits(asked, g, rays, highest)
+    return scales, stopped
 
 
 def least(
@@ -194,13 +219,13 @@ def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, 
 # --- all forms at once ----------------------------------------------------------------------------
 
 
-def _stacked(forms: Sequence[HarmonicForm], points: Floats, centre: Floats) -> HarmonicForm:
-    """Return forms as one stack, if all is finite in the box around some points."""
-    kinds = forms[0].kinds if forms else ("revolute", "revolute")
-    table = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
-    stacked = HarmonicForm(table, kinds)
-    _refuse_infinite(stacked, np.vstack([points, centre]))
-    return stacked
+def _checked(
+    forms: Sequence[HarmonicForm], contacts: Contacts, points: Floats, centre: Floats
+) -> Conditions:
+    """Gather the conditions, if all is finite in the box around some points."""
+    asked = conditions(forms, contacts)
+    _refuse_infinite(asked.forms, np.vstack([points, centre]))
+    return asked
 
 
 def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
@@ -217,23 +242,34 @@ def _fan(p: Floats, g: Floats) -> Floats:
     return np.stack([np.broadcast_to(g, p.shape), p, np.roll(p, -1, axis=0)], axis=1)
 
 
-def _violation(forms: HarmonicForm, triangles: Floats) -> Floats | None:
-    """Return a point of the triangles at which a form is negative; None: shown to be nowhere."""
-    looked_at = 0
-    while len(triangles):
-        looked_at += len(triangles)
+def violation(asked: Conditions, cells: Floats) -> Floats | None:
+    """Return a point of some simplices that violates a condition; None: shown to be nowhere.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (N, k, 2)
+        Corners of triangles, or of segments.
+
+    Raises
+    ------
+    ArithmeticError
+        If subdivision comes to no end: a form touches zero along a line.
+    """
+    looked_at, step = 0, max(1, MOST_VALUES // (4 * max(1, *asked.forms.shape)))
+    while len(cells):
+        now, cells = cells[:step], cells[step:]
+        looked_at += len(now)
         if looked_at > MOST_TRIANGLES:
             raise ArithmeticError("subdivision comes to no end: a form is zero along a line")
-        least_values = forms(triangles).min(axis=-1, initial=np.inf)
-        if least_values.min() < 0:
-            return np.asarray(
-                triangles[np.unravel_index(least_values.argmin(), least_values.shape)]
-            )
-        bounds = second_order(forms, triangles)
-        doubtful = ~(bounds > 0).all(axis=1)
-        triangles, bounds = triangles[doubtful], bounds[doubtful]
-        if len(triangles):
-            triangles = halved(triangles, worst_edges(forms, triangles, bounds.argmin(axis=1)))
+        values = asked.together(asked.forms(now)).min(axis=-1, initial=np.inf)
+        if values.min() < 0:
+            return np.asarray(now[np.unravel_index(values.argmin(), values.shape)])
+        bounds = second_order(asked.forms, now)
+        doubtful = ~(asked.together(bounds) > 0).all(axis=1)
+        now, bounds = now[doubtful], bounds[doubtful]
+        if len(now):
+            _, row = asked.worst(bounds)
+            cells = np.concatenate([halved(now, worst_edges(asked.forms, now, row)), cells])
     return None
 
 
@@ -241,32 +277,37 @@ def _violation(forms: HarmonicForm, triangles: Floats) -> Floats | None:
 
 
 def _exits(
-    forms: HarmonicForm, g: Floats, rays: Floats, highest: float
-) -> tuple[Floats, NDArray[np.intp]]:
-    """Step along rays by what a bound of second order allows; the root is never jumped over."""
-    (m,) = forms.shape
+    asked: Conditions, g: Floats, rays: Floats, highest: float
+) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
+    """Step along rays by what a bound of second order allows; the root is never jumped over.
+
+    Return the scales, and which condition, and which form of it, stops each ray.
+    """
+    forms = asked.forms
     legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
     bend = np.maximum(bending(forms, legs, rays[:, None])[:, 0], 1e-300)
     noise = 2.0**-50 * forms.size(np.abs(legs).max(axis=(0, 1)))
-    s, rows = np.zeros((len(rays), m)), np.arange(m)
+    s, steps = np.zeros(len(rays)), np.zeros((len(rays), *forms.shape))
+    if not len(asked):
+        none = np.full(len(rays), -1)
+        return np.full(len(rays), highest), none, none
     for _ in range(400):
-        q = g + s[..., None] * rays[:, None]
-        value = forms(q)[:, rows, rows]
-        value = np.where(value <= noise, 0.0, value)
-        slope = np.einsum("nmj,nj->nm", forms.gradient(q)[:, rows, rows], rays)
+        q = g + s[:, None] * rays
+        found = forms(q)
+        value = np.where(found <= noise, 0.0, found)
+        slope = np.einsum("nmj,nj->nm", forms.gradient(q), rays)
         root = np.sqrt(slope**2 + 2 * bend * value)
         # (slope + root) / bend, without the difference of near numbers where it falls
-        step = np.where(
+        steps = np.where(
             slope > 0, (slope + root) / bend, 2 * value / np.maximum(root - slope, 1e-300)
         )
-        before, s = s, np.minimum(s + step, highest)
+        steps = np.where(found < -noise, 0.0, steps)
+        before, s = s, np.minimum(s + asked.together(steps).min(axis=1), highest)
         if (s - before <= 2.0**-50 * highest).all():
             break
-    if not m:
-        return np.full(len(rays), highest), np.full(len(rays), -1)
-    form = s.argmin(axis=1)
-    least_s = s.min(axis=1)
-    return least_s, np.where(least_s < highest, form, -1)
+    condition, row = asked.worst(steps)
+    stopped = s < highest
+    return s, np.where(stopped, condition, -1), np.where(stopped, row, -1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,20 +316,21 @@ class _Touch:
     q: Floats
     edge: int
     form: int
+    row: int
     low: float
     high: float
 
 
-def _coarse(forms: HarmonicForm, p: Floats, g: Floats, highest: float) -> _Touch:
+def _coarse(asked: Conditions, p: Floats, g: Floats, highest: float) -> _Touch:
     """Return the best of a few rays to every edge."""
-    tries = [_on_edge(forms, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
+    tries = [_on_edge(asked, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
     return min(tries, key=lambda touch: touch.scale)
 
 
-def _touch(forms: HarmonicForm, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
+def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
     """Narrow the place of an edge at which it touches first."""
     for _ in range(ROUNDS):
-        found = _on_edge(forms, p, g, best.edge, best.low, best.high, highest)
+        found = _on_edge(asked, p, g, best.edge, best.low, best.high, highest)
         best = found if found.scale <= best.scale else best
         if best.high - best.low < 1e-12 or found is not best:
             break
@@ -313,15 +355,16 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
 
 
 def _on_edge(
-    forms: HarmonicForm, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
+    asked: Conditions, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
 ) -> _Touch:
     t = np.linspace(low, high, PLACES)
     start, end = p[edge], p[(edge + 1) % len(p)]
     rays = start + t[:, None] * (end - start) - g
-    scales, stopped = _exits(forms, g, rays, highest)
+    scales, stopped, rows = _exits(asked, g, rays, highest)
     i = int(scales.argmin())
     nearby = float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])
-    return _Touch(float(scales[i]), g + scales[i] * rays[i], edge, int(stopped[i]), *nearby)
+    place, which = g + scales[i] * rays[i], (int(stopped[i]), int(rows[i]))
+    return _Touch(float(scales[i]), place, edge, *which, *nearby)
 
 
 def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:
@@ -334,4 +377,4 @@ def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:
     )[..., 0]
     edge = int(share.min(axis=1).argmax())
     t = float(share[edge, 1] / share[edge].sum())
-    return _Touch(np.inf, witness, edge, -1, max(t - 0.02, 0.0), min(t + 0.02, 1.0))
+    return _Touch(np.inf, witness, edge, -1, -1, max(t - 0.02, 0.0), min(t + 0.02, 1.0))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
-from qbound.measures.scaling import first_exit, least_along_edges
+from qbound.measures.conditions import Conditions, conditions
+from qbound.measures.scaling import first_exit, violation
 from qbound.region import Component, Problem
 from qbound.region.arcs import Arc
 from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
@@ -80,7 +81,8 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
     g = np.asarray(centre, dtype=float)
     if any(component.wraps):
         raise ValueError("a component that goes round a joint has no centre to scale it about")
-    if not (problem.forms(g) > 0).all():
+    asked = _conditions(problem)
+    if not (asked.together(asked.forms(g)) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
     arcs = [arc for loop in component.loops for arc in loop]
     found = [_least(problem, arc, g) for arc in arcs]
@@ -92,17 +94,25 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
     q = arcs[best].at([s])[0]
     if not hidden:
         return ExactScale(1.0, q, None, "", ())
-    return ExactScale(scale, g + scale * (q - g), arcs[best], problem.names[form], hidden)
+    names = (*problem.names, *problem.contacts.boundaries)
+    return ExactScale(scale, g + scale * (q - g), arcs[best], names[form], hidden)
+
+
+def _conditions(problem: Problem) -> Conditions:
+    return conditions(_forms(problem), problem.contacts)
+
+
+def _forms(problem: Problem) -> list[HarmonicForm]:
+    return [problem.forms[i] for i in range(len(problem.names))]
 
 
 def _least(problem: Problem, arc: Arc, g: Floats) -> tuple[float, float, int]:
     """Least scale at which a ray to the arc is stopped, the arc's parameter there, and the form."""
-    forms = [problem.forms[i] for i in range(len(problem.names))]
-    low, high = 0.0, 1.0
+    forms, low, high = _forms(problem), 0.0, 1.0
     n = (PLACES - 1) * len(arc.pieces.roots) + 1
     for _ in range(ROUNDS):
         s = np.linspace(low, high, n)
-        scales, stopped = first_exit(forms, g, arc.at(s) - g)
+        scales, stopped = first_exit(forms, g, arc.at(s) - g, contacts=problem.contacts)
         i = int(scales.argmin())
         low, high, n = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 17
         if scales[i] >= 1 - PROVED_SCALE or high - low < 1e-12:
@@ -141,7 +151,7 @@ def inner_polygon(problem: Problem, component: Component, n: int) -> list[Floats
     if n < 2:
         raise ValueError(f"a piece has at least its 2 ends, found {n}")
     rings = [
-        np.concatenate([corners for arc in loop for corners in _corners(problem, arc, n)])
+        np.concatenate([corners for arc in loop for corners in _corners(arc, n)])
         for loop in component.loops
     ]
     if not all(_within(problem, ring) for ring in rings):
@@ -156,20 +166,19 @@ def _within(problem: Problem, ring: Floats) -> bool:
             limits[0] - SAME_PLACE <= values.min() and values.max() <= limits[1] + SAME_PLACE
         ):
             return False
-    forms = [problem.forms[i] for i in range(len(problem.names))]
-    sizes = [ON_BOUNDARY * float(np.abs(form.coefficients).max()) for form in forms]
-    return all(
-        least_along_edges(form, ring, ON_BOUNDARY / 4)[0] >= -size
-        for form, size in zip(forms, sizes, strict=True)
-    )
+    found = _conditions(problem)
+    coefficients = found.forms.coefficients
+    slack = ON_BOUNDARY * np.abs(coefficients).max(axis=(1, 2), initial=0.0)
+    lifted = replace(found, forms=found.forms + slack)
+    return violation(lifted, np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)) is None
 
 
-def _corners(problem: Problem, arc: Arc, n: int) -> Iterator[Floats]:
+def _corners(arc: Arc, n: int) -> Iterator[Floats]:
     """Yield the start of an arc, then what stands for it: corners of tangents or points."""
-    if arc.boundary not in problem.names:
+    form = arc.form
+    if form is None:
         yield arc.points[:1]
         return
-    form = problem.forms[problem.names.index(arc.boundary)]
     marks = _inflections(form, arc)
     for low, high in pairwise(marks):
         parts = math.ceil((high - low) * len(arc.pieces.roots) - ON_BOUNDARY)

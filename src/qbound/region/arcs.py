@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.harmonic import HarmonicForm
 from qbound.printable import printable
 from qbound.region.plane import Plane, Root
 from qbound.tolerances import QUADRATURE, SAME_POINT
@@ -102,12 +103,15 @@ class Arc:
         What the arc is made of, the region on its left.
     feature : str
         Of two bodies, what touches: "corner 2 on edge 3", the first body's first.
+    row : int
+        Which form of the pieces' plane vanishes along it; negative at a joint limit.
     """
 
     boundary: str
     branch: int | None
     pieces: Pieces
     feature: str = ""
+    row: int = -1
 
     def __repr__(self) -> str:
         """Say in a line what it is part of and where it runs."""
@@ -120,6 +124,15 @@ class Arc:
     def label(self) -> tuple[str, str]:
         """Boundary and feature: where they change is a vertex."""
         return self.boundary, self.feature
+
+    @property
+    def form(self) -> HarmonicForm | None:
+        """What vanishes along it, largest coefficient 1; None at a joint limit.
+
+        Of two bodies it is the form of the feature that touches there, which says nothing of the
+        bodies elsewhere.
+        """
+        return self.pieces.plane.form(self.row) if self.row >= 0 else None
 
     @property
     def start(self) -> Floats:

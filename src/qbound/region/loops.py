@@ -85,7 +85,7 @@ class Layout:
         self._polish(rings)
         return [
             tuple(
-                Arc(name, branch, ring.pieces[span], self.features[form] if form >= 0 else "")
+                Arc(name, branch, ring.pieces[span], self.features[form] if form >= 0 else "", form)
                 for (name, branch, form), span in zip(ring.labels, ring.spans, strict=True)
             )
             for ring in rings

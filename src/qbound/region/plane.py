@@ -109,6 +109,11 @@ class Plane:
         tables = tables / np.where(largest > 0, largest, 1.0)
         return np.where(np.abs(tables) > NEGLIGIBLE, tables, 0.0)
 
+    def form(self, row: int) -> HarmonicForm:
+        """Return a row of `table` as a form of the joints in their own order."""
+        kinds, table = (self.base_kind, self.lift_kind), self.table[row]
+        return HarmonicForm(*((table, kinds) if self.base == 0 else (table.T, kinds[::-1])))
+
     @cached_property
     def sides(self) -> Floats:
         """Side conditions of all features, scaled, shape (f, 4, 3, 3)."""

@@ -115,18 +115,18 @@ def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
 
 def _exit(region: Fibres, a: Floats, b: Floats, n: int = 4097) -> Exit | None:
     """Return where the straight path leaves first, seen at n places of it and then bisected."""
+    compiled = region.problem.evaluator
 
-    def kept(t: Floats) -> NDArray[np.bool_]:
-        return np.asarray(region.problem.forms(a + t[:, None] * (b - a)) > 0)
+    def margins(t: Floats) -> Floats:
+        return compiled.margins(a + t[:, None] * (b - a))
 
     def inside(t: Floats) -> NDArray[np.bool_]:
-        return np.asarray(kept(t).all(axis=1))
+        return np.asarray((margins(t) >= 0).all(axis=1))
 
     t = np.linspace(0, 1, n)
     safe = inside(t)
     if safe.all():
         return None
-    row = int(safe.argmin())
+    row = max(int(safe.argmin()), 1)
     low, high = last_before(inside, t[[row - 1]], t[[row]])
-    name = region.problem.names[int(kept(high)[0].argmin())]
-    return Exit(a + low * (b - a), name)
+    return Exit(a + low * (b - a), compiled.names[int(margins(high)[0].argmin())])
