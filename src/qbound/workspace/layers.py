@@ -9,7 +9,7 @@ tell how long a part of the circle is reached in one posture, in both, safely or
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import pairwise
@@ -17,6 +17,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import nearest_turn
+from qbound.forms.harmonic import HarmonicForm
+from qbound.region import Problem
 from qbound.region.arcs import NODES, converged, legendre
 from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
@@ -28,6 +31,9 @@ Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]
 Slab = tuple[float, float]
 Measure = Callable[[Cover], Floats]
+
+MEETING = 1e-3
+"""Ends that are no nearer than this, in rad or beside the largest, do not meet there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +63,32 @@ class Layers:
         u = self.arm.distance_to_singularity(np.concatenate([*lines, self.square[1] or ()]))
         if self.arm.singularity is not None:
             farthest = math.pi if self.arm.kinds[1] == "revolute" else float(u.max())
+            u = _apart(np.concatenate([u, [0, farthest]]))
             problem = next(iter(self.sides.values())).problem
             ends = {*(problem.ranges[0] or ()), *(self.square[0] or ())}
-            crossing = crossing_distances(self.arm, problem.forms, sorted(ends), farthest)
-            u = np.concatenate([u, crossing, [0, farthest]])
-        u = np.sort(u)
-        return np.asarray(u[np.diff(u, prepend=-np.inf) > SAME_CRITICAL])
+            forms = _with_features(problem, self.sides.values())
+            crossing = crossing_distances(self.arm, forms, sorted(ends), farthest)
+            u = np.concatenate([u, *self._met(u, np.sort(crossing))])
+        return _apart(u)
+
+    def _met(self, lines: Floats, crossing: Floats) -> Iterator[Floats]:
+        """Yield of the distances of possible crossings those at which ends of both postures meet.
+
+        Two boundaries may cross where neither ends an interval; that costs a slab for nothing.
+        """
+        for near, far in pairwise(lines.tolist()):
+            u = crossing[(near < crossing) & (crossing < far)]
+            found = list(self._intervals(u, (near + far) / 2)) if len(u) else []
+            one, other = (
+                np.array([end for i in found if i.side == side for end in (i.low, i.high)])
+                for side in (1, -1)
+            )
+            if len(one) and len(other):
+                gaps = one[:, None] - other
+                period = self.arm.period
+                size = 1.0 if period else max(np.abs(one).max(), np.abs(other).max())
+                gaps = nearest_turn(gaps, 0) if period else gaps
+                yield u[(np.abs(gaps) < MEETING * size).any(axis=(0, 1))]
 
     def areas(self, *measures: Measure) -> list[float]:
         """Integrate lengths on every circle or line over the plane; length squared each.
@@ -148,6 +174,25 @@ class Layers:
         starts, stops = [first, *(i.high for i in fibre)], [*(i.low for i in fibre), last]
         for start, stop in zip(starts, stops, strict=True):
             yield Interval(side, UNSAFE, start, stop)
+
+
+def _apart(u: Floats) -> Floats:
+    """Return values ascending, without those that are the same but for rounding."""
+    u = np.sort(u)
+    return np.asarray(u[np.diff(u, prepend=-np.inf) > SAME_CRITICAL])
+
+
+def _with_features(problem: Problem, parts: Iterable[Fibres]) -> HarmonicForm:
+    """Return a problem's forms, and those of the features in which bodies touch on any fibre."""
+    touching = {
+        root.form - part.cells.plane.count
+        for part in parts
+        for cell in part.cells.cells
+        for root in (cell.lower, cell.upper)
+    }
+    rows = [row for row in sorted(touching) if row >= 0]
+    tables = [problem.forms.coefficients, problem.contacts.forms[rows]]
+    return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
 
 
 def _quadrature(density: Callable[[Floats, Slab], Floats], slab: Slab, n: int) -> Floats:

@@ -1,0 +1,241 @@
+"""Measures, scales, workspaces and exports of regions with bodies, against dense numbers."""
+
+import json
+from dataclasses import replace
+from importlib import resources
+
+import jsonschema
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from qbound import find_region
+from qbound.boundary.nearest import nearest_features
+from qbound.export.document import configuration_document, region_document
+from qbound.forms.angles import nearest_turn
+from qbound.geometry import polygon
+from qbound.measures.nearest import moments, nearest_boundary
+from qbound.measures.scaling import first_exit, largest_safe_scale
+from qbound.measures.star import exact_scale, inner_polygon
+from qbound.model.robotfile import load_robot
+from qbound.region import clearance_problem
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.fibres import find_fibres
+from qbound.workspace.passage import find_passage
+from qbound.workspace.planar import planar_arm, postures
+from support.scenes import random_scene
+
+TABLE_FILE = """
+schema = 1
+name = "Two links on a table"
+length_unit = "m"
+angle_unit = "deg"
+home = { q1 = 90, q2 = 0 }
+tool = "hand"
+collisions = "all"
+allowed = [["upper arm", "forearm"]]
+joint = [
+  { name = "q1", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, -1, 0], limits = [-20, 200] },
+  { name = "q2", type = "revolute", parent = "1", frame = "2", origin = [0.5, 0, 0], axis = [0, -1, 0], limits = [-150, 150] },
+]
+point = [{ name = "hand", frame = "2", at = [0.4, 0, 0] }]
+body = [
+  { name = "upper arm", frame = "1", capsule = { from = [0, 0, 0], to = [0.5, 0, 0], radius = 0.02 } },
+  { name = "forearm", frame = "2", polygon = [[0, -0.02], [0.4, -0.02], [0.4, 0.02], [0, 0.02]] },
+]
+obstacle = [
+  { name = "disc", disc = { at = [0.5, 0, 0.4], radius = 0.1 } },
+  { name = "crate", polygon = [[-0.7, 0.35], [-0.45, 0.35], [-0.45, 0.6], [-0.7, 0.6]] },
+]
+"""  # noqa: E501
+
+
+@pytest.fixture(scope="module")
+def region(tmp_path_factory):
+    """A table with a disc and a crate: one component, bounded on all sides."""
+    file = tmp_path_factory.mktemp("table") / "table.toml"
+    file.write_text(TABLE_FILE)
+    return find_region(load_robot(file))
+
+
+def arcs(region):
+    """All arcs of a region."""
+    return [arc for c in region.components for loop in c.loops for arc in loop]
+
+
+SCENES = [random_scene(seed, 4) for seed in range(4)]
+
+
+@pytest.mark.parametrize("robot", SCENES, ids=lambda robot: robot.name)
+def test_the_form_of_an_arc_vanishes_along_it_and_its_feature_is_what_touches(robot) -> None:
+    """Of all four kinds of arms; a corner that two parts share may have either part's name."""
+    found = find_region(robot)
+    boundaries = {boundary.name: boundary for boundary in robot.used}
+    seen = 0
+    for arc in arcs(found):
+        assert (arc.form is None) == (arc.boundary in found.limited)
+        if arc.form is not None:
+            assert_allclose(arc.form(arc.at(np.linspace(0, 1, 9))), 0, atol=1e-9)
+        if arc.feature and "part" not in arc.feature:
+            near = nearest_features(robot, boundaries[arc.boundary], arc.at([0.437])[0])
+            wall = near.features[1] == "edge"
+            assert arc.feature == (near.features[0] if wall else " on ".join(near.features))
+            seen += 1
+    assert seen or robot is SCENES[0]
+
+
+@pytest.mark.parametrize("robot", SCENES[:3], ids=lambda robot: robot.name)
+def test_the_nearest_boundary_point_is_that_of_a_thousand_points_an_arc(robot) -> None:
+    found = find_region(robot)
+    s = np.linspace(0, 1, 1001)
+    places = np.concatenate([arc.at(s) for arc in arcs(found)])
+    rounds = [limits is None for limits in found.problem.ranges]
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+    for q in np.random.default_rng(1).uniform(*ends.T, (4, 2)):
+        point = nearest_boundary(found, q)
+        gaps = np.where(rounds, nearest_turn(places - q, 0), places - q)
+        dense = np.hypot(*gaps.T).min()
+        assert dense - 2e-3 < point.distance <= dense + 1e-12
+        assert point.feature or point.boundary in found.limited
+        assert abs(found.margins(point.q).min()) < 1e-9
+
+
+def test_moments_are_those_of_a_grid(region) -> None:
+    component = region.home_component
+    found = moments(region.problem, component)
+    low, high = np.array([joint.limits for joint in region.robot.joints]).T
+    n = 300
+    axes = [a + (b - a) * (np.arange(n) + 0.5) / n for a, b in zip(low, high, strict=True)]
+    q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    inside = q[region.contains(q)]
+    assert len(region.components) == 1
+    assert found.area == pytest.approx(component.area, rel=1e-12)
+    assert found.area == pytest.approx(len(inside) * np.prod((high - low) / n), rel=5e-3)
+    assert_allclose(found.centroid, inside.mean(axis=0), atol=5e-3)
+    assert_allclose(found.second / found.area, np.cov(inside.T), atol=5e-3)
+
+
+CENTRES = ([1.5, 0.0], [0.1, 0.2], [2.6, -1.2])
+
+
+@pytest.mark.parametrize("centre", CENTRES)
+def test_a_ray_stops_at_the_first_contact_of_bodies(region, centre) -> None:
+    """Against the sign of the signed distance on a fine grid along each ray."""
+    rng, problem = np.random.default_rng(2), region.problem
+    angle = rng.uniform(0, 2 * np.pi, 12)
+    rays = 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    found, which = first_exit([], centre, rays, contacts=problem.contacts)
+    s = np.linspace(0, 1, 4001)
+    bodies = slice(0, len(region.robot.used))
+    for ray, scale, pair in zip(rays, found, which, strict=True):
+        values = region.margins(centre + s[:, None] * ray)[:, bodies]
+        negative = (values < 0).any(axis=1)
+        expected = s[negative.argmax()] if negative.any() else 1.0
+        assert expected - 3e-4 < scale < expected + 1e-9
+        if pair >= 0:
+            name = region.boundaries.index(problem.contacts.boundaries[pair])
+            assert abs(region.margins(centre + scale * ray)[name]) < 1e-9
+
+
+@pytest.mark.parametrize("centre", CENTRES)
+def test_the_largest_safe_scale_touches_and_what_is_below_is_safe(region, centre) -> None:
+    contacts = region.problem.contacts
+    corners = centre + np.array([[-1, -1], [1.2, -1], [1, 1], [-1, 0.5]])
+    found = largest_safe_scale(corners, centre, [], contacts=contacts)
+    t = np.linspace(0, 1, 150)[:, None]
+    edges = np.concatenate([a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)])
+    inside = centre + np.linspace(0, 1, 80)[:, None, None] * (edges - centre)
+    bodies = slice(0, len(region.robot.used))
+
+    def least(scale: float) -> float:
+        return float(region.margins(centre + scale * (inside - centre))[..., bodies].min())
+
+    assert 0 < found.scale < 1
+    assert least(found.proved) >= 0
+    assert least(1.01 * found.scale) < 0
+    column = region.boundaries.index(contacts.boundaries[found.form])
+    assert abs(region.margins(found.q)[column]) < 1e-9
+
+
+def test_bodies_that_overlap_at_the_centre_are_refused(region) -> None:
+    (q,) = np.radians([[20.0, 50.0]])
+    assert not region.contains(q)
+    with pytest.raises(ValueError, match="violated at the centre"):
+        largest_safe_scale(q + np.eye(2), q, [], contacts=region.problem.contacts)
+
+
+def test_the_exact_scale_keeps_every_arc_inside_and_is_the_largest(region) -> None:
+    fewer = replace(region.robot, obstacles=region.robot.obstacles[:1])
+    region, centre = find_region(fewer), np.array([1.5, 0.0])
+    found = exact_scale(region.problem, region.home_component, centre)
+    places = np.concatenate([arc.at(np.linspace(0, 1, 400)) for arc in arcs(region)])
+    assert not found.star_shaped
+    assert found.boundary in region.boundaries
+    assert region.contains(centre + (found.scale - 1e-7) * (places - centre)).all()
+    assert not region.contains(centre + (found.scale + 1e-3) * (places - centre)).all()
+
+
+def test_an_inner_polygon_keeps_the_bodies_apart(region) -> None:
+    rings = inner_polygon(region.problem, region.home_component, 9)
+    area = sum(polygon.area(ring) for ring in rings)
+    assert 0.98 * region.area < area < region.area
+    t = np.linspace(0, 1, 101)
+    for ring in rings:
+        edges = ring + t[:, None, None] * (np.roll(ring, -1, axis=0) - ring)
+        assert region.margins(edges).min() > -1e-8
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_a_workspace_is_that_of_drawn_places(seed) -> None:
+    """Each place's postures by inverse kinematics and the signed distance alone."""
+    robot = random_scene(seed, 3)
+    problem, arm = clearance_problem(robot), planar_arm(robot)
+    found = find_workspace(arm, problem, robot.home, every=True)
+    ranges = tuple(joint.limits for joint in robot.joints)
+    ends = [limits or (-np.pi, np.pi) for limits in ranges]
+    rng = np.random.default_rng(seed)
+    tried = np.asarray(arm.tool(rng.uniform(*np.transpose(ends), (500, 2))))
+    low, high = tried.min(axis=0), tried.max(axis=0)
+    places, count = rng.uniform(low, high, (600, 2)), []
+    for k, place in enumerate(places):
+        safe = {p.side for p in postures(arm, place, ranges) if problem.evaluator.feasible(p.q)}
+        count.append(len(safe))
+        if k < 50:
+            assert found.safe_postures(place) == len(safe)
+    for value, least in ((found.area, 1), (found.covered_twice, 2)):
+        share = np.mean(np.array(count) >= least)
+        size = np.prod(high - low)
+        error = size * np.sqrt(max(share * (1 - share), 1e-3) / len(places))
+        assert value == pytest.approx(share * size, abs=4 * error)
+
+
+def test_a_passage_names_the_bodies_that_the_straight_path_meets(region) -> None:
+    start, goal = np.radians([[90.0, 0.0], [20.0, 50.0]])
+    found = find_passage(find_fibres(region.problem, region.robot.home), start, goal)
+    assert not found.possible
+    assert found.exit is not None
+    assert found.exit.boundary == "forearm, disc"
+    column = region.boundaries.index("forearm, disc")
+    assert abs(region.margins(found.exit.q)[column]) < 1e-9
+
+
+def test_json_says_what_touches(region) -> None:
+    document = json.loads(json.dumps(region_document(region)))
+    schema = resources.files("qbound") / "schemas" / "region.schema.json"
+    jsonschema.validate(document, json.loads(schema.read_text()))
+    named = {arc["boundary"]: arc.get("feature") for c in document["components"] for loop in c["loops"] for arc in loop["arcs"]}
+    assert named["q1.lower"] is None
+    assert " on " in named["forearm, disc"]
+
+
+def test_a_configuration_names_bodies_and_features(region) -> None:
+    q = np.radians([20.0, 50.0])
+    found = configuration_document(region.robot, q.tolist())
+    worst = found["margins"][0]
+    assert worst["boundary"] == "forearm, disc"
+    assert worst["bodies"] == ["forearm", "disc"]
+    assert worst["features"] == ["edge 2", "corner 0"]
+    one, other = np.array(worst["places"])
+    assert worst["margin"] == pytest.approx(-np.linalg.norm(one - other), abs=1e-12)
+    assert " on " in found["nearest"]["feature"]
+    assert "features" not in found["margins"][-1]
