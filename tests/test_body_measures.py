@@ -143,7 +143,9 @@ def test_the_largest_safe_scale_touches_and_what_is_below_is_safe(region, centre
     corners = centre + np.array([[-1, -1], [1.2, -1], [1, 1], [-1, 0.5]])
     found = largest_safe_scale(corners, centre, [], contacts=contacts)
     t = np.linspace(0, 1, 150)[:, None]
-    edges = np.concatenate([a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)])
+    edges = np.concatenate(
+        [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)]
+    )
     inside = centre + np.linspace(0, 1, 80)[:, None, None] * (edges - centre)
     bodies = slice(0, len(region.robot.used))
 
@@ -223,7 +225,12 @@ def test_json_says_what_touches(region) -> None:
     document = json.loads(json.dumps(region_document(region)))
     schema = resources.files("qbound") / "schemas" / "region.schema.json"
     jsonschema.validate(document, json.loads(schema.read_text()))
-    named = {arc["boundary"]: arc.get("feature") for c in document["components"] for loop in c["loops"] for arc in loop["arcs"]}
+    named = {
+        arc["boundary"]: arc.get("feature")
+        for c in document["components"]
+        for loop in c["loops"]
+        for arc in loop["arcs"]
+    }
     assert named["q1.lower"] is None
     assert " on " in named["forearm, disc"]
 
@@ -233,7 +240,7 @@ def test_a_configuration_names_bodies_and_features(region) -> None:
     found = configuration_document(region.robot, q.tolist())
     worst = found["margins"][0]
     assert worst["boundary"] == "forearm, disc"
-    assert worst["bodies"] == ["forearm", "disc"]
+    assert worst["between"] == ["forearm", "disc"]
     assert worst["features"] == ["edge 2", "corner 0"]
     one, other = np.array(worst["places"])
     assert worst["margin"] == pytest.approx(-np.linalg.norm(one - other), abs=1e-12)
