@@ -17,7 +17,11 @@ from qbound.geometry import polygon
 from qbound.measures.nearest import moments, nearest_boundary
 from qbound.measures.scaling import first_exit, largest_safe_scale
 from qbound.measures.star import exact_scale, inner_polygon
+from qbound.model.robot import Body, Disc
 from qbound.model.robotfile import load_robot
+from qbound.paths.encounters import boundaries, least_margin
+from qbound.paths.route import plan_route
+from qbound.paths.traversal import traverse
 from qbound.region import clearance_problem
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.fibres import find_fibres
@@ -246,3 +250,43 @@ def test_a_configuration_names_bodies_and_features(region) -> None:
     assert worst["margin"] == pytest.approx(-np.linalg.norm(one - other), abs=1e-12)
     assert " on " in found["nearest"]["feature"]
     assert "features" not in found["margins"][-1]
+
+
+def test_a_needle_between_two_rows_of_a_path_is_met(region) -> None:
+    """A disc of 10 micrometres that only the corners of the hand sweep, in a thousandth rad."""
+    at = 0.9002 * np.array([np.cos(1.0), 0, np.sin(1.0)])
+    needle = Body("needle", "0", Disc(at, 1e-5))
+    robot = replace(region.robot, obstacles=(needle,))
+    path = traverse(robot, np.radians([[0.0, 0.0], [180.0, 0.0], [180.0, 90.0]]), deviation=1.0)
+    met = {b.name: least_margin(path, b) for b in boundaries(find_region(robot))}
+    found = met["forearm, needle"]
+    assert found.leaves is not None
+    # From where a corner at hypot(0.9, 0.02) comes to where the edge x = 0.9 of the hand does.
+    assert 1 - np.arcsin(0.02002 / 0.9002) < found.leaves.q[0] < 1 - np.arccos(0.9 / 0.9002)
+    assert abs(found.boundary.margin(found.leaves.q[None])[0]) < 2e-9
+    before = path.at(np.linspace(0, found.leaves.s, 20001))
+    assert found.boundary.margin(before).min() > -2e-9
+    everywhere = found.boundary.margin(path.at(np.linspace(0, 2, 40001)))
+    assert found.value <= everywhere.min() + 1e-12
+    assert found.value == pytest.approx(everywhere.min(), abs=1e-6)
+    assert met["upper arm, needle"].leaves is None
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_margin_of_bodies_changes_no_faster_than_its_largest_speed(seed) -> None:
+    robot = random_scene(seed, 3)
+    rng = np.random.default_rng(seed)
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+    q = rng.uniform(*ends.T, (500, 2))
+    steps = rng.normal(size=q.shape) * 0.05
+    for boundary in boundaries(find_region(robot)):
+        if boundary.speeds is not None:
+            change = np.abs(boundary.margin(q + steps) - boundary.margin(q))
+            assert (change <= np.abs(steps) @ boundary.speeds + 1e-12).all()
+            assert (change > 0.1 * np.abs(steps) @ boundary.speeds).any()
+
+
+def test_a_route_along_arcs_of_bodies_keeps_to_them(region) -> None:
+    found = plan_route(region, [1, 2, 3], along="arcs", deviation=0.01)
+    for boundary in boundaries(region):
+        assert least_margin(found.path, boundary).leaves is None

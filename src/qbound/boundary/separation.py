@@ -260,6 +260,27 @@ class Separation:
         return sizes
 
 
+def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
+    """Return how fast the margin of a boundary about bodies changes at most, shape (joints,).
+
+    A length for each unit of a joint: seen from the nearer body no place of the other moves faster
+    than its distance from the joint's axis, for a slide by 1; and a signed distance changes by no
+    more than a body moves. ValueError as in `Separation`.
+    """
+    if not bounds_bodies(boundary):
+        raise ValueError(f"{boundary.name}: it is about points, not about bodies")
+    bodies = sorted(bounded_bodies(robot, boundary), key=lambda body: robot.depth(body.frame))
+    far, last = bodies[-1], robot.depth(bodies[-1].frame)
+    first = robot.depth(bodies[0].frame) if len(bodies) == 2 else 0
+    poses, speeds = PlanePoses(robot), np.zeros(len(robot.joints))
+    corners = max(float(np.linalg.norm(p.corners, axis=-1).max()) for p in far.parts)
+    for j in range(first, last):
+        speeds[j] = poses.length(j + 1, last) + corners if robot.joints[j].turns else 1.0
+    if isinstance(boundary, HalfSpace):
+        speeds *= float(np.linalg.norm(boundary.normal))
+    return speeds
+
+
 def _part_pairs(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[PartPairs]:
     """Yield the pairs of parts of all pairs of bodies, those of equal frames and sizes together."""
     found = defaultdict(list)

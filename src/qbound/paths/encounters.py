@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from qbound.boundary.evaluator import Evaluator, evaluator
 from qbound.boundary.functions import position
+from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.separation import largest_speeds
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import crossing_pieces
 from qbound.model.robot import Robot
-from qbound.paths.traversal import Traversal
+from qbound.paths.traversal import Leg, Traversal
 from qbound.region import Region
 from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.units import joint_units
@@ -27,6 +29,9 @@ Floats = NDArray[np.float64]
 Form = Callable[[Floats], Floats]
 
 ROWS_OF_A_LEG = 65
+MOST_PLACES = 2**14
+NEARLY_LOWEST = 1e-6
+"""Of the size of a margin: the lowest place is not mistaken for one this much higher."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +47,15 @@ class MarginFunction:
         Joint values, shape (k, n), to margins, shape (k,).
     scale : float
         Size of the lengths or angles that the margin is a difference of: its rounding.
+    speeds : ndarray, shape (n,), optional
+        The margin changes by no more, for a unit of each joint; None where nothing is known.
     """
 
     name: str
     unit: str
     margin: Form
     scale: float
+    speeds: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,23 +180,36 @@ def boundaries(region: Region) -> list[MarginFunction]:
     lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
     sizes = compiled.sizes.tolist()
     columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes, strict=True))
+    speeds = {b.name: largest_speeds(robot, b) for b in robot.used if bounds_bodies(b)}
     return [
-        MarginFunction(name, unit, _column(compiled, k), size) for k, (name, unit, size) in columns
+        MarginFunction(name, unit, _column(compiled, k), size, speeds.get(name))
+        for k, (name, unit, size) in columns
     ]
 
 
 def least_margin(path: Traversal, boundary: MarginFunction) -> Margin:
-    """Find the smallest margin along a path, and where the path leaves if it does."""
-    value, place = lowest(path, boundary.margin)
-    return Margin(boundary, value, place, _leaves(path, boundary, place.s))
+    """Find the smallest margin along a path, and where the path leaves if it does.
+
+    Of bodies no contact hides between two rows of a straight leg: their margin has a largest speed.
+    """
+    grid = _grid(path) if boundary.speeds is None else _close_grid(path, boundary)
+    value, place = lowest(path, boundary.margin, grid)
+    return Margin(boundary, value, place, _leaves(path, boundary, grid, place.s))
 
 
-def lowest(path: Traversal, function: Form) -> tuple[float, ParameterPoint]:
+def lowest(
+    path: Traversal, function: Form, grid: Floats | None = None
+) -> tuple[float, ParameterPoint]:
     """Return the smallest value of a function of the joint values along a path, and its place.
 
     The smallest row is the start; the interval around it is divided again until it is a point.
+
+    Parameters
+    ----------
+    grid : ndarray, shape (k,), optional
+        Places that are looked at first; default the rows, and 64 even parts of each leg.
     """
-    s, found = _grid(path), list[tuple[float, float]]()
+    s, found = _grid(path) if grid is None else grid, list[tuple[float, float]]()
     for _ in range(13):
         values = function(path.at(s))
         i = int(values.argmin())
@@ -198,13 +219,15 @@ def lowest(path: Traversal, function: Form) -> tuple[float, ParameterPoint]:
     return value, _place(path, at)
 
 
-def _leaves(path: Traversal, boundary: MarginFunction, least: float) -> ParameterPoint | None:
+def _leaves(
+    path: Traversal, boundary: MarginFunction, grid: Floats, least: float
+) -> ParameterPoint | None:
     """First place at which the margin is negative beyond rounding; `least`: where it is least."""
 
     def inside(s: Floats) -> NDArray[np.bool_]:
         return np.asarray(boundary.margin(path.at(s)) >= -ON_BOUNDARY * boundary.scale)
 
-    grid = np.sort(np.append(_grid(path), least))
+    grid = np.sort(np.append(grid, least))
     kept = inside(grid)
     if kept.all():
         return None
@@ -225,6 +248,40 @@ def _grid(path: Traversal) -> Floats:
     """Rows of the path, and at least so many a leg that no turn hides between two of them."""
     even = np.arange(len(path.legs) * (ROWS_OF_A_LEG - 1) + 1) / (ROWS_OF_A_LEG - 1)
     return np.asarray(np.unique(np.concatenate([path.s, even])))
+
+
+def _close_grid(path: Traversal, boundary: MarginFunction) -> Floats:
+    """Return places so close that none between two of them can be outside first, or the lowest.
+
+    Between two places the margin falls below their mean by half of what its speed allows at most.
+    Legs that are not straight keep their rows; so does what `MOST_PLACES` do not suffice for, as
+    where bodies slide along each other.
+    """
+    s = _grid(path)
+    values = boundary.margin(path.at(s))
+    speeds = np.array([_speed(leg, boundary) for leg in path.legs])
+    outside, slack = ON_BOUNDARY * boundary.scale, NEARLY_LOWEST * boundary.scale
+    while len(s) < MOST_PLACES:
+        middle, width = (s[:-1] + s[1:]) / 2, np.diff(s)
+        least = (values[:-1] + values[1:] - speeds[middle.astype(int)] * width) / 2
+        left = values < -outside
+        first = s[left.argmax()] if left.any() else np.inf
+        doubtful = (least < values.min() - slack) | ((least < -outside) & (s[1:] <= first))
+        doubtful &= (speeds[middle.astype(int)] > 0) & (width > SAME_PLACE)
+        if not doubtful.any():
+            break
+        s = np.concatenate([s, middle[doubtful]])
+        values = np.concatenate([values, boundary.margin(path.at(middle[doubtful]))])
+        order = np.argsort(s)
+        s, values = s[order], values[order]
+    return s
+
+
+def _speed(leg: Leg, boundary: MarginFunction) -> float:
+    """Return the most that a margin changes along a leg, a unit of its parameter; 0: not known."""
+    if leg.rates is None or boundary.speeds is None:
+        return 0.0
+    return float(leg.rates @ boundary.speeds)
 
 
 def _stops_at(path: Traversal, s: float) -> bool:

@@ -33,11 +33,14 @@ class Leg:
         none is known, as on an arc.
     parts : int
         Equal parts of [0, 1] on each of which the leg is smooth.
+    rates : ndarray, shape (n,), optional
+        How far each joint goes, rad or length, where all go at a constant rate.
     """
 
     at: Curve
     bend: float | None = None
     parts: int = 2
+    rates: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +191,8 @@ def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:
     sum of the links, so the bound is the sum of theirs.
     """
     a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    return Leg(lambda s: (1 - s)[:, None] * a + s[:, None] * b, _bend(robot, a, b))
+    rates = np.abs(b - a)
+    return Leg(lambda s: (1 - s)[:, None] * a + s[:, None] * b, _bend(robot, a, b), rates=rates)
 
 
 def reach(robot: Robot, q: ArrayLike) -> Floats:
