@@ -97,6 +97,15 @@ def test_a_corner_within_rounding_of_its_edge_is_on_it() -> None:
     assert found == [[4], [3], [3], [3], [3, 3]]
 
 
+def test_exact_parts_know_no_rounding() -> None:
+    """The last bit of a double decides; a cross product of doubles is 0 here."""
+    found = []
+    for last in (np.nextafter(2e9, 3e9), 2e9, np.nextafter(2e9, 0)):
+        corners = [[0.0, 0.0], [1e9, 1e9], [2e9, last], [0.0, 2e9]]
+        found.append([len(part) for part in convex_parts(corners, exact=True)])
+    assert found == [[4], [3], [3, 3]]
+
+
 @given(st.floats(0, 7), st.lists(st.integers(1, 3), min_size=6, max_size=6))
 def test_corners_typed_along_turned_edges_leave_no_splinters(angle, counts) -> None:
     """An L with corners on its edges, whose last bits are off where it is turned."""

@@ -8,7 +8,7 @@ user's corners may be rounded by is stated in one place.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -60,7 +60,7 @@ def polygon_fault(corners: ArrayLike) -> str | None:
     return None
 
 
-def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
+def convex_parts(corners: ArrayLike, *, exact: bool = False) -> tuple[Loop, ...]:
     """Cut a simple polygon into strictly convex parts that together are exactly the polygon.
 
     A corner within rounding (2^-38 of the polygon's size) of a straight edge counts as on it. Ears
@@ -71,6 +71,8 @@ def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
     ----------
     corners : array_like, shape (m, 2)
         Of a simple polygon (`polygon_fault` tells), either way round.
+    exact : bool
+        Whether no corner is taken to lie on an edge but those that do.
 
     Returns
     -------
@@ -91,6 +93,7 @@ def convex_parts(corners: ArrayLike) -> tuple[Loop, ...]:
     if (fault := polygon_fault(corners)) is not None:
         raise ValueError(f"no simple polygon: {fault}")
     outline = _outline(corners)
+    outline = replace(outline, slack=0) if exact else outline
     loop = _bends(outline, range(len(outline.at)))
     if _doubled_area([outline.at[i] for i in loop]) < 0:
         loop = loop[::-1]

@@ -33,7 +33,7 @@ def cut(corners: Sequence[Corner]) -> list[list[int]]:
     whole = in_whole_numbers(corners)
     if max(abs(x) for corner in whole for x in corner) > LARGEST_WHOLE:
         raise ValueError("an outline whose decimals are too long to be cut into convex parts")
-    parts = [_with_straight_corners(whole, part) for part in convex_parts(whole)]
+    parts = [_with_straight_corners(whole, part) for part in convex_parts(whole, exact=True)]
     return parts if turns_left(whole) else [part[::-1] for part in parts]
 
 
