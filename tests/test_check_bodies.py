@@ -9,6 +9,7 @@ import random
 import resource
 import subprocess
 import sys
+import tomllib
 from functools import cache
 from pathlib import Path
 
@@ -17,6 +18,8 @@ import pytest
 from jsonschema import validate
 
 from qbound import check
+from qbound.boundary.evaluator import evaluator
+from qbound.model.robotfile import load_robot, parse_robot, robot_text
 from qbound.proofs import certify as proving
 from qbound.proofs import check_arb, features, parts, separating, statements
 from support import arms_in_planes, brute_force
@@ -156,6 +159,24 @@ def test_arms_of_all_kinds_are_proved_and_refuted(kinds, kind):
         assert agreed(answer.text) == answer.verdict == verdict
         assert brute_force.tells_the_truth(answer.text)
         validate(json.loads(answer.text), schema)
+
+
+@pytest.mark.parametrize(("scale", "verdict"), [(0.96, "proved"), (1, "refuted")])
+def test_the_whole_bodies_of_the_papers_robot_are_proved_on_its_scaled_polygon(scale, verdict):
+    text, _ = robot_text("minervabot-v2-bodies")
+    answer = proving.certify(text, statements.home_polygon(parse_robot(tomllib.loads(text)), scale))
+    assert agreed(answer.text) == answer.verdict == verdict
+    assert brute_force.tells_the_truth(answer.text)
+
+
+def test_no_chord_of_an_inner_polygon_leaves_the_region_of_bodies():
+    """Arcs of features bend into the region; chords are halved until they stay beside it."""
+    robot = load_robot("two-links-on-a-table")
+    margins, steps = evaluator(robot).margins, np.linspace(0, 1, 30)[:, None, None]
+    for loop in statements.inner_polygon(robot, 0.01)["points"]:
+        q = np.radians(np.array(loop, dtype=float))
+        chords = (1 - steps) * q + steps * np.roll(q, -1, axis=0)
+        assert margins(chords).min() > 0
 
 
 KINDS = ("RR", "RP", "PR", "PP")

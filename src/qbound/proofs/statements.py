@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.bending import second_order
-from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.proofs import grammar, unrolled
@@ -26,7 +25,7 @@ from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
 from qbound.region.arcs import Arc
 from qbound.region.loops import behind
-from qbound.region.problem import clearance_problem
+from qbound.region.problem import Problem, clearance_problem
 
 Floats = NDArray[np.float64]
 Statement = dict[str, Any]
@@ -35,6 +34,9 @@ Point = list[str]
 DIGITS = 12
 """Decimals that are written: a hundred times finer than a double resolves a turn in degrees."""
 
+
+ON_CHORD = 7
+"""Points of a chord at which bodies are looked at."""
 
 ON_LIMIT = 1e-9
 """What is this near to a joint's limit, rad or length, lies on it."""
@@ -223,7 +225,7 @@ def inner_polygon(
     _check_inset(asked, inset, held)
     component = _home(with_extra_clearance(asked, inset), held)
     halfway = clearance_problem(with_extra_clearance(asked, inset / 2), held)
-    loops = [_traced(loop, per_arc, halfway.forms) for loop in component.loops]
+    loops = [_traced(loop, per_arc, halfway) for loop in component.loops]
     corners = sum(map(len, loops))
     if corners > grammar.MOST_POINTS:
         raise ValueError(f"an inset of {inset:g} takes {corners} corners: ask for a larger one")
@@ -312,12 +314,12 @@ def _corners(loop: Sequence[Any]) -> Floats:
     return np.array(found).reshape(-1, 2)
 
 
-def _traced(loop: Sequence[Arc], per_arc: int, halfway: HarmonicForm) -> Floats:
+def _traced(loop: Sequence[Arc], per_arc: int, halfway: Problem) -> Floats:
     """Return points of a loop whose chords keep all forms; the first is not repeated."""
     return np.concatenate([_points_of(arc, per_arc, halfway)[:-1] for arc in loop])
 
 
-def _points_of(arc: Arc, per_arc: int, halfway: HarmonicForm) -> Floats:
+def _points_of(arc: Arc, per_arc: int, halfway: Problem) -> Floats:
     """Choose points of an arc, its ends included, and halve each chord that may leave the forms."""
     straight = np.array(arc.pieces.straight())
     s, parts = _first_points(straight, per_arc), len(straight)
@@ -325,10 +327,20 @@ def _points_of(arc: Arc, per_arc: int, halfway: HarmonicForm) -> Floats:
         q = arc.at(s)
         chords = np.stack([q[:-1], q[1:]], axis=1)
         curved = ~straight[((s[:-1] + s[1:]) / 2 * parts).astype(int)]
-        bad = np.flatnonzero(curved & (second_order(halfway, chords) <= 0).any(axis=1))
+        bad = np.flatnonzero(curved & _may_leave(halfway, chords))
         if not len(bad) or len(s) > grammar.MOST_POINTS:
             return q
         s = np.insert(s, bad + 1, (s[bad] + s[bad + 1]) / 2)
+
+
+def _may_leave(halfway: Problem, chords: Floats) -> NDArray[np.bool_]:
+    """Tell which chords may leave the region: by a bound of all forms, of bodies by some points."""
+    left = (second_order(halfway.forms, chords) <= 0).any(axis=1)
+    if halfway.evaluator.bodies is not None:
+        weights = np.linspace(0, 1, ON_CHORD + 2)[1:-1, None, None]
+        places = (1 - weights) * chords[:, 0] + weights * chords[:, 1]
+        left |= (halfway.evaluator.bodies.margins(places) < 0).any(axis=(0, 2))
+    return np.asarray(left)
 
 
 def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
