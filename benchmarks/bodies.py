@@ -29,9 +29,9 @@ def among(count: int, seed: int) -> Robot:
     blocks = []
     for i in range(count):
         angle, far = rng.uniform(0, 2 * np.pi), rng.uniform(0.3, 1.0)
-        place = far * np.array([np.cos(angle), 0.0, np.sin(angle)])
+        place = far * np.array([np.cos(angle), np.sin(angle), 0.0])
         turns = np.sort(rng.uniform(0, 2 * np.pi, 5))
-        round_it = np.stack([np.cos(turns), np.zeros(5), np.sin(turns)], axis=1)
+        round_it = np.stack([np.cos(turns), np.sin(turns), np.zeros(5)], axis=1)
         disc = Disc(place, rng.uniform(0.02, 0.06))
         shape = disc if rng.random() < 0.5 else Polygon(place + rng.uniform(0.03, 0.1) * round_it)
         blocks.append(Body(f"obstacle {i}", arm.base, shape))
