@@ -199,7 +199,10 @@ def wanted(name: str) -> str:
 
 
 def install_lock() -> None:
-    """Install with uv where there is one (it is faster), else, or where it fails, with pip."""
+    """Install with uv where there is one (it is faster), else, or where it fails, with pip.
+
+    Nothing is compiled before it is imported: most of what the tools bring never is.
+    """
     title = "Installing the packages of requirements.lock (once; a minute or so)"
     options = ["--require-hashes", "--requirement", LOCK]
     uv = shutil.which("uv")
@@ -207,7 +210,7 @@ def install_lock() -> None:
         command = [uv, "pip", "install", "--quiet", "--python", in_venv("python"), *options]
         if call(title, command, quiet=True) == 0:
             return
-    must(title, [*pip(VENV), *options], quiet=True)
+    must(title, [*pip(VENV), "--no-compile", *options], quiet=True)
 
 
 def make_venv(place: Path) -> None:
@@ -593,7 +596,8 @@ def test(*arguments: str) -> int:
         make_book()
     say(f"The book: {FRONT_PAGE.as_uri()}")
     # Nothing is said after pytest: its summary is the last line.
-    command = [in_venv("python"), "-m", "pytest", "-n", "2", *arguments]
+    # Each of the two begins with half of the files, and takes from the other when it has done.
+    command = [in_venv("python"), "-m", "pytest", "-n", "2", "--dist", "worksteal", *arguments]
     return subprocess.call(command, cwd=ROOT, env=environment())
 
 

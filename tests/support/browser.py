@@ -188,6 +188,22 @@ def eventually(page: Any, question: Callable[[], bool]) -> None:
         settle(page)
 
 
+def broken_rules(page: Any, context: Any = None, **options: Any) -> list[tuple[str, list[str]]]:
+    """Ask axe; return the rules of accessibility that a page breaks, and where it does.
+
+    What a page keeps to is not written out: that takes longer than to find it.
+    """
+    from axe_playwright_python.sync_playwright import Axe
+
+    options = {"resultTypes": ["violations"], "preload": False} | options
+    answer = Axe().run(page, context=context, options=options).response
+    assert answer["passes"]
+    return [
+        (rule["id"], [node["html"][:120] for node in rule["nodes"]])
+        for rule in answer["violations"]
+    ]
+
+
 def open_page(page: Any, name: str) -> None:
     """Open a page of the book and wait until its formulas are typeset."""
     file = HTML / name

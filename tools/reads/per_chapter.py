@@ -1,7 +1,8 @@
 """For pytest, in the run that executes the chapters: each gets a folder of its own.
 
 It holds the results that the chapter writes, in ``reads`` what its process read, and ``ran`` when
-all is done and written. If ``run.py`` is killed, this run ends too.
+all is done and written. If ``run.py`` is killed, this run ends too. ``QBOUND_TWICE`` names chapters
+whose cells run twice (docs/decisions/0481).
 """
 
 import os
@@ -11,6 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import twice
+from nbclient import NotebookClient
 
 
 @pytest.hookimpl(wrapper=True)
@@ -30,8 +33,16 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     Path(os.environ["QBOUND_MADE"], item.path.stem, "ran").touch()
 
 
+def is_run_twice() -> bool:
+    """Tell whether the chapter that is being executed is one whose cells run twice."""
+    name = Path(os.environ["QBOUND_RESULTS"]).name.partition("_")[2]
+    return name in os.environ.get("QBOUND_TWICE", "").split()
+
+
 def pytest_configure() -> None:
     """Watch the process that started this one: run.py, or for a worker the run; kernels do so."""
+    execute = NotebookClient.async_execute_cell
+    NotebookClient.async_execute_cell = twice.twice(execute, is_run_twice)
     threading.Thread(target=end_with, args=[os.getppid()], daemon=True).start()
 
 
