@@ -18,6 +18,6 @@ gc.set_threshold(50_000, 20, 50)
 
 # On a busy machine nothing is too slow.
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
-settings.register_profile("steady", **PATIENT, max_examples=40, derandomize=True)
+settings.register_profile("steady", **PATIENT, max_examples=25, derandomize=True)
 settings.register_profile("explore", **PATIENT, max_examples=1000)
 settings.load_profile("steady")

@@ -393,6 +393,7 @@ def test_a_card_is_not_printed(page):
 def test_a_card_breaks_no_rule_of_accessibility(page, theme):
     page.emulate_media(color_scheme=theme)
     open_page(page, THEOREM_2)
+    page.evaluate(THIN)
     page.locator("article p > a[href$='#tab-6']").first.hover()
     page.locator(CARD).wait_for()
     eventually(page, lambda: typeset(page))

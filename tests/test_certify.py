@@ -546,12 +546,13 @@ def test_without_a_fault_the_checkers_agree_with_the_search():
 
 VERDICTS = """
 import ctypes
+import sys
 from qbound.proofs import statements
 from qbound.proofs.certify import certify
 from qbound.model.robotfile import robot_text
 text, _ = robot_text("minervabot-v2")
 boxes = [(["-20", "-80"], ["30", "-40"], "0"), (["-60", "-140"], ["40", "20"], "0")]
-for mode in (0x000, 0x400, 0x800, 0xC00):
+for mode in map(int, sys.argv[1:]):
     ctypes.CDLL("libm.so.6").fesetround(mode)
     print([str(certify(text, statements.box(*box)).verdict) for box in boxes])
 """
@@ -562,12 +563,12 @@ def test_the_verdict_is_the_same_in_all_rounding_modes_and_with_two_threads():
     if os.uname().machine != "x86_64":
         pytest.skip("the modes have other numbers elsewhere")
     found = []
-    for threads in ("1", "2"):
+    for threads, modes in (("1", [0x000, 0x400, 0x800, 0xC00]), ("2", [0x000])):
         env = os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads}
-        command = [sys.executable, "-c", VERDICTS]
+        command = [sys.executable, "-c", VERDICTS, *map(str, modes)]
         done = subprocess.run(command, env=env, check=True, capture_output=True, text=True)
         found += done.stdout.splitlines()
-    assert found == ["['proved', 'refuted']"] * 8
+    assert found == ["['proved', 'refuted']"] * 5
 
 
 # --- z3 -------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
@@ -103,6 +103,7 @@ def test_symbols_and_numbers_agree(form, data) -> None:
     assert_allclose(value, form(q), **tolerance(form))
 
 
+@settings(max_examples=12)  # SymPy takes a second for a large one
 @given(forms(stack=(2,)), st.data())
 def test_a_form_takes_symbols_as_it_takes_numbers(form, data) -> None:
     """Value, gradient and restriction of symbols are SymPy's own, with numbers put in."""

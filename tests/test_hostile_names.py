@@ -13,6 +13,8 @@ import io
 import json
 import re
 import unicodedata
+from dataclasses import replace
+from functools import cache
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
@@ -22,13 +24,12 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from qbound import find_region, load_robot, save_robot
+from qbound import Region, find_region, load_robot, save_robot
 from qbound.cli import main
 from qbound.explorer.page import explore, explorer_page
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.printable import printable
-from support.browser import refuse_remote, settle
 from support.oracles import packaged_table
 
 KINDS = ("joint", "point", "boundary")
@@ -70,7 +71,7 @@ NAMES = {
     "letters": "Größe 肩関節 θ",
 }
 
-PACKS = [list(NAMES.values())[i : i + 5] for i in range(0, len(NAMES), 5)]
+PACKS = [tuple(NAMES.values())[i : i + 5] for i in range(0, len(NAMES), 5)]
 """Five names a robot, for what takes long: each is a boundary's, a point's and a part of a line."""
 
 
@@ -101,12 +102,28 @@ def name(request, tmp_path, monkeypatch) -> str:
 
 
 @pytest.fixture(params=PACKS, ids=range(len(PACKS)))
-def robot(request, tmp_path, monkeypatch) -> Robot:
+def pack(request) -> tuple[str, ...]:
+    return request.param
+
+
+@pytest.fixture
+def robot(pack, tmp_path, monkeypatch) -> Robot:
     """A robot with five of the names, which the working directory has as a file."""
     monkeypatch.chdir(tmp_path)
-    robot = parse_robot(hostile(*request.param))
+    robot = parse_robot(hostile(*pack))
     save_robot(robot, "arm.toml")
     return robot
+
+
+@cache
+def region_of(names: tuple[str, ...]) -> Region:
+    return find_region(parse_robot(hostile(*names)))
+
+
+@pytest.fixture
+def region(pack) -> Region:
+    """The region of the robot with these names."""
+    return region_of(pack)
 
 
 def harmless(text: str) -> bool:
@@ -235,23 +252,23 @@ def test_every_picture_is_drawn_and_its_names_are_text(capsys, robot, line) -> N
 
 @pytest.mark.filterwarnings("ignore:Glyph")
 @pytest.mark.parametrize("kind", ["pdf", "png", "eps"])
-def test_a_plot_of_ones_own_is_saved_in_every_format(robot, kind) -> None:
+def test_a_plot_of_ones_own_is_saved_in_every_format(region, kind) -> None:
     figure, buffer = Figure(), BytesIO()
-    axes = find_region(robot).plot(figure.subplots())
-    assert printable(robot.joints[0].name) in axes.get_xlabel().replace(r"\$", "$")
+    axes = region.plot(figure.subplots())
+    assert printable(region.robot.joints[0].name) in axes.get_xlabel().replace(r"\$", "$")
     figure.savefig(buffer, format=kind)
     assert len(buffer.getvalue()) > 1000
 
 
-def test_what_python_shows_of_it_is_one_harmless_line(name) -> None:
-    robot = load_robot("arm.toml")
-    region = find_region(robot)
-    (arc, *_), vertex = region.home.loops[0], region.home.vertices[0]
-    for shown in (robot, region, region.problem, arc, vertex, explore(region)):
+def test_what_python_shows_of_it_is_one_harmless_line(pack, region) -> None:
+    named = [replace(region.robot, name=name) for name in pack]
+    vertices = [vertex for part in region.components for vertex in part.vertices]
+    arcs = [arc for part in region.components for loop in part.loops for arc in loop]
+    for shown in (*named, region, region.problem, *arcs, *vertices, explore(region)):
         assert harmless(repr(shown))
         assert "\n" not in repr(shown)
     with pytest.raises(ValueError, match="two joints") as caught:
-        find_region(robot, {0: 0.1})
+        find_region(region.robot, {0: 0.1})
     assert harmless(str(caught.value))
 
 
@@ -271,41 +288,38 @@ class Page(HTMLParser):
         self.text += data
 
 
-def test_the_explorers_page_has_the_same_tags_whatever_the_names(robot) -> None:
-    usual = Page(explorer_page(find_region(load_robot("minervabot-v2"))))
-    text = explorer_page(find_region(robot))
+@cache
+def usual_tags() -> list[str]:
+    return Page(explorer_page(find_region(load_robot("minervabot-v2")))).tags
+
+
+def test_the_explorers_page_has_the_same_tags_whatever_the_names(region) -> None:
+    text = explorer_page(region)
     page = Page(text)
-    assert page.tags == usual.tags
+    assert page.tags == usual_tags()
     assert page.acting == []
-    assert printable(robot.name) in page.text
+    assert printable(region.robot.name) in page.text
     assert harmless(text)
 
 
-def test_in_the_browser_names_stay_text(browser, robot) -> None:
+def test_in_the_browser_names_stay_text(open_quietly, region, tmp_path) -> None:
     """Chromium: nothing runs, nothing complains, and the page says the names."""
-    complaints, requests = [], []
-    Path("page.html").write_text(explorer_page(find_region(robot)), encoding="utf-8")
-    page = browser.new_page()
-    refuse_remote(page, requests)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
-    page.goto(Path("page.html").resolve().as_uri())
-    settle(page)
+    robot, file = region.robot, tmp_path / "page.html"
+    file.write_text(explorer_page(region), encoding="utf-8")
+    page = open_quietly(file.as_uri())
     assert page.evaluate("window.hit") is None
     assert " ".join(page.inner_text("h1").split()) == " ".join(printable(robot.name).split())
     told = page.text_content("#margins")
     assert all(printable(boundary.name) in told for boundary in robot.boundaries if boundary.used)
-    assert (complaints, requests) == ([], [])
-    page.close()
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_a_picture_within_a_page_runs_nothing_in_the_browser(browser, robot) -> None:
+def test_a_picture_within_a_page_runs_nothing_in_the_browser(browser, region, tmp_path) -> None:
     """As Jupyter shows a region."""
-    svg = find_region(robot)._repr_svg_()
-    Path("p.html").write_text(f"<!doctype html><body>{svg[svg.index('<svg') :]}", encoding="utf-8")
+    svg, file = region._repr_svg_(), tmp_path / "p.html"
+    file.write_text(f"<!doctype html><body>{svg[svg.index('<svg') :]}", encoding="utf-8")
     page = browser.new_page()
-    page.goto(Path("p.html").resolve().as_uri())
+    page.goto(file.as_uri())
     assert page.evaluate("window.hit") is None
     assert page.evaluate("document.body.children.length") == 1
     page.close()
