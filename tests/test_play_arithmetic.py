@@ -22,6 +22,12 @@ ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")
 RNG = np.random.default_rng(12)
 
 
+@pytest.fixture(autouse=True)
+def same_numbers(monkeypatch):
+    """Each test draws the same numbers, whichever ran before it."""
+    monkeypatch.setitem(globals(), "RNG", np.random.default_rng(12))
+
+
 def case(name, robot="minervabot-v2", rule="paper"):
     figure = kind(name, rule, robot)
     return figure.region.robot, figure
