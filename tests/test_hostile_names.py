@@ -250,6 +250,15 @@ def test_every_picture_is_drawn_and_its_names_are_text(capsys, robot, line) -> N
         assert printable(name).replace("--", "- -") in notes.replace("--", "- -")
 
 
+def test_a_name_that_begins_as_matplotlibs_own_stays_in_the_legend(
+    capsys, tmp_path, monkeypatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    save_robot(parse_robot(hostile(NAMES["underscore first"])), "arm.toml")
+    assert run(capsys, "workspace arm.toml --svg p.svg")[0] == 0
+    assert "<!-- _child1B3 -->" in Path("p.svg").read_text("utf-8")
+
+
 @pytest.mark.filterwarnings("ignore:Glyph")
 @pytest.mark.parametrize("kind", ["pdf", "png", "eps"])
 def test_a_plot_of_ones_own_is_saved_in_every_format(region, kind) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
@@ -66,7 +67,8 @@ def legend(ax: Axes, columns: int = 4) -> None:
     # Not get_legend_handles_labels: it leaves out every name that begins with an underscore,
     # and not only the names that matplotlib gives to what has none.
     drawn = {str(artist.get_label()): artist for artist in (*ax.patches, *ax.lines)}
-    named = {name: artist for name, artist in drawn.items() if not name.startswith("_child")}
+    unnamed = re.compile(r"_child\d+")
+    named = {name: artist for name, artist in drawn.items() if not unnamed.fullmatch(name)}
     ax.figure.legend(list(named.values()), list(named), loc="outside lower center", ncols=columns)
 
 
