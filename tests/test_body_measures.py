@@ -15,7 +15,7 @@ from qbound.export.document import configuration_document, region_document
 from qbound.forms.angles import nearest_turn
 from qbound.geometry import polygon
 from qbound.measures.nearest import moments, nearest_boundary
-from qbound.measures.scaling import first_exit, largest_safe_scale
+from qbound.measures.scaling import first_exit, largest_safe_scale, worst_margins
 from qbound.measures.star import exact_scale, inner_polygon
 from qbound.model.robot import Body, Disc
 from qbound.model.robotfile import load_robot
@@ -290,3 +290,8 @@ def test_a_route_along_arcs_of_bodies_keeps_to_them(region) -> None:
     found = plan_route(region, [1, 2, 3], along="arcs", deviation=0.01)
     for boundary in boundaries(region):
         assert least_margin(found.path, boundary).leaves is None
+
+
+def test_worst_margins_of_a_polygon_are_of_points_alone_and_say_so(region) -> None:
+    with pytest.raises(ValueError, match="whole bodies"):
+        worst_margins(region.robot, np.eye(3)[:, :2], [0.3, 0.3])

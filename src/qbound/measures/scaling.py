@@ -183,6 +183,11 @@ def worst_margins(
     dict
         Boundary name to margin (a length, ``|B| - d_min`` or the depth inside a wall) and joint
         values, shape (2,).
+
+    Raises
+    ------
+    ValueError
+        If a boundary is about whole bodies, which have no single form.
     """
     return {b.name: _worst(robot, b, vertices, centre) for b in robot.used}
 
