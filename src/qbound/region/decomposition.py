@@ -297,10 +297,10 @@ def _apart(
     count = np.cumsum(change)
     for row in places:
         middle = fibres.values[row] + INSIDE * widths[row]
-        found.append((moving.heights(fibres.t, middle) <= 0).sum(axis=1))
+        found.append((moving.heights(fibres.t, middle) <= NEGLIGIBLE).sum(axis=1))
         if row is places[0]:
             still = Separation(plane, pieces.base_only | pieces.idle)
-            blocked = np.asarray((still.heights(fibres.t, middle) <= 0).any(axis=1))
+            blocked = np.asarray((still.heights(fibres.t, middle) <= NEGLIGIBLE).any(axis=1))
             count = count + (found[0] - count[row])[fibres.slab]
         else:
             doubtful = doubtful | (

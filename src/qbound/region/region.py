@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
@@ -435,10 +436,21 @@ def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
         if _is_empty(problem.without([*dropped, k]), base):
             dropped.append(k)
     problem = problem.without(dropped)
-    for name in [boundary.name for boundary in problem.bodies]:
-        if _is_empty(left := problem.without_bodies([name]), base):
-            problem = left
+    problem = _shed(problem, [boundary.name for boundary in problem.bodies], base)
     return (*problem.names, *(boundary.name for boundary in problem.bodies))
+
+
+def _shed(problem: Problem, bodies: Sequence[str], base: int) -> Problem:
+    """Drop boundaries about bodies that an empty region does not need, as many at once as can be.
+
+    What is needed beside others is needed when they are dropped: no one is asked twice.
+    """
+    if not bodies or _is_empty(left := problem.without_bodies(bodies), base):
+        return left if bodies else problem
+    if len(bodies) == 1:
+        return problem
+    half = len(bodies) // 2
+    return _shed(_shed(problem, bodies[:half], base), bodies[half:], base)
 
 
 def _is_empty(problem: Problem, base: int) -> bool:
