@@ -30,7 +30,7 @@ def check_bodies(robot: Robot, table: Table) -> None:
 
     Raises
     ------
-    RobotFileError
+    qbound.model.robotcheck.RobotFileError
         With the first fault, its place in the table, and what is allowed there.
     """
     _check_names(robot, table)
