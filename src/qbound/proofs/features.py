@@ -25,7 +25,7 @@ from qbound.proofs import grammar_robot, parts
 
 Floats = NDArray[np.float64]
 Key = tuple[int, ...]
-"""For each joint the k of its factor: exp(i k q) where it turns, q^k where it slides."""
+"""For each joint the k of its factor: exp(i k q) where it turns, q to the k where it slides."""
 
 Waves = dict[Key, complex]
 """A place of the plane, or a dot product: amplitudes by their keys."""
@@ -179,7 +179,7 @@ def _with(key: Key, j: int, k: int) -> Key:
 
 @lru_cache(maxsize=10_000)
 def _monomial(key: Key, kinds: tuple[Kind, ...]) -> NDArray[np.complex128]:
-    """Return the coefficients of a product of factors exp(i k q) and q^k."""
+    """Return the coefficients of a product of factors exp(i k q) and q to the k."""
     rows = [
         np.array([k == 0, k != 0, 1j * k]) if kind == "revolute" else np.eye(3)[k]
         for k, kind in zip(key, kinds, strict=True)
