@@ -63,8 +63,8 @@ def polygon_fault(corners: ArrayLike) -> str | None:
 def convex_parts(corners: ArrayLike, *, exact: bool = False) -> tuple[Loop, ...]:
     """Cut a simple polygon into strictly convex parts that together are exactly the polygon.
 
-    A corner within rounding (2 to the -38 of the polygon's size) of a straight edge counts as on it. Ears
-    are cut off one by one; then every cut without which both sides are convex together is
+    A corner within rounding (2 to the -38 of the polygon's size) of a straight edge counts as on
+    it. Ears are cut off one by one; then every cut without which both sides are convex together is
     undone (Hertel and Mehlhorn): at most four times as many parts as there need be.
 
     Parameters
