@@ -515,8 +515,8 @@ def test_a_joint_without_a_window_is_refused() -> None:
 def test_a_boundary_of_another_type_is_refused_where_it_is_in_use(ask) -> None:
     """Passing over it would call free what it forbids."""
     other = type("Ring", (Boundary,), dict.fromkeys(Boundary.__abstractmethods__))
-    robot = replace(MINERVA, boundaries=(*MINERVA.boundaries, other("ring")))
-    ask(robot)  # only drawn
+    drawn, used = (replace(MINERVA, boundaries=(*MINERVA.boundaries, other("ring"))) for _ in "12")
+    ask(drawn)  # which it is not asked of again: a robot knows what it uses
     other.used = True
     with pytest.raises(ValueError, match=r"^ring: the paper's rule has no bounds for a Ring$"):
-        ask(robot)
+        ask(used)

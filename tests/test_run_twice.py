@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import MethodType
 from typing import Any
@@ -73,7 +74,9 @@ def run_cell(outputs: list[str]) -> NotebookNode:
         cell.outputs = [nbformat.v4.new_output("display_data", data=data)]
         return cell
 
-    return asyncio.run(twice.twice(execute, lambda: True)(None, cell))
+    # A thread of its own: a browser of this process may run a loop in the first.
+    with ThreadPoolExecutor() as threads:
+        return threads.submit(asyncio.run, twice.twice(execute, lambda: True)(None, cell)).result()
 
 
 def test_a_cell_that_shows_something_else_the_second_time_is_named() -> None:
