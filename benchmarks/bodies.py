@@ -8,13 +8,12 @@ obstacles, both joints as the base of the cells.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from dataclasses import replace
 from math import log
 from statistics import median
-from time import process_time
 
 import numpy as np
+from regions import milliseconds
 
 from qbound import find_region, load_robot
 from qbound.model.robot import Body, Disc, Polygon, Robot
@@ -36,16 +35,6 @@ def among(count: int, seed: int) -> Robot:
         shape = disc if rng.random() < 0.5 else Polygon(place + rng.uniform(0.03, 0.1) * round_it)
         blocks.append(Body(f"obstacle {i}", arm.base, shape))
     return replace(arm, obstacles=tuple(blocks))
-
-
-def milliseconds(task: Callable[[], object], repeats: int) -> float:
-    task()  # warm
-    times = []
-    for _ in range(repeats):
-        start = process_time()
-        task()
-        times.append(process_time() - start)
-    return 1e3 * median(times)
 
 
 def main() -> None:

@@ -49,6 +49,12 @@ root of the base can be known."""
 THIN: Final = 1e-6
 """A gap between contacts this narrow is looked at itself: rounding may have opened it."""
 
+BOX: Final = 1e-3
+"""What is added round the box of a contact's piece: its ends are looked at a little inside."""
+
+NEAR: Final = 1e-8
+"""How far beyond the ends of two pieces a crossing of theirs may seem to lie."""
+
 AGREE: Final = 1e-3
 """Lift values this close at a common base value may be one crossing; one too many costs time.
 

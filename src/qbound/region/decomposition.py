@@ -207,9 +207,7 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
     branch, slab, form = np.nonzero(np.isfinite(found))
     values, (low, high) = found[branch, slab, form], plane.lift_ends
     k, over = ranges(np.searchsorted(t, pieces.start), np.searchsorted(t, pieces.end))
-    touching = np.stack(
-        [plane.count + pieces.feature[k], pieces.branch[k], np.zeros_like(k)], axis=1
-    )
+    touching = pieces.roots(plane, k)
     values = np.concatenate([values, plane.follow(touching, t[over][:, None])[:, 0]])
     alone = np.stack([form, 2 * branch - 1, np.zeros_like(form)], axis=-1)
     roots = np.concatenate([alone, touching])

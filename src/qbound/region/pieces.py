@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
 from qbound.region.critical import Complexes, base_values, meetings, own_events, univariate
-from qbound.region.plane import Plane, ranges
-from qbound.tolerances import AGREE, CONTACT_SIDE, NEGLIGIBLE, SAME_CRITICAL, WALL
+from qbound.region.plane import Plane, normalised, ranges
+from qbound.tolerances import AGREE, BOX, CONTACT_SIDE, NEAR, NEGLIGIBLE, SAME_CRITICAL, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,9 +27,6 @@ INSIDE = 0.43
 
 NONE, BACK, OWN = 0, 1, 2
 """What happens at an event: a side condition may change; the curve turns back; more."""
-
-BOX = 1e-3
-"""What is added round a piece's box: its ends are looked at a little inside."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +61,10 @@ class Pieces:
     walls: Floats
     base_only: Bools
     idle: Bools
+
+    def roots(self, plane: Plane, k: Ints) -> Ints:
+        """Return the root that each of some contacts follows, as `Root`, shape (len(k), 3)."""
+        return np.stack([plane.count + self.feature[k], self.branch[k], np.zeros_like(k)], axis=1)
 
 
 def find_pieces(plane: Plane) -> Pieces:
@@ -194,8 +195,7 @@ def _along_base(plane: Plane, tables: Floats) -> Floats:
         slope[:, 1], slope[:, 2] = tables[:, 2], -tables[:, 1]
     else:
         slope[:, 0], slope[:, 1] = tables[:, 1], 2 * tables[:, 2]
-    largest = np.abs(slope).max(axis=(1, 2), keepdims=True, initial=0.0)
-    return slope / np.where(largest > 0, largest, 1.0)
+    return normalised(slope)
 
 
 def _sides_at(plane: Plane, feature: Ints, t: Floats) -> Floats:
@@ -282,10 +282,6 @@ def crossings(plane: Plane, pieces: Pieces) -> Floats:
     return np.concatenate([found, _crossed_forms(plane, pieces, c)])
 
 
-NEAR = 1e-8
-"""How far beyond the ends of two pieces a crossing of theirs may seem to lie."""
-
-
 def _meeting_boxes(plane: Plane, pieces: Pieces, pair: Ints) -> tuple[Ints, Ints]:
     """Return pairs of pieces, of different pairs of bodies, whose boxes meet."""
     every = np.arange(len(pair))
@@ -311,8 +307,7 @@ def _meeting_boxes(plane: Plane, pieces: Pieces, pair: Ints) -> tuple[Ints, Ints
 def _values(plane: Plane, pieces: Pieces, k: Ints, t: Floats) -> Floats:
     """Return lift values of pieces over base values, each kept within its piece, (n,)."""
     t = np.clip(t, pieces.start[k], pieces.end[k])
-    roots = np.stack([plane.count + pieces.feature[k], pieces.branch[k], np.zeros_like(k)], axis=1)
-    return plane.follow(roots, t[:, None])[:, 0]
+    return plane.follow(pieces.roots(plane, k), t[:, None])[:, 0]
 
 
 def _crossed_forms(plane: Plane, pieces: Pieces, c: Complexes) -> Floats:

@@ -104,9 +104,7 @@ class Plane:
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
         tables = tables if self.base == 0 else np.swapaxes(tables, -1, -2)
-        tables = tables * self.powers
-        largest = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
-        tables = tables / np.where(largest > 0, largest, 1.0)
+        tables = normalised(tables * self.powers)
         return np.where(np.abs(tables) > NEGLIGIBLE, tables, 0.0)
 
     def form(self, row: int) -> HarmonicForm:
@@ -214,6 +212,12 @@ class Plane:
     def _lifted(self, forms: Ints, t: Floats) -> tuple[Floats, Floats]:
         """Coefficients along the lift, (k, n, 3), and their sizes, (k, 1, 3); of ends all zero."""
         return basis(self.base_kind, t) @ self._rows[forms], self._row_sizes[forms][:, None]
+
+
+def normalised(tables: Floats) -> Floats:
+    """Return tables (..., 3, 3) with largest coefficient 1; one without any stays as it is."""
+    largest = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
+    return np.asarray(tables / np.where(largest > 0, largest, 1.0))
 
 
 def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
