@@ -27,6 +27,8 @@ Indices = NDArray[np.intp]
 BLOCK = 256
 """Configurations a block: the distances of hundreds of pairs stay in the cache."""
 
+ALL = slice(None)
+
 
 class Balls:
     r"""The points of a robot with their radii, and the pairs and walls that bound them.
@@ -110,7 +112,7 @@ class Balls:
         order = [self._index[point.name] for point in self.robot.points]
         result = np.empty((*q.shape[:-1], len(order), 3))
         flat = result.reshape(-1, len(order), 3)
-        for here, columns in _blocks(q):
+        for here, columns in blocks(q):
             flat[here] = self._places(columns)[:, order].transpose(2, 1, 0)
         return result
 
@@ -125,7 +127,7 @@ class Balls:
         q = self.robot.configuration(q)
         result = np.empty((*q.shape[:-1], len(self.names)))
         flat = result.reshape(-1, len(self.names))
-        for here, columns in _blocks(q):
+        for here, columns in blocks(q):
             values = self._values(self._places(columns))
             flat[here] = lengths(values.T, self.rounding, self._denominator)
         return result
@@ -139,12 +141,22 @@ class Balls:
             As `margins`.
         """
         q = self.robot.configuration(q)
-        result = self._within_limits(q).reshape(-1)
+        result = self.within_limits(q).reshape(-1)
         floor = -self.rounding[:, None]
-        for here, columns in _blocks(q):
+        for here, columns in blocks(q):
             values = self._values(self._places(columns))
             result[here] &= (values >= floor).all(axis=0)
         return result.reshape(q.shape[:-1])
+
+    def within_limits(self, q: Floats, but: int | None = None) -> Bools:
+        """Tell where every joint, or all but one, is within its limits, shape (...)."""
+        result = np.ones(q.shape[:-1], dtype=np.bool_)
+        for j, joint in enumerate(self.robot.joints):
+            if joint.limits is not None and j != but:
+                low, high = joint.limits
+                rounding = 2 * ROUNDING * max(abs(low), abs(high))
+                result &= (q[..., j] >= low - rounding) & (q[..., j] <= high + rounding)
+        return result
 
     def along(self, joint: int | str, q: ArrayLike) -> Floats:
         """Return the coefficients of every clearance form along one joint, the others held at q.
@@ -166,7 +178,7 @@ class Balls:
         """
         j, q = self.robot.joint_index(joint), self.robot.configuration(q)
         flat = np.zeros((3, len(self.names), q.size // q.shape[-1]))
-        for here, columns in _blocks(q):
+        for here, columns in blocks(q):
             poses = self.chain.poses(columns, j)
             x = self.chain.places(poses)
             flat[:, self.pairs, here] = self._pairs_along(j, x)
@@ -209,7 +221,7 @@ class Balls:
     def _pairs_along(self, joint: int, x: Floats) -> Floats:
         """Return the forms of all pairs as forms of one joint, shape (3, pairs, n)."""
         forms = np.zeros((3, len(self.pairs), x.shape[2]))
-        forms[0] = self._squared(x) - np.square(self.distance)[:, None]
+        forms[0] = self.squared(x) - np.square(self.distance)[:, None]
         moving = self.across(joint)
         near, far = x[:, self.near[moving]], x[:, self.far[moving]]
         if self.robot.joints[joint].turns:
@@ -227,18 +239,25 @@ class Balls:
     def _values(self, x: Floats) -> Floats:
         """Return the forms of all boundaries, shape (boundaries, n), from places in the base."""
         values = np.empty((len(self.names), x.shape[2]))
-        values[self.pairs] = self._squared(x) - np.square(self.distance)[:, None]
+        values[self.pairs] = self.squared(x) - np.square(self.distance)[:, None]
         if len(self.walls):
             heights = np.einsum("wc,cwn->wn", self.normals, x[:, self.held])
             values[self.walls] = heights - self.levels[:, None]
         return values
 
-    def _squared(self, x: Floats) -> Floats:
-        """Return the squared distances of all pairs, shape (pairs, n)."""
-        total = np.zeros((len(self.pairs), x.shape[2]))
+    def squared(self, x: Floats, which: Indices | slice = ALL) -> Floats:
+        """Return the squared distances of pairs, all or some by index, shape (pairs, n).
+
+        Parameters
+        ----------
+        x : ndarray, shape (c, points, n)
+            Places (`Chain.places`), or some of their coordinates.
+        """
+        near, far = self.near[which], self.far[which]
+        total = np.zeros((len(near), x.shape[2]))
         for coordinate in x:
-            step = coordinate[self.far]
-            step -= coordinate[self.near]
+            step = coordinate[far]
+            step -= coordinate[near]
             step *= step
             total += step
         return total
@@ -251,23 +270,13 @@ class Balls:
         sizes[self.walls] = reach[self.held] + np.abs(self.levels)
         return ROUNDING * sizes
 
-    def _within_limits(self, q: Floats) -> Bools:
-        """Tell where every joint is within its limits, but for rounding."""
-        result = np.ones(q.shape[:-1], dtype=np.bool_)
-        for j, joint in enumerate(self.robot.joints):
-            if joint.limits is not None:
-                low, high = joint.limits
-                rounding = 2 * ROUNDING * max(abs(low), abs(high))
-                result &= (q[..., j] >= low - rounding) & (q[..., j] <= high + rounding)
-        return result
-
 
 @lru_cache(maxsize=64)
 def _made(robot: Robot) -> Balls:
     return Balls(robot)
 
 
-def _blocks(q: Floats) -> Iterator[tuple[slice, Floats]]:
+def blocks(q: Floats) -> Iterator[tuple[slice, Floats]]:
     """Yield slices of all configurations, in blocks, each with them as columns."""
     flat = q.reshape(-1, q.shape[-1])
     for start in range(0, len(flat), BLOCK):
