@@ -1,4 +1,4 @@
-"""``qbound fibre``: how far may one joint move while the others stay where they are?"""
+"""``qbound fibre``: tell how far one joint may move while the others stay where they are."""
 
 from __future__ import annotations
 
