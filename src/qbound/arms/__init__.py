@@ -1,0 +1,6 @@
+"""What of arms with more than two joints? Answers about arms of balls, as imported ones are.
+
+- `fibres`: the exact feasible intervals of one joint, for thousands of configurations at once;
+  `gaps`: what intervals leave free, on a line or round a circle;
+- `reports`: what was found, as JSON and in words.
+"""
