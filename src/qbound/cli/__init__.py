@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
-  `check`, `draw`, `explore`, `robots`;
+  `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -26,6 +26,7 @@ from qbound.cli import (
     contains,
     draw,
     explore,
+    import_urdf,
     pave,
     region,
     robots,
@@ -50,6 +51,7 @@ COMMANDS = (
     check,
     draw,
     explore,
+    import_urdf,
     robots,
 )
 """In the order of the help; after them come those of the entry-point group."""
@@ -58,7 +60,7 @@ GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
 WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
-READ = ("robot", "certificate", "path", "polygon")
+READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141

@@ -143,12 +143,12 @@ def few(covers: Bools, costs: Floats | None = None) -> NDArray[Any]:
     """
     price = np.ones(len(covers)) if costs is None else costs
     open_elements = covers.any(axis=0)
-    counts = covers.sum(axis=1)
+    counts = np.count_nonzero(covers, axis=1)
     chosen: list[int] = []
     while open_elements.any():
         best = int((counts / price).argmax())
         new = covers[best] & open_elements
-        counts = counts - covers[:, new].sum(axis=1)
+        counts = counts - np.count_nonzero(covers.T[new], axis=0)
         open_elements &= ~new
         chosen.append(best)
     return np.array(_needed(covers, chosen), dtype=int)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from itertools import combinations
 from pathlib import Path
@@ -21,9 +22,12 @@ from qbound.model.schema import shown
 from qbound.tolerances import ROUNDING
 from qbound.urdf.covers import link_cover
 from qbound.urdf.document import Urdf, UrdfJoint, read_urdf
+from qbound.urdf.meshes import read_mesh
 from qbound.urdf.poses import Pose
+from qbound.urdf.shapes import Collision, Mesh, Triangles
 from qbound.urdf.srdf import Srdf, read_srdf
 from qbound.urdf.tree import Chain, find_chain, listed
+from qbound.urdf.xml import Source
 
 Floats = NDArray[np.float64]
 Limits = Mapping[str, tuple[float, float]]
@@ -50,18 +54,19 @@ class Imported:
     Attributes
     ----------
     robot : Robot
-    urdf : Urdf
     chain : Chain
     excess : float
         No ball sticks out of the shape that it covers by more; m.
+    sources : tuple of Source
+        The files: URDF, SRDF, meshes.
     notes : tuple of str
-        What was left out, a sentence each.
+        What is covered how, and what was left out, a sentence each.
     """
 
     robot: Robot
-    urdf: Urdf
     chain: Chain
     excess: float
+    sources: tuple[Source, ...]
     notes: tuple[str, ...]
 
 
@@ -72,6 +77,7 @@ def import_urdf(
     srdf: str | Path | None = None,
     limits: Limits | None = None,
     excess: float | None = None,
+    packages: Sequence[str | Path] = (),
     clearance: float = 0.0,
     home: str | None = None,
 ) -> Imported:
@@ -89,6 +95,8 @@ def import_urdf(
         Limits of joints in place of the file's, rad or m.
     excess : float, optional
         How far a ball may stick out of the shape that it covers, at most; default `EXCESS`.
+    packages : sequence of str or Path
+        Folders of packages, in which meshes may lie; those below the URDF's own folder may anyway.
     clearance : float
         That every pair of balls keeps.
     home : str, optional
@@ -108,7 +116,8 @@ def import_urdf(
     if not 0 < allowed < np.inf:
         raise ValueError(f"excess {allowed}: a length above 0 is wanted")
     joints = _joints(urdf, found, limits or {})
-    balls, reached = _balls(urdf, found, allowed)
+    shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
+    balls, reached = _balls(shapes, found, allowed)
     robot = Robot(
         name=urdf.name,
         joints=joints,
@@ -123,7 +132,11 @@ def import_urdf(
         robot = parse_robot(robot_table(robot))
     except RobotFileError as error:
         raise RobotFileError(f"{urdf.file}: {error}") from None
-    return Imported(robot, urdf, found, reached, tuple(_notes(urdf, found, links)))
+    solids = [shape.solid for each in shapes.values() for shape in each]
+    meshes = [solid for solid in solids if isinstance(solid, Triangles)]
+    sources = [urdf.source, links.source, *(mesh.source for mesh in meshes)]
+    notes = (*_covered(reached, meshes), *_left_out(urdf, found, links))
+    return Imported(robot, found, reached, tuple(filter(None, dict.fromkeys(sources))), notes)
 
 
 def packaged_or_path(source: str | Path) -> Path:
@@ -198,13 +211,32 @@ def _tool(chain: Chain) -> Point:
     return Point(name, chain.frames[-1], chain.groups[-1][chain.tip].origin)
 
 
-def _balls(urdf: Urdf, chain: Chain, excess: float) -> tuple[list[Ball], float]:
+def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
+    """Return the shapes of every link of the chain, meshes read; each file once."""
+    read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
+    found: dict[str, list[Collision]] = {}
+    for link in (link for group in chain.groups for link in group):
+        found[link] = []
+        for shape in urdf.links[link].collisions:
+            solid = shape.solid
+            if isinstance(solid, Mesh):
+                key = (solid.filename, tuple(solid.scale.tolist()))
+                if key not in read:
+                    read[key] = read_mesh(solid, shape.element, roots)
+                solid = read[key]
+            found[link].append(replace(shape, solid=solid))
+    return found
+
+
+def _balls(
+    shapes: Mapping[str, Sequence[Collision]], chain: Chain, excess: float
+) -> tuple[list[Ball], float]:
     """Cover every link of the chain; return the balls, and the most that one sticks out."""
     balls: list[Ball] = []
     reached = 0.0
     for group, (frame, poses) in enumerate(zip(chain.frames, chain.groups, strict=True)):
         for link, pose in poses.items():
-            centres, radii, sticks_out = link_cover(urdf.links[link].collisions, pose, excess)
+            centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
             reached = max(reached, sticks_out)
             for i, (at, radius) in enumerate(zip(centres, radii, strict=True), start=1):
                 point = Point(f"{link}/{i}", frame, at, float(radius))
@@ -226,7 +258,22 @@ def _pairs(urdf: Urdf, balls: list[Ball], links: Srdf, clearance: float) -> Iter
     return (Pair(", ".join(names), names, clearance) for names in found)
 
 
-def _notes(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
+def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
+    """Yield what is proved of the balls."""
+    most = f"none sticks out of its shape by more than {_rounded_up(excess)} m"
+    yield f"every collision shape is covered by balls (proved), and {most}"
+    if meshes:
+        yield "of a mesh all triangles are covered, and what they enclose may not be"
+    if opened := [mesh.source.name for mesh in meshes if not mesh.closed]:
+        yield f"meshes that do not close up, whose excess is that beyond their hull: {', '.join(opened)}"
+
+
+def _rounded_up(length: float) -> str:
+    """Write a length in whole micrometres, none too small."""
+    return f"{math.ceil(length * 1e6) / 1e6:.6f}"
+
+
+def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
     """Yield what the robot leaves out."""
     carried = {link for group in chain.groups for link in group}
     others = [n for n, link in urdf.links.items() if n not in carried and link.collisions]

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from functools import singledispatch
 
 from qbound.geometry.covering import Cover, joined
+from qbound.geometry.mesh_covers import mesh_cover
 from qbound.geometry.solid_covers import ball_cover, box_cover, capsule_cover, cylinder_cover
 from qbound.urdf.poses import Pose
-from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Solid, Sphere
+from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Solid, Sphere, Triangles
 
 
-def link_cover(collisions: Sequence[Collision], pose: Pose, excess: float) -> Cover:
+def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
     """Cover all shapes of a link, whose frame stands so in the frame asked for.
 
     Raises
@@ -20,12 +21,12 @@ def link_cover(collisions: Sequence[Collision], pose: Pose, excess: float) -> Co
         If a shape cannot be covered to that excess.
     """
     covers = []
-    for collision in collisions:
+    for shape in shapes:
         try:
-            cover = solid_cover(collision.solid, excess)
+            cover = solid_cover(shape.solid, excess)
         except ValueError as error:
-            collision.element.fault(str(error))
-        centres = pose.then(collision.pose).places(cover.centres)
+            shape.element.fault(str(error))
+        centres = pose.then(shape.pose).places(cover.centres)
         covers.append(Cover(centres, cover.radii, cover.excess))
     return joined(covers)
 
@@ -54,3 +55,8 @@ def _(solid: Cylinder, excess: float) -> Cover:
 @solid_cover.register
 def _(solid: Box, excess: float) -> Cover:
     return box_cover(solid.size, excess)
+
+
+@solid_cover.register
+def _(solid: Triangles, excess: float) -> Cover:
+    return mesh_cover(solid.corners, solid.closed, excess)

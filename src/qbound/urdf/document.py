@@ -6,7 +6,6 @@ shapes, inertias, transmissions and what simulators add are not read.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,7 @@ from qbound.model.frames import roll_pitch_yaw
 from qbound.model.schema import shown
 from qbound.urdf.poses import Pose
 from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Mesh, Solid, Sphere
-from qbound.urdf.xml import Element, read_xml
+from qbound.urdf.xml import Element, Source, read_xml
 
 Floats = NDArray[np.float64]
 
@@ -70,7 +69,7 @@ class Urdf:
 
     name: str
     file: Path
-    sha256: str
+    source: Source
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
 
@@ -86,7 +85,7 @@ def read_urdf(path: Path) -> Urdf:
     qbound.model.robotcheck.RobotFileError
         With the first fault and its line.
     """
-    root, content = read_xml(path, "robot")
+    root, source = read_xml(path, "robot")
     links = _by_name([_link(element) for element in root.children("link")])
     joints = _by_name([_joint(element) for element in root.children("joint")])
     if not links:
@@ -94,7 +93,7 @@ def read_urdf(path: Path) -> Urdf:
     return Urdf(
         name=root.text("name"),
         file=path,
-        sha256=hashlib.sha256(content).hexdigest(),
+        source=source,
         links=links,
         joints=joints,
     )

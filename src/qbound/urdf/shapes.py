@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.urdf.poses import Pose
-from qbound.urdf.xml import Element
+from qbound.urdf.xml import Element, Source
 
 Floats = NDArray[np.float64]
 
@@ -52,12 +52,22 @@ class Mesh:
     scale: Floats
 
 
-Solid = Sphere | Capsule | Cylinder | Box | Mesh
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """A mesh, read: corners, shape (N, 3, 3), seen from its own frame."""
+
+    corners: Floats
+    closed: bool
+    """Whether it is the whole surface of a solid: every edge has two triangles, of one sense."""
+    source: Source
+
+
+Solid = Sphere | Capsule | Cylinder | Box | Mesh | Triangles
 
 
 @dataclass(frozen=True, eq=False)
 class Collision:
-    """A shape of a link and where it stands."""
+    """A shape of a link, where it stands, and what of the file it was read from."""
 
     pose: Pose
     solid: Solid

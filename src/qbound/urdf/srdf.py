@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from qbound.urdf.xml import Element, read_xml
+from qbound.urdf.xml import Element, Source, read_xml
 
 HOMES = ("home", "ready")
 """States that are taken for the home pose where nothing else is asked for, in this order."""
@@ -24,12 +24,14 @@ class Srdf:
     enabled : frozenset of frozenset of str
     states : dict of str to dict of str to float
         Joint values of each named state, rad or m.
+    source : Source, optional
     """
 
     disabled: frozenset[frozenset[str]] = frozenset()
     silent: frozenset[str] = frozenset()
     enabled: frozenset[frozenset[str]] = frozenset()
     states: dict[str, dict[str, float]] | None = None
+    source: Source | None = None
 
     def checks(self, one: str, other: str) -> bool:
         """Tell whether a pair of links is to be kept apart."""
@@ -56,7 +58,7 @@ def read_srdf(path: Path) -> Srdf:
     qbound.model.robotcheck.RobotFileError
         With the first fault and its line.
     """
-    root, _ = read_xml(path, "robot")
+    root, source = read_xml(path, "robot")
     states: dict[str, dict[str, float]] = {}
     for state in root.children("group_state"):
         values = states.setdefault(state.text("name"), {})
@@ -68,6 +70,7 @@ def read_srdf(path: Path) -> Srdf:
         silent=frozenset(each.text("link") for each in root.children("disable_default_collisions")),
         enabled=_pairs(root, "enable_collisions"),
         states=states,
+        source=source,
     )
 
 

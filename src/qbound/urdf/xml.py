@@ -6,10 +6,11 @@ size at most. What is wrong is said with the file, the line and the element.
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,18 @@ Floats = NDArray[np.float64]
 
 LARGEST_FILE = 20_000_000
 """Bytes of a URDF or SRDF at most."""
+
+
+class Source(NamedTuple):
+    """A file that was read: its name, without its folder, and the digest of its bytes."""
+
+    name: str
+    sha256: str
+
+    @classmethod
+    def of(cls, path: Path, content: bytes) -> Source:
+        """Return that of a file with this content."""
+        return cls(path.name, hashlib.sha256(content).hexdigest())
 
 
 class Element:
@@ -98,8 +111,8 @@ class Element:
         return Element(node, self._file, f"{self.path}, {label}" if self.path else label)
 
 
-def read_xml(path: Path, root: str) -> tuple[Element, bytes]:
-    """Read a file whose outermost element has the name `root`; return it, and the file's bytes.
+def read_xml(path: Path, root: str) -> tuple[Element, Source]:
+    """Read a file whose outermost element has the name `root`; return it, and the file's digest.
 
     Raises
     ------
@@ -133,7 +146,7 @@ def read_xml(path: Path, root: str) -> tuple[Element, bytes]:
             raise RobotFileError(f"{path}, line {each.sourceline}: {text}")
     if node.tag != root:
         raise RobotFileError(f"{path}: <{one_line(str(node.tag))}> found; wanted: <{root}>")
-    return Element(node, str(path), ""), content
+    return Element(node, str(path), ""), Source.of(path, content)
 
 
 def _content(path: Path) -> bytes:
