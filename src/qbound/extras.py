@@ -18,6 +18,7 @@ class Extra(NamedTuple):
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
+    "lxml": Extra("reading a URDF", "lxml", "urdf"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
@@ -25,6 +26,7 @@ EXTRAS: Final = {
     "skimage": Extra("a surface or a count on a grid", "scikit-image", "notebooks"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
+    "trimesh": Extra("reading a mesh", "trimesh", "urdf"),
 }
 """By the name that is imported."""
 

@@ -2,6 +2,8 @@
 
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`,
   `pave`, `certify`, `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
+  `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -27,6 +29,7 @@ from qbound.cli import (
     draw,
     explore,
     fibre,
+    import_urdf,
     pave,
     region,
     robots,
@@ -52,6 +55,7 @@ COMMANDS = (
     check,
     draw,
     explore,
+    import_urdf,
     robots,
 )
 """In the order of the help; after them come those of the entry-point group."""
@@ -60,7 +64,7 @@ GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
 WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
-READ = ("robot", "certificate", "path", "polygon")
+READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141
