@@ -1,4 +1,6 @@
-"""What of arms with more than two joints?
+"""What of arms with more than two joints: where can they go, and why not?
 
-- `separations`: which ranges of one joint does something block, whatever the other joints do?
+- `separations`: ranges of one joint that something blocks, whatever the other joints do;
+- `search`: a path, looked for in doubles; `why`: separations, a proved path, a paving, in this
+  order; `answers`: what was found, in sentences and as JSON.
 """

@@ -8,7 +8,6 @@ nothing says nothing. `why` hands what is found to the certificates. Rapidly exp
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,7 +36,13 @@ ROOM = 1e-3
 
 
 def find_path(
-    robot: Robot, start: ArrayLike, goal: ArrayLike, seed: int = 0, tries: int = TRIES
+    robot: Robot,
+    start: ArrayLike,
+    goal: ArrayLike,
+    seed: int = 0,
+    *,
+    tries: int = TRIES,
+    hold: bool = False,
 ) -> Floats | None:
     """Search a path of straight legs in joint values from a start to a goal.
 
@@ -49,6 +54,9 @@ def find_path(
     seed : int
         Of what is drawn: the same seed, the same path.
     tries : int
+        Places drawn before the search gives up.
+    hold : bool
+        Whether joints that have one value at both ends stay there.
 
     Returns
     -------
@@ -67,7 +75,7 @@ def find_path(
     >>> path.tolist()
     [[0.0, 0.0], [0.2, -0.5]]
     """
-    space = _Space(robot, np.stack([robot.configuration(q) for q in (start, goal)]))
+    space = _Space(robot, np.stack([robot.configuration(q) for q in (start, goal)]), hold)
     first, last = space.ends
     if space.is_free_leg(first, last):
         return space.unrolled([first, last])
@@ -79,13 +87,17 @@ def find_path(
 class _Space:
     """Configurations between two ends: which are free, and how far they are from each other."""
 
-    def __init__(self, robot: Robot, ends: Floats) -> None:
+    def __init__(self, robot: Robot, ends: Floats, hold: bool) -> None:
         self.ends, self.evaluator, self.count = ends, evaluator(robot), len(robot.used)
         joints = robot.joints
         self.circles = np.array([joint.turns and joint.limits is None for joint in joints])
-        limits = [joint.limits or (x - math.pi, x + math.pi) for joint, x in zip(joints, ends[0])]
+        pairs = zip(joints, ends[0], strict=True)
+        limits = [joint.limits or (x - math.pi, x + math.pi) for joint, x in pairs]
         self.low, self.high = np.array(limits, dtype=float).T
         self.scale = np.where([j.turns for j in joints], 1.0, self.high - self.low)
+        if hold:
+            still = ends[0] == ends[1]
+            self.low, self.high = (np.where(still, ends[0], x) for x in (self.low, self.high))
         margins = self.evaluator.margins(ends)[:, : self.count]
         least = float(margins.min()) if self.count else 1.0
         self.room = min(ROOM * robot.reach, max(least, 0.0) / 2)
@@ -115,9 +127,9 @@ class _Space:
         """Draw a configuration: every other one near the two ends."""
         if rng.random() < 0.5:
             return np.asarray(rng.uniform(self.low, self.high))
-        low, high = self.ends.min(axis=0) - 1.0 * self.scale, self.ends.max(axis=0) + self.scale
-        low, high = np.maximum(low, self.low), np.minimum(high, self.high)
-        return np.asarray(rng.uniform(low, np.maximum(low, high)))
+        low, high = self.ends.min(axis=0) - self.scale, self.ends.max(axis=0) + self.scale
+        low, high = np.clip(low, self.low, self.high), np.clip(high, self.low, self.high)
+        return np.asarray(rng.uniform(low, high))
 
     def unrolled(self, corners: list[Floats]) -> Floats:
         """Put corners one after the other, none a full turn from the last."""
@@ -201,7 +213,3 @@ def _straightened(space: _Space, path: list[Floats]) -> list[Floats]:
         k = next(m for m in ahead if m == k + 1 or space.is_free_leg(path[k], path[m]))
         kept.append(path[k])
     return kept
-
-
-Tell = Callable[[str], None]
-"""Told in words what is being tried."""

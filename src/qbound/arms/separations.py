@@ -32,7 +32,7 @@ class Block:
     ranges : tuple of BlockedRange
         What it is made of, by low end; turned by full turns to where they stand here.
     links : tuple of str
-        What meets there, such as ``"upper_arm_link and forearm_link"``.
+        What meets there, such as ``"upper_arm_link and forearm_link"``, over the widest range first.
     """
 
     low: float
@@ -155,7 +155,9 @@ def separation(
             blocks = (travel.blocks[one_way], travel.blocks[other_way])
         else:
             free = travel.free
-            between = [b for b in travel.blocks if free[low][1] <= b.low and b.high <= free[high][0]]
+            between = [
+                b for b in travel.blocks if free[low][1] <= b.low and b.high <= free[high][0]
+            ]
             blocks = (max(between, key=lambda b: b.high - b.low),)
         return Separation(travel, (parts[0], parts[1]), blocks)
     return None
@@ -227,7 +229,8 @@ def _merged(ranges: Sequence[BlockedRange], named: dict[str, str]) -> list[Block
 
 
 def _block(group: Sequence[BlockedRange], named: dict[str, str]) -> Block:
-    links = dict.fromkeys(named[r.boundary] for r in group)
+    widest = sorted(group, key=lambda r: r.low - r.high)
+    links = dict.fromkeys(named[r.boundary] for r in widest)
     return Block(group[0].low, max(r.high for r in group), tuple(group), tuple(links))
 
 

@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
-  `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `sample`, `pave`,
+  `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -31,6 +31,7 @@ from qbound.cli import (
     robots,
     sample,
     traverse,
+    why,
     workspace,
 )
 from qbound.cli.files import check_targets
@@ -43,6 +44,7 @@ COMMANDS = (
     workspace,
     contains,
     connected,
+    why,
     traverse,
     sample,
     pave,
