@@ -1841,7 +1841,8 @@ def verify_no_path(robot: Robot, statement: Statement, value: Any) -> list[Block
         low, high = sorted((start[j], goal[j]))
         between = low < blocked[0].low and blocked[0].high < high
     else:
-        between = is_parted(start[j], goal[j], *blocked, robot.angle_unit)
+        one, other = blocked
+        between = is_parted(start[j], goal[j], one, other, robot.angle_unit)
     demand(between, "proof: blocked: both configurations are on one side of it")
     return blocked
 

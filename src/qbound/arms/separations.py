@@ -1,4 +1,4 @@
-"""Which ranges of one joint does something block, whatever the other joints do?
+"""Ranges of one joint that something blocks, whatever the other joints do.
 
 Balls of two links of which only one joint changes the distance block a range of that joint, in
 closed form (`proofs.blocked`). Where the ranges of all boundaries end, the joint's travel falls
@@ -32,7 +32,7 @@ class Block:
     ranges : tuple of BlockedRange
         What it is made of, by low end; turned by full turns to where they stand here.
     links : tuple of str
-        What meets there, such as ``"upper_arm_link and forearm_link"``, over the widest range first.
+        What meets there, such as ``"upper_arm_link and forearm_link"``; the widest range first.
     """
 
     low: float

@@ -11,6 +11,7 @@ import tomllib
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
@@ -48,6 +49,10 @@ KEPT = 0.8
 
 ALONG = 400
 """Places of each leg at which margins are looked at."""
+
+
+def _silently(_: str) -> AbstractContextManager[None]:
+    return nullcontext()
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +117,7 @@ def why(
     *,
     seed: int = 0,
     hold: bool = False,
-    during: During = nullcontext,
+    during: During = _silently,
 ) -> Why:
     """Tell whether a robot can get from one configuration to another, and why or why not.
 
@@ -203,7 +208,7 @@ def _separated(
     if parted is None:
         return None
     ranges = [_widest(block) for block in parted.blocks]
-    certificate = certify_no_path(text, *ends, ranges)
+    certificate = certify_no_path(text, ends[0], ends[1], ranges)
     proved = certificate if certificate.verdict is Verdict.PROVED else None
     return Why(robot, ends, "separated", hold, travels, separation=parted, certificate=proved)
 
@@ -231,7 +236,7 @@ def _joined(
 ) -> Why | None:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
     for k in range(SEEDS):
-        path = find_path(robot, *ends, SEEDS * seed + k, hold=hold)
+        path = find_path(robot, ends[0], ends[1], SEEDS * seed + k, hold=hold)
         if path is None:
             continue
         proved = _proved(text, robot, path)
@@ -268,7 +273,7 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
         Length; infinite without a boundary.
     """
     weights = np.linspace(0, 1, places + 1)[:, None]
-    legs = [a + weights * (b - a) for a, b in zip(path[:-1], path[1:], strict=True)]
+    legs = [a + weights * (b - a) for a, b in pairwise(path)]
     q = np.concatenate(legs)
     steps = np.linalg.norm(np.diff(q, axis=0), axis=1)
     s = np.concatenate([[0.0], np.cumsum(steps)])

@@ -1,4 +1,4 @@
-"""``qbound why``: can the arm get from one configuration to another, and if not, why not?"""
+"""``qbound why``: tell whether the arm can get from start to goal, and why or why not."""
 
 from __future__ import annotations
 

@@ -378,7 +378,7 @@ def _is_between(robot: Robot, barrier: Barrier, start: Any, goal: Any) -> bool:
     turn = arb(360) if robot.degrees else 2 * arb.pi()
     (low, high), (next_low, next_high) = ends
     away = arb(fmpq(goal - start))
-    k = int(math.floor(float(away / turn)))
+    k = math.floor(float(away / turn))
     lifted = [away - (k + i) * turn for i in (-1, 0, 1)]  # the goal, seen from the start
     return bool(start < low and next_high - start < turn) and any(
         bool(high - start < x < next_low - start) for x in lifted

@@ -98,10 +98,11 @@ def _row(robot: Robot, each: BlockedRange) -> dict[str, str]:
     room = INWARDS * (high - low)
     unit = units(robot)[each.joint]
     ends = [decimal(x / unit) for x in (low + room, high - room)]
-    numbers = [float(x) * unit for x in ends]
+    first, last = (float(x) * unit for x in ends)
     found = likely(robot, [robot.boundary(each.boundary)])
     alone = next((row for _, j, row in found if j == each.joint), np.zeros(3))
-    tree = _tree(alone, robot.joints[each.joint].turns, *numbers, chr(ord("a") + each.joint))
+    turns, letter = robot.joints[each.joint].turns, chr(ord("a") + each.joint)
+    tree = _tree(alone, turns, first, last, letter)
     return {"boundary": each.boundary, "from": ends[0], "to": ends[1], "tree": tree}
 
 
@@ -119,5 +120,5 @@ def _tree(alone: Floats, turns: bool, low: float, high: float, letter: str, dept
     slack = NEGLIGIBLE * float(np.abs(alone).sum())
     if value + abs(slope) * half + bend < -slack or depth == DEEPEST:
         return "."
-    halves = ((low, middle), (middle, high))
-    return letter + "".join(_tree(alone, turns, *part, letter, depth + 1) for part in halves)
+    lower = _tree(alone, turns, low, middle, letter, depth + 1)
+    return letter + lower + _tree(alone, turns, middle, high, letter, depth + 1)

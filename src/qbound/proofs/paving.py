@@ -243,8 +243,9 @@ def _joined(runs: Sequence[Run]) -> list[Run]:
     for count, forms in runs:
         if found and found[-1][0] + count <= SHORTEST_RUN:
             before, known = found.pop()
-            count, forms = before + count, np.union1d(known, forms)
-        found.append((count, forms))
+            found.append((before + count, np.union1d(known, forms)))
+        else:
+            found.append((count, forms))
     return found
 
 

@@ -354,7 +354,10 @@ def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
 
 
 def within_limits(robot: Robot, q: Floats) -> list[Point]:
-    """Round configurations, shape (m, n), rad or length, to decimals, and what leaves a limit by that back onto it."""
+    """Round configurations, shape (m, n), to decimals of the file's units.
+
+    What leaves a limit by that is put back onto it.
+    """
     ends = [joint.limits for joint in robot.joints]
     return [
         [_clamped(x, end, unit) for x, end, unit in zip(row, ends, units(robot), strict=True)]
