@@ -3,4 +3,9 @@
 - `fibres`: the exact feasible intervals of one joint, for thousands of configurations at once;
   `gaps`: what intervals leave free, on a line or round a circle;
 - `reports`: what was found, as JSON and in words.
+"""What of arms with more than two joints? Where they can go, and why not.
+
+- `separations`: ranges of one joint that something blocks, whatever the other joints do;
+- `search`: a path, looked for in doubles; `why`: separations, a proved path, a paving, in this
+  order; `answers`: what was found, in sentences and as JSON.
 """

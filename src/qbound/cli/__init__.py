@@ -4,6 +4,8 @@
   `pave`, `certify`, `check`, `draw`, `explore`, `robots`;
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
   `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `sample`, `pave`,
+  `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -35,6 +37,7 @@ from qbound.cli import (
     robots,
     sample,
     traverse,
+    why,
     workspace,
 )
 from qbound.cli.files import check_targets
@@ -47,6 +50,7 @@ COMMANDS = (
     workspace,
     contains,
     connected,
+    why,
     traverse,
     fibre,
     sample,

@@ -70,7 +70,7 @@ def pose_picture(
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 
-    return _picture((region is not None) + (plane is not None), draw, kind)
+    return picture((region is not None) + (plane is not None), draw, kind)
 
 
 def traversal_picture(
@@ -98,7 +98,7 @@ def traversal_picture(
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
         _space_panel(space, robot, plane)
 
-    return _picture(2, draw, kind)
+    return picture(2, draw, kind)
 
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
@@ -112,7 +112,7 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
 
-    return _picture(1, draw, kind, size=(7, 6))
+    return picture(1, draw, kind, size=(7, 6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
@@ -130,7 +130,7 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
     """Return the picture of `plot_region`, the first component's vertices numbered."""
-    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
+    return picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
 def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
@@ -153,7 +153,7 @@ def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
             ax.tick_params(labelbottom=below, labelleft=left)
             ax.set(**({} if below else {"xlabel": ""}), **({} if left else {"ylabel": ""}))
 
-    return _picture(count, draw, kind, size=SMALL, columns=ACROSS)
+    return picture(count, draw, kind, size=SMALL, columns=ACROSS)
 
 
 def _slice_title(slices: Slices, k: int) -> str:
@@ -167,7 +167,7 @@ def _slice_title(slices: Slices, k: int) -> str:
     return figures.minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
 
 
-def _picture(
+def picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
     kind: str,

@@ -8,7 +8,7 @@ and undecided cells); the undecided volume is measured. Any number of joints.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -20,6 +20,12 @@ from qbound.proofs.balls import arb, ball, below, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
+
+Ints = NDArray[np.int64]
+Run = tuple[int, Ints]
+
+LONGEST_RUN, SHORTEST_RUN = 2048, 256
+"""Cells that are looked at together: few, so that few forms may vanish among them."""
 
 MOST_CELLS = 2_000_000
 """Undecided cells at which a paving stops on its own: about a gigabyte of bounds."""
@@ -38,6 +44,9 @@ class Paving:
         infeasible cell some form is negative throughout.
     undecided : Cells
         The cells about which nothing is claimed.
+    runs : tuple of (int, ndarray of int)
+        How many undecided cells, one after the other, have to do with which forms: all others are
+        proved positive there, and so on every part of these cells.
     """
 
     problem: ExactProblem
@@ -45,6 +54,7 @@ class Paving:
     feasible: tuple[Cells, ...]
     infeasible: tuple[Cells, ...]
     undecided: Cells
+    runs: tuple[Run, ...]
 
     @property
     def level(self) -> int:
@@ -88,7 +98,7 @@ class Paving:
         """
         if self.level >= DEEPEST:
             raise ValueError(f"cells have been halved {DEEPEST} times: no smaller ones")
-        return _sorted(self, self.undecided.halves())
+        return _sorted(self, _in_order(self.undecided.halves()), _doubled(self.runs))
 
     def verdicts(self, q: ArrayLike) -> set[Verdict]:
         """Return what is known of a configuration being feasible, by all cells that may hold it.
@@ -186,21 +196,57 @@ def start(problem: ExactProblem) -> Paving:
         for (low, high), names in zip(bounds.ends, problem.limits, strict=True):
             if not below(high - low) > 0:
                 raise ValueError(f"{names[0]} and {names[1]}: the range is empty")
-    empty = Paving(problem, bounds, (), (), bounds.whole())
-    return _sorted(empty, bounds.whole())
+    whole, every = bounds.whole(), np.arange(len(problem.names))
+    empty = Paving(problem, bounds, (), (), whole, ())
+    return _sorted(empty, whole, [(len(whole), every)])
 
 
-def _sorted(paving: Paving, cells: Cells) -> Paving:
-    """Sort new cells into a paving; they replace its undecided ones."""
-    low, high = paving.bounds.bounds(cells)
-    feasible, infeasible = (low > 0).all(axis=1), (high < 0).any(axis=1)
+def _in_order(halves: Cells) -> Cells:
+    """Put the two halves of each cell beside each other: neighbours stay together."""
+    return halves[np.arange(len(halves)).reshape(2, -1).T.ravel()]
+
+
+def _doubled(runs: Iterable[Run]) -> list[Run]:
+    return [(2 * count, forms) for count, forms in runs]
+
+
+def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run]) -> Paving:
+    """Sort new cells into a paving; they replace its undecided ones.
+
+    Run by run, so that each looks at no more forms than may vanish in it; long ones are parted.
+    """
+    feasible, infeasible = (np.zeros(len(cells), dtype=bool) for _ in range(2))
+    left, start = list[Run](), 0
+    for length, forms in runs:
+        for first in range(start, start + length, LONGEST_RUN):
+            part = slice(first, min(first + LONGEST_RUN, start + length))
+            low, high = paving.bounds.bounds(cells[part], forms)
+            feasible[part], infeasible[part] = (low > 0).all(axis=1), (high < 0).any(axis=1)
+            open_cells = ~feasible[part] & ~infeasible[part]
+            if open_cells.any():
+                may = forms[(low[open_cells] <= 0).any(axis=0)]
+                left.append((int(open_cells.sum()), may))
+        start += length
     return Paving(
         paving.problem,
         paving.bounds,
         (*paving.feasible, *_some(cells[feasible])),
         (*paving.infeasible, *_some(cells[infeasible])),
         cells[~feasible & ~infeasible],
+        tuple(_joined(left)),
     )
+
+
+def _joined(runs: Sequence[Run]) -> list[Run]:
+    """Join neighbouring runs that are short: a handful of cells is not worth a call."""
+    found = list[Run]()
+    for count, forms in runs:
+        if found and found[-1][0] + count <= SHORTEST_RUN:
+            before, known = found.pop()
+            found.append((before + count, np.union1d(known, forms)))
+        else:
+            found.append((count, forms))
+    return found
 
 
 def _some(cells: Cells) -> tuple[Cells, ...]:
