@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
-  `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `allowed`,
+  `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -20,6 +20,7 @@ from typing import Any, NoReturn
 
 from qbound import __version__
 from qbound.cli import (
+    allowed,
     certify,
     check,
     connected,
@@ -46,6 +47,7 @@ COMMANDS = (
     traverse,
     sample,
     pave,
+    allowed,
     certify,
     check,
     draw,
@@ -57,7 +59,7 @@ COMMANDS = (
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
-WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
+WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
 READ = ("robot", "certificate", "path", "polygon")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
