@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `allowed`,
-  `certify`, `check`, `draw`, `explore`, `robots`;
+  `surface`, `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -31,6 +31,7 @@ from qbound.cli import (
     region,
     robots,
     sample,
+    surface,
     traverse,
     workspace,
 )
@@ -48,6 +49,7 @@ COMMANDS = (
     sample,
     pave,
     allowed,
+    surface,
     certify,
     check,
     draw,
