@@ -2,7 +2,7 @@
 
 /** The first view: from the side and a little from above, rad.
  * @type {View3} */
-const FIRST_VIEW = { yaw: -0.96, pitch: 0.38, distance: 4.4 };
+const FIRST_VIEW = { yaw: -0.96, pitch: 0.38, distance: 5 };
 const STRAIGHT_UP = Math.PI / 2;
 const NEAREST = 2.2;
 const FARTHEST = 9;
