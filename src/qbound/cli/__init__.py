@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `allowed`,
-  `surface`, `certify`, `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`, `pave`,
+  `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -27,6 +27,7 @@ from qbound.cli import (
     contains,
     draw,
     explore,
+    fibre,
     pave,
     region,
     robots,
@@ -46,6 +47,7 @@ COMMANDS = (
     contains,
     connected,
     traverse,
+    fibre,
     sample,
     pave,
     allowed,
