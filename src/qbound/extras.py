@@ -18,6 +18,7 @@ class Extra(NamedTuple):
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
+    "lxml": Extra("reading a URDF", "lxml", "urdf"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
@@ -26,6 +27,7 @@ EXTRAS: Final = {
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "trimesh": Extra("PLY or glTF", "trimesh", "surfaces"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
+    "trimesh": Extra("reading a mesh", "trimesh", "urdf"),
 }
 """By the name that is imported."""
 

@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
 - commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`, `pave`,
-  `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `robots`;
+  `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -28,6 +28,7 @@ from qbound.cli import (
     draw,
     explore,
     fibre,
+    import_urdf,
     pave,
     region,
     robots,
@@ -56,6 +57,7 @@ COMMANDS = (
     check,
     draw,
     explore,
+    import_urdf,
     robots,
 )
 """In the order of the help; after them come those of the entry-point group."""
@@ -64,7 +66,7 @@ GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
 WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
-READ = ("robot", "certificate", "path", "polygon")
+READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141
