@@ -1,11 +1,8 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`,
-  `pave`, `certify`, `check`, `draw`, `explore`, `robots`;
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
-  `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
-- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `sample`, `pave`,
-  `certify`, `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `sample`,
+  `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import` (`import_urdf`),
+  `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -24,6 +21,7 @@ from typing import Any, NoReturn
 
 from qbound import __version__
 from qbound.cli import (
+    allowed,
     certify,
     check,
     connected,
@@ -36,6 +34,7 @@ from qbound.cli import (
     region,
     robots,
     sample,
+    surface,
     traverse,
     why,
     workspace,
@@ -55,6 +54,8 @@ COMMANDS = (
     fibre,
     sample,
     pave,
+    allowed,
+    surface,
     certify,
     check,
     draw,
@@ -67,7 +68,7 @@ COMMANDS = (
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
-WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
+WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
 READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
