@@ -275,7 +275,7 @@ def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bool
         for first in range(start, start + length, LONGEST_RUN):
             part = slice(first, min(first + LONGEST_RUN, start + length))
             low, high = paving.bounds.bounds(cells[part], forms)
-            bad = (high < 0).any(axis=1)
+            bad: Bools = np.asarray((high < 0).any(axis=1))
             _separate(paving.bodies, cells[part], unseparated[part], bad)
             good = (low > 0).all(axis=1) & ~unseparated[part].any(axis=1) & ~bad
             feasible[part], infeasible[part] = good, bad
