@@ -1,6 +1,6 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`,
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `reach`, `sample`,
   `pave`, `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
@@ -28,6 +28,7 @@ from qbound.cli import (
     explore,
     fibre,
     pave,
+    reach,
     region,
     robots,
     sample,
@@ -46,6 +47,7 @@ COMMANDS = (
     connected,
     traverse,
     fibre,
+    reach,
     sample,
     pave,
     certify,
