@@ -3,6 +3,8 @@
 - commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `sample`,
   `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import` (`import_urdf`),
   `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `reach`, `sample`,
+  `pave`, `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -31,6 +33,7 @@ from qbound.cli import (
     fibre,
     import_urdf,
     pave,
+    reach,
     region,
     robots,
     sample,
@@ -52,6 +55,7 @@ COMMANDS = (
     why,
     traverse,
     fibre,
+    reach,
     sample,
     pave,
     allowed,
