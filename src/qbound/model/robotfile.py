@@ -32,6 +32,7 @@ __all__ = [
     "load_robot",
     "packaged_robots",
     "parse_robot",
+    "robot_table",
     "robot_text",
     "save_robot",
 ]
@@ -130,6 +131,11 @@ def packaged_robots() -> tuple[str, ...]:
 def parse_robot(table: Table) -> Robot:
     """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit."""
     return _robot(_plain(table), "")
+
+
+def robot_table(robot: Robot) -> Table:
+    """Return the content of a robot's file, what `parse_robot` undoes; defaults are left out."""
+    return _table(robot)
 
 
 def _plain(table: Table) -> Table:
