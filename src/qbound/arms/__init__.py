@@ -1,3 +1,13 @@
+"""What of arms with more than two joints? Answers about arms of balls, as imported ones are.
+
+- `fibres`: the exact feasible intervals of one joint, for thousands of configurations at once;
+  `gaps`: what intervals leave free, on a line or round a circle;
+- contacts of links: `links` (their balls), `pair_forms` (how near two of them come), `closest`
+  (where), `everywhere` (proofs over all cells), `allowed` (which never meet, which always do),
+  `allowed_report` (as JSON, a table, and the SRDF of planners);
+- `surfaces`: where safe values of three joints end; `surface_forms` (the functions), `surface_grid`
+  (on a grid), `surface_mesh` (triangles put onto them), `surface_files` (PLY and glTF);
+- `reports`: what was found, as JSON and in words.
 """What of arms with more than two joints? Where they can go, and why not.
 
 - `separations`: ranges of one joint that something blocks, whatever the other joints do;

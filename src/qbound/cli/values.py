@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
 from qbound.proofs.points import joint_decimal, limits_as_decimals
 from qbound.units import counted, parse_joint_value
+
+MOST_PANELS = 100
+"""Slices of a strip: more would be no picture."""
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
@@ -30,6 +33,23 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
     if len(found) == len(robot.joints):
         raise ValueError("--slice: every joint is held; one or more must move")
     return found
+
+
+def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list[float]]:
+    """Read ``q3=-90deg..90deg:9``: a joint that is not held, and so many values, evenly apart."""
+    j, span = _assigned(robot, "--strip", text)
+    ends, _, count = span.partition(":")
+    if ".." not in ends or not count.isascii() or not count.isdecimal():
+        raise ValueError(f"--strip {text}: wanted NAME=LOW..HIGH:COUNT, as q3=-90deg..90deg:9")
+    if j in held:
+        raise ValueError(f"--strip {text}: {robot.joints[j].name!r} is held by --slice")
+    low, high = (parse_joint_value(robot, j, end) for end in ends.split("..", 1))
+    if not 2 <= int(count) <= MOST_PANELS or not low < high:
+        raise ValueError(
+            f"--strip {text}: from 2 to {MOST_PANELS} values are wanted, the lower end first"
+        )
+    steps = int(count) - 1
+    return j, [low + (high - low) * k / steps for k in range(steps)] + [high]
 
 
 def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -19,7 +19,8 @@ from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region import Component, Region
+from qbound.region import Component, Region, Slices
+from qbound.units import amount
 from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 PANEL: Final = (5.4, 5.0)
+SMALL: Final = (3.2, 3.4)
+ACROSS: Final = 5
+"""Size of a strip's panels, and how many stand side by side."""
 Limits = tuple[float, float]
 Line = tuple[float, float, float]
 """Where a half-space that stands upright on the plane cuts it: unit normal and offset."""
@@ -129,11 +133,46 @@ def region_picture(region: Region, kind: str = "svg") -> bytes:
     return picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
+def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
+    """Draw slices side by side, each with its value and its area, and home where it lies in one."""
+    count = len(slices.regions)
+
+    def draw(axes: Sequence[Axes]) -> None:
+        for k, (ax, region) in enumerate(zip(axes, slices.regions, strict=True)):
+            q = slices.robot.home[None][: slices.holds_home(k)]
+            _joint_panel(ax, region, None, q)
+            place = q[:, list(region.problem.joints)] * figures.joint_scales(region)
+            ax.plot(*place.T, "P", color=INK, ms=9, mec="white", zorder=7)
+            ax.set_title(_slice_title(slices, k))
+            for axis, turns in zip((ax.xaxis, ax.yaxis), region.problem.forms.kinds, strict=True):
+                if turns == "revolute":
+                    axis.set_major_locator(
+                        figures.every(np.ptp(axis.get_view_interval()), few=True)
+                    )
+            below, left = k + ACROSS >= count, k % ACROSS == 0
+            ax.tick_params(labelbottom=below, labelleft=left)
+            ax.set(**({} if below else {"xlabel": ""}), **({} if left else {"ylabel": ""}))
+
+    return picture(count, draw, kind, size=SMALL, columns=ACROSS)
+
+
+def _slice_title(slices: Slices, k: int) -> str:
+    """Say where a slice lies, and how large it is."""
+    joint, region = slices.robot.joints[slices.along], slices.regions[k]
+    turn = np.degrees(1.0) if joint.turns else 1.0
+    value = amount(
+        float(slices.values[k] * turn), joint.unit(slices.robot.length_unit, "°"), digits=4
+    )
+    area = f"{region.area:#.4g} {region.area_unit.replace('^2', '²')}"
+    return figures.minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
+
+
 def picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
     kind: str,
     size: tuple[float, float] = PANEL,
+    columns: int = 2,
 ) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
     require("matplotlib")
@@ -142,8 +181,12 @@ def picture(
 
     silent = ("Date", "Creator") if kind == "svg" else ("Software",)
     with mpl.rc_context(figures.STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(size[0] * panels, size[1]))
-        draw(figure.subplots(1, panels, squeeze=False)[0])
+        rows, across = -(-panels // columns), min(panels, columns)
+        figure = Figure(figsize=(size[0] * across, size[1] * rows))
+        axes = figure.subplots(rows, across, squeeze=False).ravel()
+        for spare in axes[panels:]:
+            spare.remove()
+        draw(axes[:panels].tolist())
         buffer = BytesIO()
         figure.savefig(buffer, format=kind, dpi=160, metadata=dict.fromkeys(silent))
     return buffer.getvalue()

@@ -198,8 +198,8 @@ def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
         Largest absolute value of each joint.
     """
     first = len(forms.shape)
-    blocks = balls(forms.coefficients)
-    blocks = blocks * blocks  # a power of a ball around 0 would be NaN
+    coefficients = balls(forms.coefficients)
+    blocks = coefficients * coefficients  # `** 2` of a ball with 0 inside is NaN
     for axis, (kind, largest) in enumerate(zip(forms.kinds, reach, strict=True), start=first):
         row = FACTORS[kind]
         squares = row.units * balls(row.largest(ball(largest))) ** 2
