@@ -59,7 +59,7 @@ def test_an_elbow_that_cannot_pass_is_named_with_its_links_and_its_range(file):
     assert "3 ranges: -360 to -203.07 deg, -156.93 to 156.93 deg (start)" in ranges
     assert "-130.817 deg" in again  # the goal a turn back
     assert not check.check(found.certificate.text).refuted
-    assert valid(found)["separation"]["blocked"][0]["links"] == ["upper arm and forearm"]
+    assert valid(found)["separation"]["blocked"][0]["links"] == ["upper arm, forearm"]
 
 
 def test_a_straight_line_that_is_free_is_the_path(file):
@@ -131,7 +131,7 @@ def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file)
     assert found.answer == "infeasible"
     assert [row[:2] for row in found.violated] == [(1, "wrist.upper"), (0, "folded")]
     first, second = why_lines(found)
-    assert "the start violates upper arm and forearm, by 0.2 m (boundary folded)" in first
+    assert "the start violates upper arm, forearm, by 0.2 m (boundary folded)" in first
     assert "the goal violates wrist.upper, by 49.1831 deg" in second
     assert check.check(found.certificate.text).refuted
     assert valid(found)["answer"] == "infeasible"
