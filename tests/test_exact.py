@@ -1,6 +1,5 @@
 """Exact numbers of a robot: decimals, degrees, quarter turns, unit vectors."""
 
-import tomllib
 from fractions import Fraction
 
 import mpmath
@@ -156,8 +155,10 @@ def test_packaged_tables_and_exact_ones_name_the_same_boundaries():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed):
-    robot = exact_robot(parse_robot(tomllib.loads(robot_file(seed, 4, "revolute prismatic"))))
+def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed, tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text(robot_file(seed, 4))
+    robot = exact_robot(file)
     held = {0: 0.3, 2: -1.25}
     problem = exact_problem(robot, held)
     with precision(512):
