@@ -10,5 +10,8 @@
 - `separations`: ranges of one joint that something blocks, whatever the other joints do;
   `search`: a path, looked for in doubles; `why`: separations, a proved path, a paving, in this
   order; `answers`: what was found, in sentences and as JSON;
+- `separations`: ranges of one joint that something blocks, whatever the other joints do; `why`: can
+  it get from here to there (separations, a path, proved, a paving), `search` (a path, looked for
+  in doubles), `answers` (what was found, in sentences and as JSON);
 - `reports`: what was found, as JSON and in words.
 """

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from qbound.arms.separations import Block, JointTravel, Separation, links_of
+from qbound.arms.links import link_pair
+from qbound.arms.separations import Block, JointTravel, Separation
 from qbound.arms.why import Why
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import heading
@@ -66,7 +67,7 @@ def why_document(found: Why) -> dict[str, Any]:
 
 def _infeasible(found: Why) -> Iterator[str]:
     robot, limited = found.robot, limited_joints(found.robot)
-    named = {b.name: links_of(b) for b in robot.used}
+    named = {b.name: link_pair(robot, b) for b in robot.used}
     for k, end in enumerate(("start", "goal")):
         worst: dict[str, tuple[str, float]] = {}
         for _, name, margin in (row for row in found.violated if row[0] == k):
@@ -148,9 +149,16 @@ def _held(found: Why) -> str:
 
 
 def _block_text(robot: Robot, joint: Joint, block: Block) -> str:
-    others = " or others" if len(block.links) > 1 else ""
     span = _span(joint, robot, block.low, block.high, inwards=True)
-    return f"{span}, where {block.links[0]}{others} meet"
+    return f"{span}, where {_meet(block)}"
+
+
+def _meet(block: Block) -> str:
+    """Say what meets: two links, or what one boundary is about."""
+    others = " or others" if len(block.links) > 1 else ""
+    if block.links[0] in {each.boundary for each in block.ranges}:
+        return f"{block.links[0]}{others} is violated"
+    return f"{block.links[0].replace(', ', ' and ')}{others} meet"
 
 
 def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool = False) -> str:

@@ -13,7 +13,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
+from qbound.arms.links import link_pair
+from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.proofs.balls import above, ball, below, pi, precision, turns
 from qbound.proofs.blocked import BITS, BlockedRange, blocked_ranges
@@ -32,7 +33,7 @@ class Block:
     ranges : tuple of BlockedRange
         What it is made of, by low end; turned by full turns to where they stand here.
     links : tuple of str
-        What meets there, such as ``"upper_arm_link and forearm_link"``; the widest range first.
+        What meets there, as `links.link_pair` has it; the widest range first.
     """
 
     low: float
@@ -126,7 +127,7 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
     [('q1', 1, 1), ('q2', 1, 1)]
     """
     robot = source if isinstance(source, Robot) else load_robot(source)
-    named = {b.name: links_of(b) for b in robot.used}
+    named = {b.name: link_pair(robot, b) for b in robot.used}
     ranges = blocked_ranges(source, robot, [named[b.name] for b in robot.used])
     return tuple(
         _travel(robot, j, [r for r in ranges if r.joint == j], named)
@@ -161,15 +162,6 @@ def separation(
             blocks = (max(between, key=lambda b: b.high - b.low),)
         return Separation(travel, (parts[0], parts[1]), blocks)
     return None
-
-
-def links_of(boundary: Boundary) -> str:
-    """Name what meets: the links of both points, where points are called LINK/1, LINK/2, ..."""
-    if isinstance(boundary, Pair):
-        return " and ".join(name.rpartition("/")[0] or name for name in boundary.points)
-    if isinstance(boundary, HalfSpace) and boundary.body is None:
-        return f"{boundary.point.rpartition('/')[0] or boundary.point} and {boundary.name}"
-    return boundary.name
 
 
 # --- one joint ------------------------------------------------------------------------------------

@@ -10,15 +10,15 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arms.search import find_path
+from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
@@ -38,8 +38,11 @@ Answer = Literal["connected", "separated", "infeasible", "undecided"]
 During = Callable[[str], AbstractContextManager[None]]
 """What is entered with a text while that lasts: for progress."""
 
+QUICK = 400
+"""Places drawn in a first search, before a paving."""
+
 SEEDS = 3
-"""Searches, each with other places, before none is made any more."""
+"""Searches after it, each with other places, before none is made any more."""
 
 MOST_PAVED = 3
 """Joints that a paving takes."""
@@ -170,14 +173,36 @@ def why(
         found = _separated(text, robot, ends, hold, travels)
     if found is not None:
         return found
-    tried = [_said_of_separations(robot)]
+    asked = _Asked(text, robot, ends, hold, travels)
     with during("a path"):
-        path = _joined(text, robot, ends, hold, travels, seed)
+        path = _joined(asked, seed, 1, QUICK)
     if path is not None:
         return path
-    tried.append(f"a search for a path ({SEEDS} searches of two growing trees) found none")
     with during("a paving of the joints in which both ends differ"):
-        return _paved(source, text, robot, ends, hold, travels, tried)
+        paved = _paved(asked, source)
+    if paved.answer != "undecided":
+        return paved
+    with during("a path, for longer"):
+        path = _joined(asked, seed, SEEDS, TRIES)
+    if path is not None:
+        return path
+    none = f"a search for a path ({SEEDS} times two growing trees) found none"
+    return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What is asked, and what is blocked."""
+
+    text: str
+    robot: Robot
+    ends: Floats
+    hold: bool
+    travels: tuple[JointTravel, ...]
+
+    def answer(self, answer: Answer, **found: Any) -> Why:
+        """Return an answer to it."""
+        return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
 
 
 def differing(ends: Floats) -> list[int]:
@@ -226,27 +251,30 @@ def _said_of_separations(robot: Robot) -> str:
 # --- a path ---------------------------------------------------------------------------------------
 
 
-def _joined(
-    text: str,
-    robot: Robot,
-    ends: Floats,
-    hold: bool,
-    travels: tuple[JointTravel, ...],
-    seed: int,
-) -> Why | None:
+def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
-    for k in range(SEEDS):
-        path = find_path(robot, ends[0], ends[1], SEEDS * seed + k, hold=hold)
-        if path is None:
-            continue
-        proved = _proved(text, robot, path)
-        if proved is not None:
-            corners, margin, least, certificate = proved
-            return Why(
-                robot, ends, "connected", hold, travels,
-                path=corners, margin=margin, least=least, certificate=certificate,
-            )  # fmt: skip
+    for k in range(seeds):
+        start, goal = asked.ends
+        path = find_path(asked.robot, start, goal, SEEDS * seed + k, tries=tries, hold=asked.hold)
+        found = None if path is None else _connected(asked, path)
+        if found is not None:
+            return found
     return None
+
+
+def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
+    proved = _proved(asked.text, asked.robot, path)
+    if proved is None:
+        return None
+    corners, margin, least, certificate = proved
+    return asked.answer(
+        "connected",
+        path=corners,
+        margin=margin,
+        least=least,
+        held=held,
+        certificate=certificate,
+    )
 
 
 def _proved(text: str, robot: Robot, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
@@ -284,42 +312,26 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
 # --- a paving -------------------------------------------------------------------------------------
 
 
-def _paved(
-    source: str | Path,
-    text: str,
-    robot: Robot,
-    ends: Floats,
-    hold: bool,
-    travels: tuple[JointTravel, ...],
-    tried: list[str],
-) -> Why:
+def _paved(asked: _Asked, source: str | Path) -> Why:
     """Pave the joints in which the ends differ, the others held; all of them where they are few."""
-    n = len(robot.joints)
-    moving = list(range(n)) if n <= MOST_PAVED and not hold else differing(ends)
-    found = None
+    robot, ends, n = asked.robot, asked.ends, len(asked.robot.joints)
+    moving = list(range(n)) if n <= MOST_PAVED and not asked.hold else differing(ends)
     if any(bounds_bodies(boundary) for boundary in robot.used):
-        tried.append("pavings know no boundaries about bodies")
-    elif not 0 < len(moving) <= MOST_PAVED:
-        tried.append(f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}")
-    else:
-        still = {j: float(ends[0, j]) for j in range(n) if j not in moving}
-        problem = exact_problem(exact_robot(source), still)
-        found = connection(problem, *ends[:, moving])
-        tried.append(_said_of_paving(robot, moving, found))
-    answer: Answer = "undecided"
-    if found is not None and found.path is not None:
+        return asked.answer("undecided", tried=("pavings know no boundaries about bodies",))
+    if not 0 < len(moving) <= MOST_PAVED:
+        said = f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
+        return asked.answer("undecided", tried=(said,))
+    still = {j: float(ends[0, j]) for j in range(n) if j not in moving}
+    found = connection(exact_problem(exact_robot(source), still), *ends[:, moving])
+    if found.path is not None:
         path = np.tile(ends[0], (len(found.path), 1))
         path[:, moving] = found.path
-        proved = _proved(text, robot, path)
-        if proved is not None:
-            corners, margin, least, certificate = proved
-            return Why(
-                robot, ends, "connected", hold, travels,
-                path=corners, margin=margin, least=least, held=found, certificate=certificate,
-            )  # fmt: skip
-    if found is not None and found.answer == "separated" and (hold or len(moving) == n):
-        answer = "separated"
-    return Why(robot, ends, answer, hold, travels, held=found, tried=tuple(tried))
+        connected = _connected(asked, path, found)
+        if connected is not None:
+            return connected
+    proved = found.answer == "separated" and (asked.hold or len(moving) == n)
+    said = _said_of_paving(robot, moving, found)
+    return asked.answer("separated" if proved else "undecided", held=found, tried=(said,))
 
 
 def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
