@@ -123,7 +123,7 @@ def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> b
     def draw(axes: Sequence[Axes]) -> None:
         draw_section(axes[0], found, axis, value)
 
-    return _picture(1, draw, kind, size=(6.4, 5.6))
+    return picture(1, draw, kind, size=(6.4, 5.6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:

@@ -163,11 +163,6 @@ def parse_robot(table: Table) -> Robot:
     return _robot(_plain(table), "")
 
 
-def robot_table(robot: Robot) -> Table:
-    """Return the content of a robot's file, what `parse_robot` undoes; defaults are left out."""
-    return _table(robot)
-
-
 def _plain(table: Table) -> Table:
     """Replace NumPy's numbers and arrays by Python's: msgspec knows no others."""
     days = (date, datetime, time)  # TOML has them; a robot has not, and the refusal shows them
@@ -252,7 +247,7 @@ def _flat_coordinate(robot: Robot, frame: str) -> int:
 
 
 def robot_table(robot: Robot) -> Table:
-    """Return the content of a robot's file; what a file may leave out is left out."""
+    """Return the content of a robot's file, what `parse_robot` undoes; defaults are left out."""
     angle = ANGLE[robot.angle_unit]
     home = zip(robot.joints, robot.home, strict=True)
     file = {
