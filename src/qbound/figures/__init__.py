@@ -497,7 +497,7 @@ def every(span: float, *, few: bool = False) -> Any:
 
     if few:
         return MultipleLocator(180 * np.ceil(span / 1200) if span > 400 else 90)
-    return MultipleLocator(60 * np.ceil(span / 1200) if span > 180 else 30)
+    return MultipleLocator(60 * np.ceil(span / 600) if span > 180 else 30)
 
 
 def _halo(text: Any) -> Any:
