@@ -92,11 +92,11 @@ class Reach:
     def error(self) -> float:
         """An estimate of the volume's error: chance, what is not found yet, and the voxels' edge.
 
-        The standard error, what the last round added, and a third of the change from voxels twice
-        as long, since what is left is of second order in the edge.
+        The standard error, what the last round added, and half of the change from voxels twice as
+        long: a third of it, where what is left is of second order in the edge.
         """
         last, before, coarse = self.volumes.mean(axis=0)
-        return float(self.standard_error + abs(last - before) + abs(last - coarse) / 3)
+        return float(self.standard_error + abs(last - before) + abs(last - coarse) / 2)
 
     @property
     def marked_volume(self) -> float:
@@ -208,21 +208,26 @@ class _Survey:
     def volumes(self, grid: Grid, points: int, rng: np.random.Generator) -> list[float]:
         """Return volumes by a grid of its own: at last, a round before, by voxels twice as long.
 
-        Points are drawn evenly, then about what has led to voxels at the edge.
+        Points are drawn evenly, then about what has led to voxels at the edge, until a round finds
+        none or the rounds are over.
         """
         touched = np.zeros(len(self.marked), dtype=np.bool_)
         leads = np.zeros((len(self.marked), len(self.robot.joints)))
         for q in _drawn(self.robot, self.joint, points, rng):
             self._look(q, grid, touched, leads)
+        before = now = enclosed_volume(touched.reshape(grid.shape), grid.edge)
         for spread in SPREADS:
-            before = enclosed_volume(touched.reshape(grid.shape), grid.edge)
+            known, before = touched.sum(), now
             about = leads[grid.at_edge(touched)]
             for k in range(0, len(about), ROWS):
                 q = _near(self.robot, about[k : k + ROWS], spread, rng)
                 self._look(q, grid, touched, leads)
+            now = enclosed_volume(touched.reshape(grid.shape), grid.edge)
+            if touched.sum() == known:
+                break
         whole = touched.reshape(grid.shape)
-        coarse = enclosed_volume(coarsened(whole), 2 * grid.edge)
-        return [enclosed_volume(whole, grid.edge), before, coarse]
+        coarse = [enclosed_volume(each, 2 * grid.edge) for each in coarsened(whole)]
+        return [now, before, float(np.mean(coarse))]
 
     def _look(self, q: Floats, grid: Grid, touched: Bools, leads: Floats) -> None:
         """Mark where the tool gets along the fibres of some configurations."""
