@@ -59,7 +59,8 @@ class Reach:
     grid : Grid
     reached : ndarray of bool, shape grid.shape
     index : ndarray or None, shape grid.shape
-        Reachability index: the part of all directions that the tool's axis has within a voxel.
+        Reachability index: the part of all directions that the tool's axis was found to have within
+        a voxel.
     joint : int
         The joint whose travel is exact.
     fibres : int
