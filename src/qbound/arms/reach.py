@@ -171,9 +171,9 @@ def reach(
     The gantry's tool moves in a plane: it has places, but no volume.
 
     >>> from qbound import load_robot
-    >>> found = reach(load_robot("pr-gantry-arm"), 0.1, points=64, scrambles=2)
-    >>> bool(found.reached.any()), abs(found.volume) < 0.2
-    (True, True)
+    >>> found = reach(load_robot("pr-gantry-arm"), 0.2, points=64, scrambles=2)
+    >>> bool(found.reached.any()), found.volume
+    (True, 0.0)
     """
     refuse_no_robot("reach", robot)
     require("scipy", "a map of reach")
