@@ -82,7 +82,7 @@ def main() -> None:
         help="home's slices again with no form left out: minutes",
     )
     options = parser.parse_args()
-    print("| arm | pairs | slices | median / s | largest / s | forms kept, most | all forms |")
+    print("| arm | pairs | slices | median / s | largest / s | forms kept, most | all forms / s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for robot in [load_robot(file) for file in options.robots] or [ur5()]:
         find_region(robot, dict.fromkeys(range(2, len(robot.joints)), 0.0))  # the forms, once

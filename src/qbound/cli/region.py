@@ -49,8 +49,8 @@ def add_to(commands: Any) -> None:
         "--strip",
         metavar="q3[=LOW..HIGH:COUNT]",
         help="a region for each of so many values of a third joint, as q3=-90deg..90deg:9 (q3"
-        " alone: 25 over its range), --slice holding the others; --svg draws a strip of panels, --json"
-        " has them all",
+        " alone: 25 over its range), --slice holding the others; --svg draws a strip of panels,"
+        " --json has them all",
     )
     parser.set_defaults(run=run)
 
