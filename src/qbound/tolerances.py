@@ -136,3 +136,9 @@ takes triangles of 1e-5 rad beside the place of contact, and only there."""
 CHORD: Final = 0.04
 """Angle between points of a circle in a drawn outline: a chord leaves the circle by 2e-4 of the
 radius, less than a line is wide."""
+
+OUTWARD: Final = 2.0**-44
+"""Part of a shape's size by which the balls that cover it are larger than exact numbers ask.
+
+A distance, and a corner halved sixty times, are each right to some 70 units in the last place of
+the largest coordinate, 2**-46 of it; what covers by this much more covers in exact numbers."""

@@ -6,7 +6,8 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 Here are the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images; `cells`: pavings.
+- `workspace`: aspects and their images; `cells`: pavings; `surfaces`: those of three joints; `why`:
+  why a plan fails.
 """
 
 from __future__ import annotations

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.arms.reach import Reach
 from qbound.extras import require
 from qbound.figures import INK
+from qbound.figures.reach import draw_section
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
@@ -70,7 +72,7 @@ def pose_picture(
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 
-    return _picture((region is not None) + (plane is not None), draw, kind)
+    return picture((region is not None) + (plane is not None), draw, kind)
 
 
 def traversal_picture(
@@ -98,7 +100,7 @@ def traversal_picture(
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
         _space_panel(space, robot, plane)
 
-    return _picture(2, draw, kind)
+    return picture(2, draw, kind)
 
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
@@ -112,7 +114,16 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
 
-    return _picture(1, draw, kind, size=(7, 6))
+    return picture(1, draw, kind, size=(7, 6))
+
+
+def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> bytes:
+    """Draw the section of a map of reach where a coordinate (0, 1, 2 for x, y, z) has a value."""
+
+    def draw(axes: Sequence[Axes]) -> None:
+        draw_section(axes[0], found, axis, value)
+
+    return picture(1, draw, kind, size=(6.4, 5.6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
@@ -130,7 +141,7 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
     """Return the picture of `plot_region`, the first component's vertices numbered."""
-    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
+    return picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
 def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
@@ -153,7 +164,7 @@ def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
             ax.tick_params(labelbottom=below, labelleft=left)
             ax.set(**({} if below else {"xlabel": ""}), **({} if left else {"ylabel": ""}))
 
-    return _picture(count, draw, kind, size=SMALL, columns=ACROSS)
+    return picture(count, draw, kind, size=SMALL, columns=ACROSS)
 
 
 def _slice_title(slices: Slices, k: int) -> str:
@@ -167,7 +178,7 @@ def _slice_title(slices: Slices, k: int) -> str:
     return figures.minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
 
 
-def _picture(
+def picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
     kind: str,
