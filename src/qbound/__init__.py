@@ -15,14 +15,13 @@ from qbound.forms.circle import circle_arc, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-from qbound.region import Region, Slices, find_region, find_slices, margins, violated
+from qbound.region import Region, find_region, find_slices, margins, violated
 
 __all__ = [
     "HarmonicForm",
     "Region",
     "Robot",
     "RobotFileError",
-    "Slices",
     "circle_arc",
     "circle_roots",
     "clearance",
