@@ -1,4 +1,4 @@
-"""Imported arms beside pinocchio and coal: the same places, the same collisions?
+"""What pinocchio and coal say of imported arms: the same places, the same collisions.
 
 Run with ``python benchmarks/peers.py``, in an environment that has ``pin`` (pinocchio with coal)
 and, for the arms of others, ``example-robot-data`` and ``rtb-data``. Each arm is imported, and
@@ -14,7 +14,9 @@ from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 
+import coal
 import numpy as np
+import pinocchio as pin
 
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Robot
@@ -59,9 +61,6 @@ def arms() -> list[Arm]:
 
 def spheres(robot: Robot, model: Any) -> Any:
     """Return coal's spheres for the balls of a robot, and the robot's pairs, on a model."""
-    import coal
-    import pinocchio as pin
-
     geometry = pin.GeometryModel()
     index = {}
     for point in robot.points:
@@ -77,8 +76,6 @@ def spheres(robot: Robot, model: Any) -> Any:
 
 def true_shapes(arm: Arm, robot: Robot, model: Any) -> Any:
     """Return coal's own shapes of the URDF, with the pairs of links that the robot keeps apart."""
-    import pinocchio as pin
-
     folders = [str(folder) for folder in arm.packages]
     geometry = pin.buildGeomFromUrdf(model, str(arm.urdf), pin.COLLISION, package_dirs=folders)
     of_link: dict[str, list[int]] = {}
@@ -94,8 +91,6 @@ def true_shapes(arm: Arm, robot: Robot, model: Any) -> Any:
 
 def compare(arm: Arm, count: int) -> None:
     """Print how far the places differ, and how many configurations are judged differently."""
-    import pinocchio as pin
-
     start = process_time()
     imported = import_urdf(
         arm.urdf, chain=arm.chain, srdf=arm.srdf, packages=arm.packages, excess=arm.excess
@@ -134,7 +129,8 @@ def compare(arm: Arm, count: int) -> None:
                 places = max(places, distance(robot, model, data, base, x))
     print(
         f"{arm.name}: {len(robot.joints)} joints, {len(robot.points) - 1} balls, "
-        f"{len(robot.boundaries)} pairs, excess {imported.excess:.4f} m, imported in {seconds:.1f} s; "
+        f"{len(robot.boundaries)} pairs, excess {imported.excess:.4f} m, "
+        f"imported in {seconds:.1f} s; "
         f"places within {places:.1e} m; {judged} of {count} configurations judged differently "
         f"({hits} collide, {close} within {CLOSE:g} m of contact), {pairs} pairs of 500; "
         f"of {min(CHUNK, count)}, {really} collide by their true shapes, {missed} of these unseen",
@@ -144,8 +140,6 @@ def compare(arm: Arm, count: int) -> None:
 
 def configuration(model: Any, robot: Robot, x: np.ndarray) -> np.ndarray:
     """Return pinocchio's configuration; joints without limits are a cosine and a sine there."""
-    import pinocchio as pin
-
     full = pin.neutral(model)
     for joint, value in zip(robot.joints, x, strict=True):
         theirs = model.joints[model.getJointId(joint.name)]
@@ -156,14 +150,14 @@ def configuration(model: Any, robot: Robot, x: np.ndarray) -> np.ndarray:
 
 def distance(robot: Robot, model: Any, data: Any, base: int, x: np.ndarray) -> float:
     """Return how far the places of the points differ at most, seen from the base."""
-    import pinocchio as pin
-
     frames = robot.frames(x)
     far = 0.0
     for point in robot.points:
         frame = model.getFrameId(point.frame, pin.FrameType.BODY)
         seen = data.oMf[base].actInv(data.oMf[frame].act(point.at))
-        far = max(far, float(np.abs(frames.position(robot.base, point.name, robot.base) - seen).max()))
+        far = max(
+            far, float(np.abs(frames.position(robot.base, point.name, robot.base) - seen).max())
+        )
     return far
 
 

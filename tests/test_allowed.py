@@ -103,7 +103,10 @@ def test_sometimes_with_two_witnesses() -> None:
 
 @pytest.mark.parametrize(
     ("limits", "contact"),
-    [((0.5, 3.0), Contact.NEVER), ((-3.0, 0.5), Contact.SOMETIMES), ((5.0, 12.0), Contact.SOMETIMES)],
+    [
+        ((0.5, 3.0), Contact.NEVER), ((-3.0, 0.5), Contact.SOMETIMES),
+        ((5.0, 12.0), Contact.SOMETIMES),
+    ],
 )  # fmt: skip
 def test_limits_count_and_more_than_a_turn_is_a_turn(limits, contact) -> None:
     """The ball of radius 0.1 on the rim overlaps the post within 0.2 rad of a whole turn."""

@@ -1555,7 +1555,7 @@ class Separation:
         """Verify that the cores are nearer than the gap at a configuration, by a place of each.
 
         Each place is a mean of corners. It will do that they are nearer than the gap, or that one
-        is strictly inside the other core.
+        is strictly inside the other core. Of two segments it will do that they cross.
         """
         places = [
             sum((real(w) * p for w, p in zip(row, core.corners, strict=True)), ZERO)
@@ -1565,7 +1565,22 @@ class Separation:
         step = less(one, other)
         square = less(self.plane.dot(step, step), {self.plane.still: real(self.gap**2)})
         inside = (self._inside(self.cores[1], one, q), self._inside(self.cores[0], other, q))
-        return self._is_negative(square, q) or any(inside)
+        return self._is_negative(square, q) or any(inside) or self._cross(q)
+
+    def _cross(self, q: Point) -> bool:
+        """Tell whether two segments certainly cross: the line of each parts the other's ends."""
+        one, other = self.cores
+        if not len(one.corners) == len(other.corners) == 2:
+            return False
+        return self._parts_ends(one, other, q) and self._parts_ends(other, one, q)
+
+    def _parts_ends(self, core: Core, other: Core, q: Point) -> bool:
+        """Tell whether the ends of a segment are certainly on two sides of another one's line."""
+        normal, start = self._direction(core, core.normals[0]), self._place(core, core.corners[0])
+        ends = [self._place(other, end) for end in other.corners]
+        below = [self._is_negative(self.plane.dot(normal, less(end, start)), q) for end in ends]
+        above = [self._is_negative(self.plane.dot(normal, less(start, end)), q) for end in ends]
+        return (below[0] and above[1]) or (above[0] and below[1])
 
     def _inside(self, core: Core, place: Form, q: Point) -> bool:
         """Tell whether a place is certainly on the inner side of every edge of an outline."""

@@ -10,5 +10,6 @@
 - `separations`: ranges of one joint that something blocks, whatever the other joints do; `why`: can
   it get from here to there (separations, a path, proved, a paving), `search` (a path, looked for
   in doubles), `answers` (what was found, in sentences and as JSON);
+- `reach`: where the tool gets to; `paths` (its ways along fibres), `voxels`;
 - `reports`: what was found, as JSON and in words.
 """

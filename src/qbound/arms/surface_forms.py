@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -51,12 +51,15 @@ class SurfaceForms:
         Limits: axis, value, and sign of the side within.
     sizes : ndarray, shape (m + limits,)
         Sizes of the functions' terms: what their values are compared with.
+    box : ndarray, shape (2, 3)
+        Ends of the axes where the surface is open; infinite where it is closed by a limit.
     """
 
     forms: HarmonicForm
     names: tuple[str, ...]
     walls: tuple[tuple[int, float, float], ...]
     sizes: Floats
+    box: Floats
 
     def relative(self, q: Floats, which: Ints | None = None) -> Floats:
         """Return the values of functions by their sizes, shape (N, 3) to (N, count).
@@ -108,7 +111,7 @@ class SurfaceForms:
         """Return it with some of the forms, and all limits."""
         kept = np.concatenate([which, np.ones(len(self.walls), dtype=np.bool_)])
         names = tuple(name for name, keep in zip(self.names, kept, strict=True) if keep)
-        return SurfaceForms(self.forms[which], names, self.walls, self.sizes[kept])
+        return replace(self, forms=self.forms[which], names=names, sizes=self.sizes[kept])
 
     def of(self, q: Floats, which: Ints) -> tuple[Floats, Floats]:
         """Return value and slope of function number `which` at each place.
@@ -124,10 +127,11 @@ class SurfaceForms:
         slopes : ndarray, shape (N, s, 3)
         """
         count = len(self._rows)
-        form = np.minimum(which, count - 1)
-        monomials = self._monomials(q)
-        values = np.einsum("nsc,nc->ns", self._rows[form], monomials)
-        slopes = np.einsum("nsjc,nc->nsj", self._slopes[form], monomials)
+        values, slopes = np.zeros(which.shape), np.zeros((*which.shape, 3))
+        if count:
+            form, monomials = np.minimum(which, count - 1), self._monomials(q)
+            values = np.einsum("nsc,nc->ns", self._rows[form], monomials)
+            slopes = np.einsum("nsjc,nc->nsj", self._slopes[form], monomials)
         for k, (axis, value, side) in enumerate(self.walls, start=count):
             here = which == k
             values = np.where(here, side * (q[:, None, axis] - value), values)
@@ -155,13 +159,15 @@ class SurfaceForms:
         found : ndarray of bool, shape (N,)
             Whether all functions vanish, within two steps of where it began.
         """
-        place = q.copy()
+        place, held = q.copy(), held.copy()
         for _ in range(STEPS):
             values, slopes = self.of(place, which)
             size = self.sizes[which]
             move = slopes * np.where(held, 0.0, step)[:, None] / size[..., None]
             way = np.linalg.pinv(move, rcond=1e-9) @ (values / size)[..., None]
-            place = place - np.clip(way[..., 0], -1, 1) * step
+            moved = place - np.clip(way[..., 0], -1, 1) * step
+            place = np.clip(moved, *self.box)
+            held |= place != moved  # what comes to a border goes on along it
         values, _ = self.of(place, which)
         near = (np.abs(place - q) <= 2 * step).all(axis=1)
         return place, np.asarray(near & (np.abs(values) <= ON_FORM * self.sizes[which]).all(axis=1))
@@ -233,6 +239,8 @@ def surface_forms(
     forms = stacked(robot, robot.used).restrict(held)
     reach = [max(map(abs, axis.ends)) for axis in axes]
     ended = [(k, axis) for k, axis in enumerate(axes) if caps and not axis.around]
+    box = np.array([axis.ends for axis in axes]).T
+    box[:, [k for k, _ in ended]] = [[-math.inf], [math.inf]]
     return SurfaceForms(
         forms=forms,
         names=(
@@ -245,6 +253,7 @@ def surface_forms(
             for end, side in zip(axis.ends, (1.0, -1.0), strict=True)
         ),
         sizes=np.array([*forms.size(reach), *(1 + reach[k] for k, _ in ended for _ in range(2))]),
+        box=box,
     )
 
 

@@ -7,7 +7,8 @@ where the two meet, and a triangle of three functions in their corner.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Final, Self
 
 import numpy as np
@@ -24,6 +25,12 @@ MOST: Final = 3
 
 VIOLATED: Final = 4 * ON_FORM
 """A function, by its size, that is less than minus this is violated; above, it may vanish."""
+
+CUTS: Final = 3
+"""Rounds of cutting: between two functions a third may come up."""
+
+WELDED: Final = 9
+"""Digits of a step in which the places of one vertex agree."""
 
 NONE: Final = -1
 """Stands for a function in a set that has fewer."""
@@ -71,11 +78,20 @@ class Placed:
     sets : ndarray of int, shape (v, MOST)
         The functions of each, ascending in the order they were met; `NONE` beyond.
     exact : ndarray of bool, shape (v,)
+    held : ndarray of bool, shape (v, 3)
+        As in `Mesh`.
     """
 
     vertices: Floats
     sets: Ints
     exact: Bools
+    held: Bools
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Return all of several, one after the other."""
+        columns = [[getattr(part, each.name) for part in parts] for each in fields(cls)]
+        return cls(*map(np.concatenate, columns))
 
 
 def refined(forms: SurfaceForms, mesh: Mesh, step: Floats) -> Mesh:
@@ -87,42 +103,70 @@ def refined(forms: SurfaceForms, mesh: Mesh, step: Floats) -> Mesh:
         Of the grid.
     """
     placed = _onto_active(forms, mesh.vertices, mesh.nearest[:, None], mesh.held, step)
-    edges, of_triangle = _edges(mesh.triangles)
-    one, other = placed.sets[edges[:, 0]], placed.sets[edges[:, 1]]
-    cut = ~_shares(one, other)
-    ends = edges[cut]
-    held = np.asarray(mesh.held[ends].all(axis=1))
-    middles = placed.vertices[ends].mean(axis=1)
-    on_edges = _onto_active(
-        forms, middles, np.column_stack([one[cut, 0], other[cut, 0]]), held, step
-    )
-    number = np.full(len(edges), NONE, dtype=np.intp)
-    number[cut] = len(placed.vertices) + np.arange(int(cut.sum()))
-    cuts = number[of_triangle]  # (t, 3): the vertex on the edge after each corner
-    whole = (cuts != NONE).all(axis=1)
-    corners = mesh.triangles[whole]
-    in_corners = _onto_active(
-        forms,
-        placed.vertices[corners].mean(axis=1),
-        placed.sets[corners, 0],
-        np.zeros((len(corners), 3), dtype=np.bool_),
-        step,
-    )
-    parts = (placed, on_edges, in_corners)
-    vertices = np.concatenate([part.vertices for part in parts])
-    centre = np.full(len(mesh.triangles), NONE, dtype=np.intp)
-    centre[whole] = len(placed.vertices) + len(ends) + np.arange(len(corners))
-    triangles = _divided(mesh.triangles, cuts, centre)
-    sets = np.concatenate([part.sets for part in parts])
+    triangles, before = mesh.triangles, 0
+    for _ in range(CUTS):
+        triangles, placed, before = *_cut(forms, triangles, placed, step), len(triangles)
+        if len(triangles) == before:
+            break
+    number, kept = _welded(placed.vertices / step)
+    triangles = number[triangles]
+    real = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    vertices, triangles = placed.vertices[kept], triangles[real]
     return replace(
         mesh,
         vertices=vertices,
         triangles=triangles,
-        active=_labels(forms, vertices, triangles, sets),
-        exact=np.concatenate([part.exact for part in parts]),
-        held=np.concatenate([mesh.held, held, np.zeros((len(corners), 3), dtype=np.bool_)]),
-        nearest=sets[:, 0],
+        active=_labels(forms, vertices, triangles, placed.sets[kept]),
+        exact=placed.exact[kept],
+        held=placed.held[kept],
+        nearest=placed.sets[kept, 0],
     )
+
+
+def _welded(places: Floats) -> tuple[Ints, Ints]:
+    """Return numbers under which equal places are one, and the places that stand for them."""
+    _, kept, number = np.unique(
+        places.round(WELDED), axis=0, return_index=True, return_inverse=True
+    )
+    return number.ravel(), kept
+
+
+def _cut(forms: SurfaceForms, triangles: Ints, placed: Placed, step: Floats) -> tuple[Ints, Placed]:
+    """Cut edges whose ends have no function in common, and triangles whose corners have none."""
+    edges, of_triangle = _edges(triangles)
+    one, other = placed.sets[edges[:, 0]], placed.sets[edges[:, 1]]
+    cut = ~_shares(one, other)
+    ends = edges[cut]
+    on_edges = _onto_active(
+        forms,
+        placed.vertices[ends].mean(axis=1),
+        np.column_stack([one[cut, 0], other[cut, 0]]),
+        np.asarray(placed.held[ends].all(axis=1)),
+        step,
+    )
+    number = np.full(len(edges), NONE, dtype=np.intp)
+    number[cut] = len(placed.vertices) + np.arange(len(ends))
+    cuts = number[of_triangle]  # (t, 3): the vertex on the edge after each corner
+    missing = (cuts != NONE).sum(axis=1)
+    in_three = (missing == 3) | ((missing == 0) & ~_common(placed.sets[triangles]).any(axis=1))
+    corners = triangles[in_three]
+    in_corners = _onto_active(
+        forms,
+        placed.vertices[corners].mean(axis=1),
+        _three(placed.sets[corners]),
+        np.asarray(placed.held[corners].all(axis=1)),
+        step,
+    )
+    centre = np.full(len(triangles), NONE, dtype=np.intp)
+    centre[in_three] = len(placed.vertices) + len(ends) + np.arange(len(corners))
+    return _divided(triangles, cuts, centre), Placed.joined((placed, on_edges, in_corners))
+
+
+def _three(sets: Ints) -> Ints:
+    """Return three functions of the corners of triangles, shape (k, 3, MOST) to (k, MOST)."""
+    rows = [list(dict.fromkeys(row.T[row.T != NONE].tolist()))[:MOST] for row in sets]
+    padded = [row + [NONE] * (MOST - len(row)) for row in rows]
+    return np.array(padded, dtype=np.intp).reshape(-1, MOST)
 
 
 def _onto_active(
@@ -154,8 +198,8 @@ def _onto_active(
     place, found = _by_size(forms, start[rest], alone, held[rest], step)
     found &= forms.least(place)[1] >= -VIOLATED
     vertices[rest[found]], exact[rest[found]] = place[found], True
-    sets[rest] = np.column_stack([wanted, np.full((count, MOST - wanted.shape[1]), NONE)])[rest]
-    return Placed(vertices, sets, exact)
+    sets[rest] = alone
+    return Placed(vertices, sets, exact, held)
 
 
 def _by_size(
@@ -200,7 +244,7 @@ def _divided(triangles: Ints, cuts: Ints, centre: Ints) -> Ints:
             corner, on = (np.take_along_axis(x, turn, axis=1) for x in (corner, on))
         (a, b, c), (ab, bc, ca), m = corner.T, on.T, centre[here]
         parts += {
-            0: [(a, b, c)],
+            0: [(a[m == NONE], b[m == NONE], c[m == NONE]), *_about(a, b, c, m)],
             1: [(a, ab, c), (ab, b, c)],
             2: [(ab, b, bc), (a, ab, bc), (a, bc, c)],
             3: [(a, ab, m), (ab, b, m), (b, bc, m), (bc, c, m), (c, ca, m), (ca, a, m)],
@@ -208,12 +252,25 @@ def _divided(triangles: Ints, cuts: Ints, centre: Ints) -> Ints:
     return np.concatenate([np.stack(part, axis=1) for part in parts])
 
 
+def _about(a: Ints, b: Ints, c: Ints, m: Ints) -> list[tuple[Ints, Ints, Ints]]:
+    """Divide triangles that have a centre about it."""
+    a, b, c, m = (x[m != NONE] for x in (a, b, c, m))
+    return [(a, b, m), (b, c, m), (c, a, m)]
+
+
+def _common(sets: Ints) -> Bools:
+    """Tell which functions of their first corners all corners of triangles have, (t, MOST)."""
+    one, *others = (sets[:, k] for k in range(3))
+    found = one != NONE
+    for other in others:
+        found = found & (one[:, :, None] == other[:, None]).any(axis=2)
+    return np.asarray(found)
+
+
 def _labels(forms: SurfaceForms, vertices: Floats, triangles: Ints, sets: Ints) -> Ints:
     """Return the function that all corners of a triangle have, else the active one inside."""
-    one, other, third = (sets[triangles[:, k]] for k in range(3))
-    common = (one[:, :, None] == other[:, None]).any(axis=2)
-    common &= (one[:, :, None] == third[:, None]).any(axis=2) & (one != NONE)
-    labels = one[np.arange(len(one)), common.argmax(axis=1)]
+    common = _common(sets[triangles])
+    labels = sets[triangles[:, 0]][np.arange(len(triangles)), common.argmax(axis=1)]
     unclear = np.flatnonzero(common.sum(axis=1) != 1)
     labels[unclear] = forms.least(vertices[triangles[unclear]].mean(axis=1))[0]
     return np.asarray(labels)

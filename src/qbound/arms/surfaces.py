@@ -51,7 +51,7 @@ class Surface:
         Steps of the grid along each axis.
     capped : bool
         Whether limits are part of the surface. Else it is open there, and at the seam of a joint
-        that turns all the way round always: both sides of the seam have the same vertices.
+        that turns all the way round always: the curves on both sides of the seam are the same.
     vertices : ndarray, shape (v, 3)
         rad or length.
     triangles : ndarray of int, shape (t, 3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from qbound.model.robot import Robot
@@ -36,7 +37,12 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
 
 
 def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list[float]]:
-    """Read ``q3=-90deg..90deg:9``: a joint that is not held, and so many values, evenly apart."""
+    """Read ``q3=-90deg..90deg:9``: a joint that is not held, and so many values, evenly apart.
+
+    Of ``q3`` alone there are 25, over its limits or one turn.
+    """
+    if "=" not in text:
+        text = f"{text}={_whole_range(robot, text)}"
     j, span = _assigned(robot, "--strip", text)
     ends, _, count = span.partition(":")
     if ".." not in ends or not count.isascii() or not count.isdecimal():
@@ -96,6 +102,14 @@ def _assigned(robot: Robot, option: str, text: str) -> tuple[int, str]:
     if name not in names:
         raise ValueError(f"{option} {text}: no joint {name!r}; there are {', '.join(names)}")
     return names.index(name), value
+
+
+def _whole_range(robot: Robot, name: str) -> str:
+    """Write a joint's limits, or one turn, as a strip of 25 values."""
+    joint = next((joint for joint in robot.joints if joint.name == name), None)
+    low, high = (-math.pi, math.pi) if joint is None or joint.limits is None else joint.limits
+    unit = "rad" if joint is not None and joint.turns else ""
+    return f"{low!r}{unit}..{high!r}{unit}:25"
 
 
 def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.arms.reach import Reach
 from qbound.extras import require
 from qbound.figures import INK
+from qbound.figures.reach import draw_section
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
@@ -113,6 +115,15 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         legend(ax)
 
     return picture(1, draw, kind, size=(7, 6))
+
+
+def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> bytes:
+    """Draw the section of a map of reach where a coordinate (0, 1, 2 for x, y, z) has a value."""
+
+    def draw(axes: Sequence[Axes]) -> None:
+        draw_section(axes[0], found, axis, value)
+
+    return picture(1, draw, kind, size=(6.4, 5.6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:

@@ -1,7 +1,8 @@
 """What is proved? Exact numbers, balls, cells, and certificates that a checker accepts.
 
 - answers: `verdict` (proved, refuted, undecided: of every prover);
-- numbers: `exact` (a robot as its file writes it), `balls` (python-flint's, and their precision);
+- numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
+  `balls` (python-flint's, and their precision);
 - boundaries: `crossings` (where two curves meet, none left out), `runs` (pieces between them),
   `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
   `exact_windows` (the paper's rule, Table 6);

@@ -86,6 +86,8 @@ class BoxBounds:
         Coefficients exact or balls.
     ends : sequence of (arb, arb)
         Lower and upper end of each joint's range.
+    rows : dict, optional
+        Factors at centres that are known already: bounds of the same ranges may share them.
 
     Raises
     ------
@@ -95,7 +97,7 @@ class BoxBounds:
 
     forms: HarmonicForm
     ends: Ends
-    _rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
+    rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Round the coefficients, and bound what that and all later rounding can do."""
@@ -176,12 +178,12 @@ class BoxBounds:
 
     def _row(self, joint: int, bits: int, index: int) -> list[float]:
         key = joint, bits, index
-        if key not in self._rows:
+        if key not in self.rows:
             low, high = self.ends[joint]
             centre = low + (high - low) * (2 * index + 1) / 2 ** (bits + 1)
             one, two = FACTORS[self.forms.kinds[joint]].functions(centre)
-            self._rows[key] = [1.0, float(one), float(two)]
-        return self._rows[key]
+            self.rows[key] = [1.0, float(one), float(two)]
+        return self.rows[key]
 
 
 def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:

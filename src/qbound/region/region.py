@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import Decomposition, decompose
+from qbound.region.emptiness import irreducible
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
@@ -406,7 +406,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
     cells = CellComplex(decompose(plane))
     if not cells.cells:
-        return Region((), problem, cells, base, {}, _irreducible(inner, base), irrelevant)
+        return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
     found = measured(cells, problem, home, base)
     if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
@@ -434,35 +434,6 @@ def _why_no_home(region: Region) -> str:
     lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
-
-
-def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
-    """Return forms that leave no room together, but would if any one of them were dropped."""
-    dropped: list[int] = []
-    for k in range(len(problem.names)):
-        if _is_empty(problem.without([*dropped, k]), base):
-            dropped.append(k)
-    problem = problem.without(dropped)
-    problem = _shed(problem, [boundary.name for boundary in problem.bodies], base)
-    return (*problem.names, *(boundary.name for boundary in problem.bodies))
-
-
-def _shed(problem: Problem, bodies: Sequence[str], base: int) -> Problem:
-    """Drop boundaries about bodies that an empty region does not need, as many at once as can be.
-
-    What is needed beside others is needed when they are dropped: no one is asked twice.
-    """
-    if not bodies or _is_empty(left := problem.without_bodies(bodies), base):
-        return left if bodies else problem
-    if len(bodies) == 1:
-        return problem
-    half = len(bodies) // 2
-    return _shed(_shed(problem, bodies[:half], base), bodies[half:], base)
-
-
-def _is_empty(problem: Problem, base: int) -> bool:
-    plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
-    return not decompose(plane).cells
 
 
 def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
