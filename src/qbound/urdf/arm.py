@@ -108,6 +108,19 @@ def import_urdf(
         If a file is wrong, or says what no robot here can be, with its line.
     ModuleNotFoundError
         If a library is missing that comes with ``qbound[urdf]``.
+
+    Notes
+    -----
+    None of this is in the paper. Two links that a joint connects, or that are fixed to such links,
+    are never a pair.
+
+    Examples
+    --------
+    >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
+    >>> len(imported.robot.points) - 1, len(imported.robot.boundaries), imported.excess <= 0.01
+    (29, 193, True)
+    >>> imported.robot.home.round(3).tolist()
+    [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
     """
     urdf = read_urdf(packaged_or_path(source))
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
