@@ -4,10 +4,10 @@ A robot file becomes a robot, the robot gives boundary functions, and these are 
 `find_region` solves them for every component of the safe region. The method is that of
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
-The mathematics: `geometry`, `forms`, `model`, `boundary`, `region`, and `tolerances`.
+The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
-`figures`, `explorer`, `cli`. Alone: `check`. Before it: `urdf`. Beside all: `units`, `symbols`,
-`files`, `printable`, `extras`, `version`.
+`figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`, `printable`,
+`extras`, `version`.
 """
 
 from qbound.boundary.functions import clearance, components, pair_vector
