@@ -27,6 +27,12 @@ NEGLIGIBLE: Final = 1e-13
 ROUNDING: Final = 16.0 * 2.0**-52
 """Error of a sum of three products beside the size of its terms, with that of its coefficients."""
 
+UNCERTAIN_SIGN: Final = 1e-9
+"""A bound on a form this near to zero, beside the size of the form's terms, proves no sign.
+
+The bounds are sums of a few dozen products, right to 1e-14 of that size, and coefficients that come
+from a longer chain are, too."""
+
 BLANK: Final = 1e-9
 """Coefficients this small beside their terms: the form vanishes on the fibre, as critical base
 values lie within `SAME_CRITICAL` of where it does."""

@@ -7,5 +7,9 @@
   `allowed_report` (as JSON, a table, and the SRDF of planners);
 - `surfaces`: where safe values of three joints end; `surface_forms` (the functions), `surface_grid`
   (on a grid), `surface_mesh` (triangles put onto them), `surface_files` (PLY and glTF);
+- `separations`: ranges of one joint that something blocks, whatever the other joints do; `why`: can
+  it get from here to there (separations, a path, proved, a paving), `search` (a path, looked for
+  in doubles), `answers` (what was found, in sentences and as JSON);
+- `reach`: where the tool gets to; `paths` (its ways along fibres), `voxels`;
 - `reports`: what was found, as JSON and in words.
 """

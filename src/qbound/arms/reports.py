@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from qbound.arms.fibres import Fibres, Interval
+from qbound.arms.reach import Reach
 from qbound.boundary.balls import Balls
-from qbound.export.formats import heading
+from qbound.export.formats import heading, npz_bytes
 from qbound.model.robot import Robot
-from qbound.units import amount, joint_text
+from qbound.units import amount, counted, joint_text
 
 
 def fibre_document(found: Fibres, q: Sequence[float]) -> dict[str, Any]:
@@ -66,3 +67,60 @@ def _interval_text(found: Fibres, interval: Interval) -> str:
     if interval.below is None:
         return "all the way round"
     return f"{low} ({interval.below}) to {high} ({interval.above})"
+
+
+def reach_document(found: Reach) -> dict[str, Any]:
+    """Return the JSON form of a map, schema qbound/reach/1; its voxels are in `reach_npz`."""
+    robot = found.robot
+    box = found.box
+    return {
+        **heading("qbound/reach/1", robot),
+        "length_unit": robot.length_unit,
+        "seed": found.seed,
+        "voxel": found.grid.edge,
+        "exact_joint": robot.joints[found.joint].name,
+        "fibres": found.fibres,
+        "voxels": int(found.reached.sum()),
+        "box": None if box is None else box.tolist(),
+        "volume": {
+            "value": found.volume,
+            "error": found.error,
+            "standard_error": found.standard_error,
+            "scrambles": found.volumes[:, 0].tolist(),
+            "before_last_round": float(found.volumes[:, 1].mean()),
+            "voxels_twice_as_long": float(found.volumes[:, 2].mean()),
+            "all_voxels": found.marked_volume,
+        },
+        "index": None if found.index is None else _index(found),
+    }
+
+
+def reach_lines(found: Reach) -> Iterator[str]:
+    """Say how large the map is, and what is exact about it."""
+    robot, unit = found.robot, found.robot.length_unit
+    if (box := found.box) is None:
+        yield "no feasible configuration was found"
+        return
+    low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in box)
+    chance = f"{found.standard_error:.2g}"
+    yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 (chance alone: {chance})"
+    yield f"{counted(int(found.reached.sum()), 'voxel')} of {found.grid.edge:g} {unit}"
+    yield f"  from ({low}) to ({high}) {unit}"
+    if found.index is not None:
+        index = _index(found)
+        yield f"  reachability index: mean {index['mean']:.3g}, greatest {index['greatest']:.3g}"
+    name = robot.joints[found.joint].name
+    yield f"{found.fibres} fibres: exact along {name}, the other joints drawn (seed {found.seed})"
+
+
+def reach_npz(found: Reach) -> bytes:
+    """Return the arrays reached and index, with the grid's origin and edge."""
+    index = {} if found.index is None else {"index": found.index}
+    unit = np.array(found.robot.length_unit)
+    grid = {"origin": found.grid.origin, "edge": np.array(found.grid.edge), "unit": unit}
+    return npz_bytes({"reached": found.reached, **index, **grid})
+
+
+def _index(found: Reach) -> dict[str, float]:
+    values = np.zeros(1) if found.index is None else found.index[found.reached]
+    return {"mean": float(values.mean()), "greatest": float(values.max())}

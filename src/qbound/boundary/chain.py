@@ -34,7 +34,8 @@ class Chain:
         self.points = tuple(sorted(points, key=lambda point: robot.depth(point.frame)))
         self.depths = np.array([robot.depth(point.frame) for point in self.points], dtype=np.intp)
         self._sliding = [not joint.turns for joint in robot.joints]
-        turned = [np.eye(3), *(axis_last(joint.axis) for joint in robot.joints)]
+        self._turned = [np.eye(3), *(axis_last(joint.axis) for joint in robot.joints)]
+        turned = self._turned
         joints = list(enumerate(robot.joints))
         self._moves = [turned[j].T @ joint.origin for j, joint in joints]
         self._turns = [turned[j].T @ joint.mount @ turned[j + 1] for j, joint in joints]
@@ -73,6 +74,10 @@ class Chain:
             if len(at):
                 result[:, here] = at @ axes + origin[:, None]
         return result
+
+    def seen(self, direction: Floats, depth: int) -> Floats:
+        """Return a direction of a robot's frame as the same frame sees it here, shape (3,)."""
+        return np.asarray(direction @ self._turned[depth])
 
     def _onward(self, pose: Pose, j: int, q: Floats) -> Pose:
         """Go beyond joint j: move, turn as it is mounted, then as its value says."""

@@ -1,7 +1,8 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `fibre`, `sample`, `pave`,
-  `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import` (`import_urdf`), `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `reach`,
+  `sample`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
+  (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -30,11 +31,13 @@ from qbound.cli import (
     fibre,
     import_urdf,
     pave,
+    reach,
     region,
     robots,
     sample,
     surface,
     traverse,
+    why,
     workspace,
 )
 from qbound.cli.files import check_targets
@@ -47,8 +50,10 @@ COMMANDS = (
     workspace,
     contains,
     connected,
+    why,
     traverse,
     fibre,
+    reach,
     sample,
     pave,
     allowed,

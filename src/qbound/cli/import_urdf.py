@@ -55,7 +55,9 @@ def add_to(commands: Any) -> None:
         metavar="FOLDER",
         help="where package://NAME/... may lie: a folder NAME, or one that holds it",
     )
-    parser.add_argument("-o", "--output", metavar="FILE", required=True, help="- is standard output")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", required=True, help="- is standard output"
+    )
     parser.set_defaults(run=run)
 
 
@@ -112,4 +114,4 @@ def _lines(imported: Imported) -> Iterable[str]:
         named = "; ".join(touching[:MOST_SHOWN])
         more = f" and {len(touching) - MOST_SHOWN} more" if len(touching) > MOST_SHOWN else ""
         yield f"The home pose is not feasible: {named}{more}."
-        yield "Pairs of links that always touch belong into the SRDF, or ask for a smaller --excess."
+        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."

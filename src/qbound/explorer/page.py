@@ -20,7 +20,7 @@ from typing import Any, Final
 from qbound.explorer.data import Data, Walks, explorer_data
 from qbound.files import write_whole
 from qbound.printable import printable
-from qbound.region import Region
+from qbound.region import Region, Slices
 
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
 """What repeats the library's computations and knows no page."""
@@ -76,13 +76,15 @@ class Explorer:
         write_whole(path, self.html.encode())
 
 
-def explore(region: Region) -> Explorer:
+def explore(region: Region, row: Slices | None = None) -> Explorer:
     """Return the explorer of a region.
 
     Parameters
     ----------
     region : Region
         Of a robot.
+    row : Slices, optional
+        Regions along one of the held joints, this one among them: its slider shows them.
 
     Returns
     -------
@@ -91,7 +93,7 @@ def explore(region: Region) -> Explorer:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot.
+        If the region is of forms, not of a robot, or the row of slices is none of its own.
 
     Examples
     --------
@@ -99,10 +101,10 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region, explorer_page(region))
+    return Explorer(region, explorer_page(region, row=row))
 
 
-def explorer_page(region: Region, walks: Walks = ()) -> str:
+def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) -> str:
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
     It opens from the file system, asks nothing of a network (a content policy forbids it), and runs
@@ -114,6 +116,8 @@ def explorer_page(region: Region, walks: Walks = ()) -> str:
         Of a robot.
     walks : sequence of sequences of int, optional
         Orders in which a traversal visits the vertices, by index, besides once round.
+    row : Slices, optional
+        As in `explore`.
 
     Returns
     -------
@@ -123,9 +127,9 @@ def explorer_page(region: Region, walks: Walks = ()) -> str:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot.
+        If the region is of forms, not of a robot, or the row of slices is none of its own.
     """
-    data = _shown(explorer_data(region, walks))
+    data = _shown(explorer_data(region, walks, row))
     name = escape(printable(region.robot.name))
     style, script = engine_style() + web_text("page.css"), engine_script() + web_text("start.js")
     return Template(web_text("explorer.html")).substitute(

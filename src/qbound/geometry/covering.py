@@ -105,10 +105,10 @@ def _judged(cells: Floats, centres: Floats, radii: Floats) -> tuple[Bools, Bools
     step = max(1, AT_ONCE // max(1, len(centres) * cells.shape[1]))
     for k in range(0, len(cells) if len(centres) else 0, step):
         corners = cells[k : k + step]
-        held = within(corners.reshape(-1, corners.shape[-1]), centres, radii)
-        held = held.reshape(*corners.shape[:2], -1)
-        inside[k : k + step] = held.all(axis=1).any(axis=1)
-        outside[k : k + step] = ~held.any(axis=2).all(axis=1)
+        one_by_one = within(corners.reshape(-1, corners.shape[-1]), centres, radii)
+        held: Bools = one_by_one.reshape(len(corners), corners.shape[1], len(centres))
+        inside[k : k + step] = np.any(np.all(held, axis=1), axis=1)
+        outside[k : k + step] = ~np.all(np.any(held, axis=2), axis=1)
     return inside, outside
 
 

@@ -9,6 +9,7 @@ halving then finds uncovered is asked for too, until nothing is.
 from __future__ import annotations
 
 import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,7 +60,7 @@ def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
     ValueError
         If the mesh is too large for the excess.
     ModuleNotFoundError
-        If there is no SciPy; it comes with ``qbound[urdf]``.
+        If there is no SciPy; it comes with ``qbound[arms]``.
     """
     require("scipy", "covering a mesh")
     corners = triangles.reshape(-1, 3)
@@ -203,11 +204,12 @@ def winding_numbers(triangles: Floats, places: Floats) -> NDArray[np.int64]:
     total = np.zeros(len(places))
     step = max(1, 2_000_000 // max(1, len(places)))
     for k in range(0, len(triangles), step):
-        a, b, c = (corner - places[:, None] for corner in np.swapaxes(triangles[k : k + step], 0, 1))
+        a, b, c = (
+            corner - places[:, None] for corner in np.swapaxes(triangles[k : k + step], 0, 1)
+        )
         x, y, z = (np.linalg.norm(side, axis=-1) for side in (a, b, c))
         volume = np.einsum("...i,...i", a, np.cross(b, c))
         dots = [np.einsum("...i,...i", one, other) for one, other in ((a, b), (b, c), (c, a))]
         below = x * y * z + dots[0] * z + dots[1] * x + dots[2] * y
         total += np.arctan2(volume, below).sum(axis=1)
     return np.asarray(np.rint(total / (2 * math.pi)), dtype=np.int64)
-

@@ -55,14 +55,14 @@ def capsule_cover(radius: float, length: float, excess: float) -> Cover:
     """
 
     def reach(e: Floats) -> Floats:
-        return 2 * e + 2 * (count - 1) * np.sqrt(2 * radius * e + e * e)
+        return np.asarray(2 * e + 2 * (count - 1) * np.sqrt(2 * radius * e + e * e))
 
     more = OUTWARD * (radius + length)
     excess = excess - more
     apart = 2 * math.sqrt(2 * radius * excess + excess * excess)
     count = max(1, math.ceil((length - 2 * excess) / apart) + 1)
     _check_count(count, excess)
-    low, high = last_before(lambda e: reach(e) < length, [0.0], [max(excess, length)])
+    _, high = last_before(lambda e: reach(e) < length, [0.0], [max(excess, length)])
     least = min(float(high[0]), excess)
     end = length / 2 - least if count > 1 else 0.0
     centres = np.zeros((count, 3))

@@ -107,7 +107,7 @@ def import_urdf(
     qbound.model.robotcheck.RobotFileError
         If a file is wrong, or says what no robot here can be, with its line.
     ModuleNotFoundError
-        If a library is missing that comes with ``qbound[urdf]``.
+        If a library is missing that comes with ``qbound[arms]``.
     """
     urdf = read_urdf(packaged_or_path(source))
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
@@ -164,9 +164,7 @@ def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
     )
 
 
-def _joint(
-    joint: UrdfJoint, mount: Pose, parent: str, limits: tuple[float, float] | None
-) -> Joint:
+def _joint(joint: UrdfJoint, mount: Pose, parent: str, limits: tuple[float, float] | None) -> Joint:
     if joint.mimic is not None:
         text = f"follows joint {shown(joint.mimic.joint)} (mimic), which is not supported"
         joint.element.fault(text)
@@ -265,7 +263,8 @@ def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
     if meshes:
         yield "of a mesh all triangles are covered, and what they enclose may not be"
     if opened := [mesh.source.name for mesh in meshes if not mesh.closed]:
-        yield f"meshes that do not close up, whose excess is that beyond their hull: {', '.join(opened)}"
+        what = "meshes that do not close up, whose excess is that beyond their hull"
+        yield f"{what}: {', '.join(opened)}"
 
 
 def _rounded_up(length: float) -> str:

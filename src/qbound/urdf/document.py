@@ -211,4 +211,3 @@ SOLIDS: dict[str, Callable[[Element], Solid]] = {
     "mesh": _mesh,
 }
 """From an element of <geometry> to its shape."""
-

@@ -47,7 +47,7 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
         If there is none, it lies elsewhere, is none that is read, or has numbers that are not
         finite.
     ModuleNotFoundError
-        If there is no trimesh; it comes with ``qbound[urdf]``.
+        If there is no trimesh; it comes with ``qbound[arms]``.
     """
     require("trimesh")
     path = find_mesh(mesh.filename, element, roots)

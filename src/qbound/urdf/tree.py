@@ -65,8 +65,7 @@ def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) ->
     frames = (start, *(joint.child for joint in moving))
     groups = tuple(_group(urdf, frame) for frame in frames)
     mounts = tuple(
-        group[joint.parent].then(joint.pose)
-        for group, joint in zip(groups, moving, strict=False)
+        group[joint.parent].then(joint.pose) for group, joint in zip(groups, moving, strict=False)
     )
     return Chain(tuple(moving), frames, mounts, groups, tip)
 

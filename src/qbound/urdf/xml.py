@@ -119,7 +119,7 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
     qbound.model.robotcheck.RobotFileError
         If the file cannot be read, is too large, is no XML, has a document type, or another root.
     ModuleNotFoundError
-        If there is no lxml; it comes with ``qbound[urdf]``.
+        If there is no lxml; it comes with ``qbound[arms]``.
     """
     require("lxml")
     from lxml import etree
