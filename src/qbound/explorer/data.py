@@ -123,6 +123,8 @@ def _point(robot: Robot, i: int) -> Data:
 def _listed(robot: Robot) -> list[Boundary]:
     """Return the boundaries in the order in which the page has them."""
     return list(dict.fromkeys((*robot.boundaries, *robot.used)))
+
+
 def _bodies(robot: Robot) -> list[Data]:
     """List every body; its convex parts where a boundary is about it."""
     about = {
