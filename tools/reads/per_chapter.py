@@ -1,8 +1,8 @@
 """For pytest, in the run that executes the chapters: each gets a folder of its own.
 
 It holds the results that the chapter writes, in ``reads`` what its process read, and ``ran`` when
-all is done and written. If ``run.py`` is killed, this run ends too. ``QBOUND_TWICE`` names chapters
-whose cells run twice (docs/decisions/0481).
+all is done and written. If ``run.py`` is killed, this run ends too. With ``QBOUND_TWICE=1`` each
+cell runs twice (docs/decisions/0481).
 """
 
 import os
@@ -34,9 +34,8 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
 
 
 def is_run_twice() -> bool:
-    """Tell whether the chapter that is being executed is one whose cells run twice."""
-    name = Path(os.environ["QBOUND_RESULTS"]).name.partition("_")[2]
-    return name in os.environ.get("QBOUND_TWICE", "").split()
+    """Tell whether the cells run twice."""
+    return os.environ.get("QBOUND_TWICE") == "1"
 
 
 def pytest_configure() -> None:

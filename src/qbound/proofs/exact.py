@@ -125,11 +125,41 @@ def exact_state(
 ) -> ExactProblem:
     """Gather the exact clearance forms of some boundaries within given ranges."""
     with precision(BITS):
-        forms = stacked(robot, used)
-        values: Any = held
-        forms = forms.restrict(values) if held else forms
+        forms = stacked(frozen(robot, held) if held else robot, used)
     balls = tuple(None if r is None else (ball(r[0]), ball(r[1])) for r in ranges)
     return ExactProblem(forms, tuple(b.name for b in used), balls, tuple(limits))
+
+
+def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
+    """Return a robot without some joints: what they carry stands still where they are held.
+
+    A form has 3^n numbers, and these are made one by one: of three joints 27, of six 729.
+
+    Parameters
+    ----------
+    robot : Robot
+        From `exact_robot`.
+    held : mapping of int to arb
+        Some joints, not all.
+    """
+    carried = {robot.base: (robot.base, _rationals(np.eye(3, dtype=int)), _rationals([0, 0, 0]))}
+    joints = []
+    for j, joint in enumerate(robot.joints):
+        carrier, turn, shift = carried[joint.parent]
+        if j in held:
+            still = joint.frame_at(held[j])
+            carried[joint.frame] = carrier, turn @ still.rotation, shift + turn @ still.origin
+        else:
+            moved = {"origin": shift + turn @ joint.origin, "mount": turn @ joint.mount}
+            joints.append(replace(joint, parent=carrier, **moved))
+            plain = _rationals(np.eye(3, dtype=int)), _rationals([0, 0, 0])
+            carried[joint.frame] = joint.frame, *plain
+    points = []
+    for point in robot.points:
+        carrier, turn, shift = carried[point.frame]
+        points.append(replace(point, frame=carrier, at=shift + turn @ point.at))
+    home = robot.home[robot.free(held)]
+    return replace(robot, joints=tuple(joints), points=tuple(points), home=home)
 
 
 # --- numbers --------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ outer one (feasible and undecided cells); the undecided volume is measured. Any 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -24,6 +24,11 @@ from qbound.proofs.exact_bodies import ExactSeparation
 from qbound.proofs.verdict import Verdict
 
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
+Run = tuple[int, Ints]
+
+LONGEST_RUN, SHORTEST_RUN = 2048, 256
+"""Cells that are looked at together: few, so that few forms may vanish among them."""
 
 MOST_CELLS = 2_000_000
 """Undecided cells at which a paving stops on its own: about a gigabyte of bounds."""
@@ -78,6 +83,9 @@ class Paving:
         two bodies are nowhere separated.
     undecided : Cells
         The cells about which nothing is claimed.
+    runs : tuple of (int, ndarray of int)
+        How many undecided cells, one after the other, have to do with which forms: all others are
+        proved positive there, and so on every part of these cells.
     bodies : tuple of SeparationBounds
         Of each two parts of bodies that are to keep apart.
     unseparated : ndarray of bool, shape (undecided cells, pairs)
@@ -89,6 +97,7 @@ class Paving:
     feasible: tuple[Cells, ...]
     infeasible: tuple[Cells, ...]
     undecided: Cells
+    runs: tuple[Run, ...]
     bodies: tuple[SeparationBounds, ...]
     unseparated: Bools
 
@@ -134,7 +143,8 @@ class Paving:
         """
         if self.level >= DEEPEST:
             raise ValueError(f"cells have been halved {DEEPEST} times: no smaller ones")
-        return _sorted(self, self.undecided.halves(), np.tile(self.unseparated, (2, 1)))
+        halves = _in_order(self.undecided.halves())
+        return _sorted(self, halves, _doubled(self.runs), np.repeat(self.unseparated, 2, axis=0))
 
     def verdicts(self, q: ArrayLike) -> set[Verdict]:
         """Return what is known of a configuration being feasible, by all cells that may hold it.
@@ -233,9 +243,10 @@ def start(problem: ExactProblem) -> Paving:
             if not below(high - low) > 0:
                 raise ValueError(f"{names[0]} and {names[1]}: the range is empty")
         bodies = tuple(_of_bodies(found, bounds) for found in problem.bodies)
+    whole, every = bounds.whole(), np.arange(len(problem.names))
     open_pairs = np.ones((1, len(bodies)), dtype=bool)
-    empty = Paving(problem, bounds, (), (), bounds.whole(), bodies, open_pairs)
-    return _sorted(empty, bounds.whole(), open_pairs)
+    empty = Paving(problem, bounds, (), (), whole, (), bodies, open_pairs)
+    return _sorted(empty, whole, [(len(whole), every)], open_pairs)
 
 
 def _of_bodies(found: ExactSeparation, bounds: BoxBounds) -> SeparationBounds:
@@ -243,18 +254,36 @@ def _of_bodies(found: ExactSeparation, bounds: BoxBounds) -> SeparationBounds:
     return SeparationBounds(BoxBounds(found.forms, bounds.ends, bounds.rows), found.starts)
 
 
-def _sorted(paving: Paving, cells: Cells, unseparated: Bools) -> Paving:
-    """Sort new cells into a paving; they replace its undecided ones."""
-    low, high = paving.bounds.bounds(cells)
-    infeasible: Bools = np.asarray((high < 0).any(axis=1))
-    left = unseparated.copy()
-    for k, pair in enumerate(paving.bodies):
-        asked = np.flatnonzero(left[:, k] & ~infeasible)
-        if len(asked):
-            apart, together = pair.proved(cells[asked])
-            left[asked[apart], k] = False
-            infeasible[asked[together]] = True
-    feasible = (low > 0).all(axis=1) & ~left.any(axis=1) & ~infeasible
+def _in_order(halves: Cells) -> Cells:
+    """Put the two halves of each cell beside each other: neighbours stay together."""
+    return halves[np.arange(len(halves)).reshape(2, -1).T.ravel()]
+
+
+def _doubled(runs: Iterable[Run]) -> list[Run]:
+    return [(2 * count, forms) for count, forms in runs]
+
+
+def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bools) -> Paving:
+    """Sort new cells into a paving; they replace its undecided ones.
+
+    Run by run, so that each looks at no more forms than may vanish in it; long ones are parted.
+    """
+    feasible, infeasible = (np.zeros(len(cells), dtype=bool) for _ in range(2))
+    unseparated = unseparated.copy()
+    left, start = list[Run](), 0
+    for length, forms in runs:
+        for first in range(start, start + length, LONGEST_RUN):
+            part = slice(first, min(first + LONGEST_RUN, start + length))
+            low, high = paving.bounds.bounds(cells[part], forms)
+            bad: Bools = np.asarray((high < 0).any(axis=1))
+            _separate(paving.bodies, cells[part], unseparated[part], bad)
+            good = (low > 0).all(axis=1) & ~unseparated[part].any(axis=1) & ~bad
+            feasible[part], infeasible[part] = good, bad
+            open_cells = ~good & ~bad
+            if open_cells.any():
+                may = forms[(low[open_cells] <= 0).any(axis=0)]
+                left.append((int(open_cells.sum()), may))
+        start += length
     open_cells = ~feasible & ~infeasible
     return Paving(
         paving.problem,
@@ -262,9 +291,34 @@ def _sorted(paving: Paving, cells: Cells, unseparated: Bools) -> Paving:
         (*paving.feasible, *_some(cells[feasible])),
         (*paving.infeasible, *_some(cells[infeasible])),
         cells[open_cells],
+        tuple(_joined(left)),
         paving.bodies,
-        left[open_cells],
+        unseparated[open_cells],
     )
+
+
+def _separate(
+    bodies: Sequence[SeparationBounds], cells: Cells, unseparated: Bools, infeasible: Bools
+) -> None:
+    """Strike out, in place, what is proved separated; mark cells where two bodies nowhere are."""
+    for k, pair in enumerate(bodies):
+        asked = np.flatnonzero(unseparated[:, k] & ~infeasible)
+        if len(asked):
+            apart, together = pair.proved(cells[asked])
+            unseparated[asked[apart], k] = False
+            infeasible[asked[together]] = True
+
+
+def _joined(runs: Sequence[Run]) -> list[Run]:
+    """Join neighbouring runs that are short: a handful of cells is not worth a call."""
+    found = list[Run]()
+    for count, forms in runs:
+        if found and found[-1][0] + count <= SHORTEST_RUN:
+            before, known = found.pop()
+            found.append((before + count, np.union1d(known, forms)))
+        else:
+            found.append((count, forms))
+    return found
 
 
 def _some(cells: Cells) -> tuple[Cells, ...]:

@@ -22,6 +22,7 @@ from qbound.region.emptiness import irreducible
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
+from qbound.region.relevant import without_irrelevant
 from qbound.tolerances import UNREAL_AREA
 from qbound.units import limited_joints, margin_text
 
@@ -57,6 +58,9 @@ class Region:
         Component of each cell.
     empty_because : tuple of str
         Where there is no component: boundaries that leave no room together, each of them needed.
+    irrelevant : tuple of str
+        Of many boundaries, those that were proved to bound nothing here (`relevant`) and took no
+        part in the search; `margins` and `contains` ask them all the same.
 
     Examples
     --------
@@ -79,6 +83,7 @@ class Region:
     base: int
     owner: dict[int, int]
     empty_because: tuple[str, ...] = ()
+    irrelevant: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Say in a line what was found."""
@@ -385,22 +390,23 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     Notes
     -----
     A component is open, and what people see is its closure; touching in points or curves neither
-    joins components nor makes one. A form that depends on no joint is decided beforehand.
+    joins components nor makes one. A form that depends on no joint is decided beforehand, and of
+    many forms those that can bound nothing are left out, by proof (`qbound.region.relevant`).
     """
     home = problem.home if home is None else home
     home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     constants = problem.constants()
-    inner = problem.without(list(constants))
+    inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
     if blocked:
         nothing = CellComplex(Decomposition(plane, np.array(plane.ends), [], np.zeros(0)))
-        return Region((), problem, nothing, base, {}, tuple(blocked[:1]))
+        return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
     cells = CellComplex(decompose(plane))
     if not cells.cells:
-        return Region((), problem, cells, base, {}, irreducible(inner, base))
+        return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
     found = measured(cells, problem, home, base)
     if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
@@ -414,7 +420,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
     owner = {k: i for i, (_, windings) in enumerate(components) for k in windings}
-    return Region(tuple(component for component, _ in components), problem, cells, base, owner)
+    every = tuple(component for component, _ in components)
+    return Region(every, problem, cells, base, owner, irrelevant=irrelevant)
 
 
 def _why_no_home(region: Region) -> str:
