@@ -101,8 +101,6 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
 
 
 def _joint(joint: Joint) -> Data:
-    if len(joint.labels) > 1:
-        raise ValueError(f"joint {joint.name!r} is a {joint.type_name}: the page cannot move it")
     return {
         "name": joint.name,
         "kind": joint.kind,
@@ -120,18 +118,9 @@ def _point(robot: Robot, i: int) -> Data:
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
-def _listed(robot: Robot) -> list[Boundary]:
-    """Return the boundaries in the order in which the page has them."""
-    return list(dict.fromkeys((*robot.boundaries, *robot.used)))
-
-
 def _bodies(robot: Robot) -> list[Data]:
     """List every body; its convex parts where a boundary is about it."""
-    about = {
-        body.name
-        for boundary in (*robot.boundaries, *robot.used)
-        for body in bounded_bodies(robot, boundary)
-    }
+    about = {body.name for boundary in _listed(robot) for body in bounded_bodies(robot, boundary)}
     return [
         {
             "name": body.name,
@@ -148,7 +137,7 @@ def _bodies(robot: Robot) -> list[Data]:
 
 def _flat(robot: Robot) -> list[list[float]] | None:
     """Return the axes of the plane in which bodies keep apart, None where none do."""
-    about = any(map(bounds_bodies, (*robot.boundaries, *robot.used)))
+    about = any(map(bounds_bodies, _listed(robot)))
     axes: list[list[float]] | None = robot.plane.across.tolist() if about else None
     return axes
 
@@ -163,6 +152,11 @@ def _body_boundary(robot: Robot, boundary: Boundary) -> Data:
     assert isinstance(boundary, HalfSpace)
     wall = {"normal": boundary.normal.tolist(), "offset": boundary.offset, "body": about[0]}
     return data | {"kind": "half-space"} | wall
+
+
+def _listed(robot: Robot) -> list[Boundary]:
+    """Return the boundaries in the order in which the page has them."""
+    return list(dict.fromkeys((*robot.boundaries, *robot.used)))
 
 
 def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
