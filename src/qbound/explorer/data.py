@@ -101,6 +101,8 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
 
 
 def _joint(joint: Joint) -> Data:
+    if len(joint.labels) > 1:
+        raise ValueError(f"joint {joint.name!r} is a {joint.type_name}: the page cannot move it")
     return {
         "name": joint.name,
         "kind": joint.kind,

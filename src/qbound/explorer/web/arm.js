@@ -251,16 +251,30 @@ function crossing(a, b, side) {
   return [[a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]];
 }
 
+/** @type {(frame: number) => string} */
+function linkColour(frame) {
+  return `var(--links-${frame % 5})`;
+}
+
+/** Where the arm is seen obliquely, paint its balls from the farthest to the nearest.
+ * @type {(drawn: PlanePicture, axes: Place[], places: Place[]) => void} */
+function paintByDepth(drawn, axes, places) {
+  const depths = places.map((place) => dot(axes[2], place));
+  const order = drawn.points.map((_, i) => i).sort((a, b) => depths[a] - depths[b]);
+  for (const i of order) drawn.points[i].parentNode?.insertBefore(drawn.points[i], drawn.names[0]);
+}
+
 /** The elements that move with the pose; `placeArm` moves them.
  * @type {(robot: Robot, drawn: Picture) => ArmParts} */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
+  const ballClass = robot.plane.oblique ? "sphere solid" : "sphere";
   const parts = {
     shadow: robot.plane.oblique ? [make("path", { class: "shadow" })] : [],
     bodies: robot.bodies.map(({ frame }) =>
       make("polygon", {
         class: frame === 0 ? "body fixed" : "body",
-        fill: `var(--links-${frame % 5})`,
+        fill: linkColour(frame),
       }),
     ),
     spine: make("path", { class: "spine" }),
@@ -271,8 +285,8 @@ function addArm(robot, drawn) {
         ? [0, 1].map(() => make("circle", { class: "nearest", r: 3, hidden: "" }))
         : [],
     ),
-    points: robot.points.map(({ radius }) =>
-      make("circle", { class: radius > 0 ? "sphere" : "point", r: 3 }),
+    points: robot.points.map(({ radius, frame }) =>
+      make("circle", { class: radius > 0 ? ballClass : "point", r: 3, fill: linkColour(frame) }),
     ),
     names: robot.points.map(({ name }) => make("text", { class: "point-name" }, name)),
   };
@@ -305,6 +319,7 @@ function placeArm(robot, drawn, state, lit) {
     const beside = away.get(i);
     if (beside) placeNameBeside(drawn.names[i], place, beside);
   }
+  if (robot.plane.oblique) paintByDepth(drawn, axes, pointPlaces(robot, state.q));
   const placed = placedParts(robot, found);
   const marks = [...drawn.nearest];
   for (const [i, wall] of robot.boundaries.entries()) {
