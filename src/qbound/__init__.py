@@ -5,9 +5,9 @@ A robot file becomes a robot, the robot gives boundary functions, and these are 
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
 The mathematics: `geometry`, `forms`, `model`, `boundary`, `region`, and `tolerances`.
-On top of it: `sampling`, `measures`, `workspace`, `paths`, `export`, `proofs`, `figures`,
-`explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`, `printable`, `extras`,
-`version`.
+On top of it: `sampling`, `measures`, `workspace`, `paths`, `export`, `proofs`, `sweeps`,
+`figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
+`printable`, `extras`, `version`.
 """
 
 from qbound.boundary.functions import clearance, components, pair_vector

@@ -17,6 +17,7 @@ class Extra(NamedTuple):
 
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
+    "distributed": Extra("a sweep", "Dask", "cluster"),
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
@@ -25,6 +26,7 @@ EXTRAS: Final = {
     "skimage": Extra("a surface or a count on a grid", "scikit-image", "notebooks"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
+    "zarr": Extra("a sweep", "Zarr", "cluster"),
 }
 """By the name that is imported."""
 

@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `pave`, `certify`,
-  `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `sweep`, `pave`,
+  `certify`, `check`, `draw`, `explore`, `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -30,6 +30,7 @@ from qbound.cli import (
     region,
     robots,
     sample,
+    sweep,
     traverse,
     workspace,
 )
@@ -45,6 +46,7 @@ COMMANDS = (
     connected,
     traverse,
     sample,
+    sweep,
     pave,
     certify,
     check,
@@ -58,7 +60,7 @@ GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
 WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
-READ = ("robot", "certificate", "path", "polygon")
+READ = ("robot", "certificate", "path", "polygon", "specification")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141

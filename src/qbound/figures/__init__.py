@@ -6,7 +6,7 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 Here are the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images; `cells`: pavings.
+- `workspace`: aspects and their images; `cells`: pavings; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations
