@@ -66,7 +66,7 @@ def pose_picture(
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 
-    return drawn_panels((region is not None) + (plane is not None), draw, kind)
+    return _picture((region is not None) + (plane is not None), draw, kind)
 
 
 def traversal_picture(
@@ -94,7 +94,7 @@ def traversal_picture(
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
         _space_panel(space, robot, plane)
 
-    return drawn_panels(2, draw, kind)
+    return _picture(2, draw, kind)
 
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
@@ -108,7 +108,7 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
 
-    return drawn_panels(1, draw, kind, size=(7, 6))
+    return _picture(1, draw, kind, size=(7, 6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
@@ -126,10 +126,10 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
     """Return the picture of `plot_region`, the first component's vertices numbered."""
-    return drawn_panels(1, lambda axes: plot_region(region, axes[0]), kind)
+    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
-def drawn_panels(
+def _picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
     kind: str,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.figures import COLLIDING, INK, as_text
-from qbound.figures.pictures import drawn_panels
+from qbound.figures.pictures import picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +49,7 @@ def sweep_picture(found: Swept, kind: str = "svg") -> bytes:
                 ax.set_ylabel(_axis_label(found, moving[0]))
             ax.set_xlabel(_axis_label(found, moving[-1]))
 
-    return drawn_panels(len(found.values), draw, kind)
+    return picture(len(found.values), draw, kind)
 
 
 def _draw_curve(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
