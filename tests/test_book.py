@@ -175,8 +175,8 @@ def test_the_panels_of_a_phone_are_views_of_the_picture_and_leave_out_none_of_it
         [whole] = box.find_previous_sibling(class_="has-panels").find_all("img")
         views = [VIEW.fullmatch(image["src"]) for image in box.find_all("img")]
         assert {view[1] for view in views} == {whole["src"]}
-        lefts, widths = ([float(view[i]) for view in views] for i in (2, 4))
-        rights = [left + width for left, width in zip(lefts, widths, strict=True)]
+        spans = sorted({(float(view[2]), float(view[2]) + float(view[4])) for view in views})
+        lefts, rights = zip(*spans, strict=True)  # of the columns, whatever the rows
         assert [*lefts, rights[-1]] == pytest.approx(
             [0, *rights[:-1], 72 * inches(HTML / "chapters" / whole["src"])], abs=0.2
         )
@@ -310,11 +310,18 @@ def drawn(file: Path, columns: int, rows: int = 1, legend: bool = False) -> Path
     return file
 
 
-@pytest.mark.parametrize(("columns", "rows", "found"), [(1, 1, 0), (2, 1, 2), (3, 1, 3), (2, 2, 2)])
-def test_a_drawing_is_cut_between_its_columns(tmp_path, columns, rows, found):
+@pytest.mark.parametrize(
+    ("columns", "rows", "found"), [(1, 1, 0), (2, 1, 2), (3, 1, 3), (2, 2, 4), (1, 2, 0)]
+)
+def test_a_drawing_is_cut_between_its_columns_and_rows(tmp_path, columns, rows, found):
+    """Row by row, as one reads it: a phone shows the panels one below the other in this order."""
     cut = panels(drawn(tmp_path / "drawn.svg", columns, rows))
     assert len(cut) == found
-    assert all(one.right == two.left for one, two in pairwise(cut))
+    for row in (cut[i : i + columns] for i in range(0, len(cut), columns)):
+        assert all(one.right == two.left for one, two in pairwise(row))
+    for above, below in zip(cut, cut[columns:], strict=False):
+        assert above.left == below.left
+        assert above.bottom <= below.top
 
 
 def test_a_drawing_whose_legend_lies_across_is_not_cut(tmp_path):

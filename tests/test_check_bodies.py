@@ -220,7 +220,12 @@ def test_what_has_no_inside_needs_no_distance():
     assert "upper arm, pillar" not in data["proof"]
     assert "hand, pillar" in data["proof"]
     two = text.replace(lone, "capsule = { from = [0.2, -0.1], to = [0.3, 0.1], radius = 0 }")
-    assert proving.certify(two, path((0, 0), (0, 0))).verdict == "undecided"  # they cross
+    crossing = proving.certify(two, path((0, 0), (0, 0))).text
+    assert agreed(crossing) == "refuted"
+    data = json.loads(crossing)
+    data["robot"] = two.replace("to = [0.3, 0.1]", "to = [0.3, -0.05]")
+    data["sha256"] = check.digest(data["robot"])
+    assert agreed(data) == ""  # they come close, and do not cross
     clear = proving.certify(two, path((90, 0), (90, 0)))
     assert agreed(clear.text) == "proved"
     assert "upper arm, pillar" in json.loads(clear.text)["proof"]

@@ -10,13 +10,17 @@ from hypothesis import given
 from numpy.testing import assert_allclose
 
 from qbound import load_robot, save_robot
+from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
+from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.balls import precision
+from qbound.proofs.balls import balls, precision
+from qbound.proofs.dyadic import magnitude
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.region import clearance_problem, paper_rule
 from support.oracles import packaged_table, robot_tables
+from support.robot_files import robot_file
 
 
 def holds(ball, value: mpmath.mpf) -> bool:
@@ -148,3 +152,26 @@ def test_held_joints_leave_the_others():
 def test_packaged_tables_and_exact_ones_name_the_same_boundaries():
     names = [row["name"] for row in packaged_table()["boundary"] if row.get("used", True)]
     assert list(exact_problem(exact_robot("minervabot-v2")).names) == names
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed, tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text(robot_file(seed, 4))
+    robot = exact_robot(file)
+    held = {0: 0.3, 2: -1.25}
+    problem = exact_problem(robot, held)
+    with precision(512):
+        values = {j: arb(x) for j, x in held.items()}
+        restricted = stacked(robot, robot.used).restrict(values).coefficients
+        gaps = abs(balls(restricted) - balls(problem.forms.coefficients))
+        assert problem.forms.kinds == (robot.kinds[1], robot.kinds[3])
+        assert all(gap < arb("1e-140") for gap in gaps.flat)
+
+
+def test_a_bound_of_coefficients_around_nothing_is_a_number():
+    """A mount in radians leaves balls around 0; a power of one is NaN in python-flint."""
+    with precision(100):
+        around = arb(0, "1e-150")
+        form = HarmonicForm(np.array([around, arb(1), around], dtype=object), ("revolute",))
+        assert 1.0 <= magnitude(form, [1.0]) < 1.0 + 1e-12

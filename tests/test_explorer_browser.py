@@ -12,10 +12,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
-from qbound import find_region, load_robot
+from qbound import find_region, find_slices, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
-from support.arms import ROBOTS, SPATIAL
+from support.arms import ROBOTS, SPATIAL, three_joints
 from support.browser import broken_rules, drag, in_every_family, settle, wait_until
 
 WALLS = {
@@ -322,6 +322,23 @@ def test_a_held_joints_slider_shows_another_slice(open_explorer):
     assert (exact, page.evaluate("explorer.slice.exact")) == (True, False)
     assert page.locator("#joints .home").get_attribute("d") != before
     assert page.locator("#joints .arc").count() > 0
+
+
+def test_the_slider_of_a_row_goes_from_exact_slice_to_exact_slice(open_quietly, tmp_path):
+    robot = three_joints()
+    row = find_slices(robot, "q3", [-1.2, -0.2, 0.8])
+    explore(row.regions[1], row).save(tmp_path / "row.html")
+    page = open_quietly((tmp_path / "row.html").as_uri())
+    slide, note = page.locator("#slide-2"), page.locator("#row")
+    before = page.locator("#joints .home").get_attribute("d")
+    assert note.inner_text().startswith(f"Slice 2 of 3: safe area {row.areas[1]:.5g} rad²")
+    slide.press("ArrowRight")
+    assert pose(page)[2] == 0.8
+    assert page.evaluate("[explorer.slice.exact, explorer.slice.own]") == [True, False]
+    assert page.locator("#joints .home").get_attribute("d") != before
+    assert note.inner_text().startswith(f"Slice 3 of 3: safe area {row.areas[2]:.5g} rad²")
+    page.fill("#value-2", "-50")  # the nearest slice
+    assert pose(page)[2] == -1.2
 
 
 def test_a_new_size_is_laid_out_again(open_explorer):

@@ -119,3 +119,18 @@ def test_the_command_refuses_a_bad_tolerance(value, capsys):
         status = stop.code
     assert status == 2
     assert "tolerance" in capsys.readouterr().err
+
+
+def test_cells_pass_on_the_forms_that_may_vanish_and_lose_nothing():
+    """Sorted by all forms at once the cells are the same: those that were dropped are positive."""
+    problem = exact_problem(exact_robot("two-joint-arm-with-walls"))
+    paving = start(problem)
+    for _ in range(11):
+        cells = paving.undecided.halves()
+        low, high = paving.bounds.bounds(cells)
+        finer = paving.refined()
+        left = cells[~(low > 0).all(axis=1) & ~(high < 0).any(axis=1)]
+        assert sum(count for count, _ in finer.runs) == len(finer.undecided) == len(left)
+        assert {*map(tuple, finer.undecided.index)} == {*map(tuple, left.index)}
+        paving = finer
+    assert min(len(forms) for _, forms in paving.runs) < len(problem.names)

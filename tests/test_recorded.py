@@ -30,7 +30,7 @@ from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.latex import escaped
 from lizarraga2025.results import grid_error
-from qbound import load_robot
+from qbound import figures, load_robot
 from qbound.cli import main
 from qbound.model.robotfile import robot_text
 from qbound.paths.traversal import traverse
@@ -383,7 +383,7 @@ def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: Beaut
         row = rows[cite.anchor(name)]
         head, value, unit, error, _ = row.find_all(["th", "td"])
         assert head.get_text() == name
-        assert value.get_text() == cite.value_text(entry["value"])
+        assert value.get_text() == figures.minus_signs(cite.value_text(entry["value"]))
         assert unit.get_text() == ("" if entry["unit"] == "1" else entry["unit"].replace("^2", "²"))
         assert error.get_text() == (f"{entry['error']:g}" if entry["error"] else "exact")
 

@@ -33,7 +33,7 @@ VERDICTS = (
 LONGEST_VALUE = 40
 
 # Help is folded here, in characters; argparse itself leaves two of them free.
-HELP_WIDTH = "88"
+HELP_WIDTH = "82"
 
 # Chapters are built from executed copies; readers run and edit the notebooks themselves.
 COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from html import escape
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
@@ -30,6 +30,7 @@ POINT = re.compile(r"[ML] ([-\d.]+) ([-\d.]+)")
 
 # Of a glyph, in the units of a font of 100: about the widest, and how far one hangs below its line.
 WIDE, DEEP = 80, 25
+LARGEST = 2  # pixels for a point: a narrow panel is not blown up to the width of a phone
 AROUND = 1  # points kept free between a panel's letters and the next panel's
 ABOVE = 8  # points kept free above and below a panel, for marks that stand out of its frame
 
@@ -90,18 +91,35 @@ def width_in_points(drawing: ElementTree.Element) -> float:
 
 
 def panels_of(drawing: ElementTree.Element) -> list[Box]:
-    """Return the parts that lie between cuts through a drawing; none where no cut is free."""
+    """Return the parts between cuts through a drawing, row by row; none where no cut is free.
+
+    Only drawings with panels side by side are cut, and between rows only if all columns allow it.
+    """
     _, _, width, height = map(float, drawing.get("viewBox", "0 0 0 0").split())
     loose = [box_of(texts_in(part)) for part in drawn_parts(drawing, "text_", "legend_")]
-    columns = columns_of(axes_in(drawing))
-    cuts = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
-    if not cuts or any(part.left < cut < part.right for part in [*columns, *loose] for cut in cuts):
+    axes = axes_in(drawing)
+    columns, rows = columns_of(axes), rows_of(axes)
+    across = [(one.right + two.left) / 2 for one, two in pairwise(columns)]
+    if not across or any(
+        part.left < cut < part.right for part in [*columns, *loose] for cut in across
+    ):
         return []
-    edges = pairwise([0.0, *cuts, width])
+    down = [(one.bottom + two.top) / 2 for one, two in pairwise(rows)]
+    if any(part.top < cut < part.bottom for part in loose for cut in down):
+        down = []
+    cells = product(pairwise([0.0, *down, height]), pairwise([0.0, *across, width]))
     return [
-        Box(left, max(0.0, column.top - ABOVE), right, min(height, column.bottom + ABOVE))
-        for (left, right), column in zip(edges, columns, strict=True)
+        Box(left, max(top, content.top - ABOVE), right, min(bottom, content.bottom + ABOVE))
+        for (top, bottom), (left, right) in cells
+        if (inside := [one for one in axes if is_in(one, Box(left, top, right, bottom))])
+        for content in [box_of(inside)]
     ]
+
+
+def is_in(part: Box, cell: Box) -> bool:
+    """Tell whether the middle of a part lies in a cell."""
+    across, down = (part.left + part.right) / 2, (part.top + part.bottom) / 2
+    return cell.left < across < cell.right and cell.top < down < cell.bottom
 
 
 def drawn_parts(drawing: ElementTree.Element, *kinds: str) -> list[ElementTree.Element]:
@@ -148,13 +166,23 @@ def box_of(parts: Iterable[Box]) -> Box:
 
 def columns_of(axes: Iterable[Box]) -> list[Box]:
     """Return the columns from left to right: axes that overlap stand above one another."""
-    columns: list[Box] = []
-    for one in sorted(axes):
-        if columns and one.left < columns[-1].right:
-            columns[-1] = box_of([columns[-1], one])
+    return merged(sorted(axes), lambda box: (box.left, box.right))
+
+
+def rows_of(axes: Iterable[Box]) -> list[Box]:
+    """Return the rows from top to bottom: axes that overlap stand side by side."""
+    return merged(sorted(axes, key=lambda box: box.top), lambda box: (box.top, box.bottom))
+
+
+def merged(parts: Iterable[Box], ends: Callable[[Box], tuple[float, float]]) -> list[Box]:
+    """Return parts in order of their first ends, those that overlap as one."""
+    found: list[Box] = []
+    for one in parts:
+        if found and ends(one)[0] < ends(found[-1])[1]:
+            found[-1] = box_of([found[-1], one])
         else:
-            columns.append(one)
-    return columns
+            found.append(one)
+    return found
 
 
 def visit_panel_image(translator: Any, node: panel_image) -> None:
@@ -165,7 +193,7 @@ def visit_panel_image(translator: Any, node: panel_image) -> None:
     part = f"{box.left:.1f},{box.top:.1f},{width:.1f},{height:.1f}"
     translator.body.append(
         f'<img src="{file}#svgView(viewBox({part}))" alt="{escape(node["alt"])}"'
-        f' style="aspect-ratio: {width:.1f} / {height:.1f}">\n'
+        f' style="aspect-ratio: {width:.1f} / {height:.1f}; max-width: {width * LARGEST:.0f}px">\n'
     )
     raise nodes.SkipNode
 

@@ -19,6 +19,7 @@ from sphinx.util.typing import ExtensionMetadata
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
+from qbound import figures
 
 HEADER = ("Result", "Value", "Unit", "Error", "About")
 
@@ -72,7 +73,7 @@ def row(entry: dict[str, Any]) -> str:
     about = ", ".join(word for word in (entry["reference"], rule) if word)
     return (
         f'<tr id="{anchor}"><th scope="row"><a href="#{anchor}">{name}</a></th>'
-        f"<td>{escape(cite.value_text(entry['value']))}</td><td>{escape(unit)}</td>"
+        f"<td>{escape(figures.minus_signs(cite.value_text(entry['value'])))}</td><td>{escape(unit)}</td>"
         f"<td>{error}</td><td>{escape(about)}{citation(entry)}</td></tr>"
     )
 

@@ -54,6 +54,36 @@ function holdPunctuation() {
   }
 }
 
+// A line may end in a name's hyphen and before its number: E-34, Table 6, chapter 11, 2.5 cm².
+const WHOLE =
+  /(?<![\w.])(?:[A-Z]{1,2}-\d[\d.]*\d|[A-Z]{1,2}-\d|(?:[Cc]hapter|Tables?|Figures?|Theorem) N?\d+|\d[\d.]* (?:cm²?|mm²?|m²?|rad²?|deg²|%))(?!\w)/g;
+const PROSE = ".bd-article :is(p, li, dd, td, figcaption)";
+
+function holdNames() {
+  for (const block of document.querySelectorAll(PROSE)) {
+    const walk = document.createTreeWalker(block, NodeFilter.SHOW_TEXT);
+    const texts = [];
+    while (walk.nextNode()) texts.push(walk.currentNode);
+    for (const text of texts) {
+      if (!(text instanceof Text) || text.parentElement?.closest(".unbroken, .math, pre, svg, .play"))
+        continue;
+      const parts = text.data.split(WHOLE);
+      const names = text.data.match(WHOLE);
+      if (!names) continue;
+      text.replaceWith(...parts.flatMap((part, i) => [part, ...unbroken(names[i])]));
+    }
+  }
+}
+
+/** @type {(name: string | undefined) => HTMLElement[]} */
+function unbroken(name) {
+  if (name === undefined) return [];
+  const line = document.createElement("span");
+  line.className = "unbroken";
+  line.textContent = name;
+  return [line];
+}
+
 /** @type {(text: Node | null, pattern: RegExp) => string} */
 function cutOff(text, pattern) {
   if (!(text instanceof Text)) return "";
@@ -122,7 +152,8 @@ function repairNames() {
 }
 
 // A module's name is long for a phone and for a side bar: it may break after a dot or a low line.
-const NAMES = ".prev-next-title, .bd-article :is(h1, cite), .bd-sidebar-primary nav a";
+const NAMES =
+  ".prev-next-title, .bd-article :is(h1, cite), .bd-sidebar-primary nav a, #traceability td .pre";
 
 function breakNames() {
   for (const name of document.querySelectorAll(NAMES)) {
@@ -136,6 +167,7 @@ function breakNames() {
 window.addEventListener("load", () => {
   repairNames();
   breakNames();
+  holdNames();
   showTopOfSidebar();
   const formulasShown = window.MathJax?.startup?.promise ?? Promise.resolve();
   formulasShown.then(letFormulasShrink).then(holdPunctuation).then(watchBoxes);

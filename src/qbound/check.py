@@ -3,8 +3,9 @@
     python check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]
 
 A certificate says of a robot that every configuration of a set keeps every boundary (proved), or
-that one of them does not (refuted). This file is for a stranger who wants to trust that answer: it
-imports nothing but the standard library, uses no floating point, and can be copied and run alone.
+that one of them does not (refuted); or that no path leads from one configuration to another. This
+file is for a stranger who wants to trust that answer: it imports nothing but the standard library,
+uses no floating point, and can be copied and run alone.
 The grammar of certificates is a page of the book, "The certificate"; what it does not list is
 refused here. Read from top to bottom:
 
@@ -14,6 +15,7 @@ refused here. Read from top to bottom:
     waves         each boundary as a sum of waves, from the robot's joints and points
     bodies        outlines in the plane of motion, and what separates two of them
     the bound     on each leaf of a tree, why the boundary is positive there
+    no path       values of one joint that nothing passes, whatever the other joints
     the answer    a statement that is written from what was verified, and an exit status
 
 Exit status: 0 proved, 1 refuted by a witness that was verified, 2 anything else, 130 interrupted.
@@ -711,9 +713,13 @@ def _dot(u: Iterable[int | Fraction], v: Iterable[Fraction]) -> Fraction:
 # --- reading: the set -----------------------------------------------------------------------------
 
 
+NO_PATH = "no path"
+"""In the place of a set: of all paths between two configurations none keeps every boundary."""
+
+
 @dataclass(frozen=True)
 class Statement:
-    """A set, as the decimals that were read, and the cells that make it up."""
+    """A set, as the decimals that were read, and the cells that make it up; of no path none."""
 
     kind: str
     margin: Fraction
@@ -724,13 +730,18 @@ class Statement:
 def read_statement(value: Any, grammar: int, joints: int) -> Statement:
     """Read a statement about a robot of so many joints."""
     sort = value.get("set") if type(value) is dict else None
-    kind = one_of(sort, "statement: set", ("box", "path", "polygon"))
+    sets = ("box", "path", "polygon") if grammar < 4 else (NO_PATH,)
+    kind = one_of(sort, "statement: set", sets)
     triangles = ("triangles",) if kind == "polygon" else ()
     table = table_of(value, "statement", ("set", "margin", "points", *triangles))
     margin = number(table["margin"], "statement: margin")
     demand(margin >= 0, "statement: margin: a length of 0 or more is wanted")
-    loops = _read_loops(table["points"], {"box": 1}.get(kind, MAX_CONFIGURATIONS), joints)
-    if kind == "box":
+    most = 1 if kind in ("box", NO_PATH) else MAX_CONFIGURATIONS
+    loops = _read_loops(table["points"], most, joints)
+    cells: tuple[Cell, ...] = ()
+    if kind == NO_PATH:
+        demand(len(loops[0]) == 2, "statement: points[0]: two configurations are wanted")
+    elif kind == "box":
         cells = _box_cells(loops[0], grammar)
     elif kind == "path":
         cells = _segments(loops)
@@ -1544,7 +1555,7 @@ class Separation:
         """Verify that the cores are nearer than the gap at a configuration, by a place of each.
 
         Each place is a mean of corners. It will do that they are nearer than the gap, or that one
-        is strictly inside the other core.
+        is strictly inside the other core. Of two segments it will do that they cross.
         """
         places = [
             sum((real(w) * p for w, p in zip(row, core.corners, strict=True)), ZERO)
@@ -1554,7 +1565,22 @@ class Separation:
         step = less(one, other)
         square = less(self.plane.dot(step, step), {self.plane.still: real(self.gap**2)})
         inside = (self._inside(self.cores[1], one, q), self._inside(self.cores[0], other, q))
-        return self._is_negative(square, q) or any(inside)
+        return self._is_negative(square, q) or any(inside) or self._cross(q)
+
+    def _cross(self, q: Point) -> bool:
+        """Tell whether two segments certainly cross: the line of each parts the other's ends."""
+        one, other = self.cores
+        if not len(one.corners) == len(other.corners) == 2:
+            return False
+        return self._parts_ends(one, other, q) and self._parts_ends(other, one, q)
+
+    def _parts_ends(self, core: Core, other: Core, q: Point) -> bool:
+        """Tell whether the ends of a segment are certainly on two sides of another one's line."""
+        normal, start = self._direction(core, core.normals[0]), self._place(core, core.corners[0])
+        ends = [self._place(other, end) for end in other.corners]
+        below = [self._is_negative(self.plane.dot(normal, less(end, start)), q) for end in ends]
+        above = [self._is_negative(self.plane.dot(normal, less(start, end)), q) for end in ends]
+        return (below[0] and above[1]) or (above[0] and below[1])
 
     def _inside(self, core: Core, place: Form, q: Point) -> bool:
         """Tell whether a place is certainly on the inner side of every edge of an outline."""
@@ -1794,6 +1820,116 @@ def read_witness(content: Table, statement: Statement, joints: int) -> Point:
     return tuple(_dot(weights, column) for column in zip(*cell.corners, strict=True))
 
 
+# --- no path --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """Values of a joint, both ends included, at which a boundary is violated throughout.
+
+    Whatever the other joints are: a path that takes the joint from one side of them to the other
+    has a configuration that violates the boundary.
+    """
+
+    joint: int
+    boundary: Boundary
+    low: Fraction
+    high: Fraction
+
+
+def verify_no_path(robot: Robot, statement: Statement, value: Any) -> list[Blocked]:
+    """Verify that no path within the limits keeps every boundary from one end to the other."""
+    proof, [[start, goal]] = table_of(value, "proof", ("joint", "blocked")), statement.loops
+    for q in (start, goal):
+        beyond = robot.beyond(q)
+        demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
+    names = [joint.name for joint in robot.joints]
+    j = names.index(one_of(proof["joint"], "proof: joint", names))
+    count = 1 if robot.joints[j].limits else 2  # without limits there are two ways round
+    rows = list_of(proof["blocked"], "proof: blocked", count, count)
+    kinematics = Kinematics(robot)
+    blocked = [
+        _read_blocked(kinematics, robot, statement, j, row, f"proof: blocked[{i}]")
+        for i, row in enumerate(rows)
+    ]
+    if len(blocked) == 1:
+        low, high = sorted((start[j], goal[j]))
+        between = low < blocked[0].low and blocked[0].high < high
+    else:
+        one, other = blocked
+        between = is_parted(start[j], goal[j], one, other, robot.angle_unit)
+    demand(between, "proof: blocked: both configurations are on one side of it")
+    return blocked
+
+
+def is_parted(start: Fraction, goal: Fraction, one: Blocked, other: Blocked, unit: str) -> bool:
+    """Tell whether a joint without limits passes one of two ranges on any way to a goal.
+
+    Upwards from the start lie, within a turn, the first range, the goal (a number of turns on) and
+    the second range; so downwards from the start lies the second one, a turn back, before the goal.
+    In radians a turn is known to more digits than a unit has.
+    """
+    turn = Fraction(360) if unit == "deg" else 2 * PI
+    error = Fraction(0) if unit == "deg" else Fraction(1, 10**70)
+    within = start < one.low and other.high < start + turn - error
+    most = 2 * int(LARGEST_ANGLE[unit] // turn) + 2
+    return within and any(
+        one.high < goal + k * turn - most * error and goal + k * turn + most * error < other.low
+        for k in range(-most, most + 1)
+    )
+
+
+def _read_blocked(
+    kinematics: Kinematics, robot: Robot, statement: Statement, j: int, value: Any, where: str
+) -> Blocked:
+    """Read a range of joint j and prove that a boundary is violated all over it."""
+    row = table_of(value, where, ("boundary", "from", "to", "tree"))
+    known = {b.name: b for b in robot.boundaries if all(isinstance(e, Place) for e in b.ends)}
+    named = type(row["boundary"]) is str and row["boundary"] in known
+    demand(named, f"{where}: boundary: {shown(row['boundary'])} is no boundary of points in use")
+    boundary = known[row["boundary"]]
+    frames = [0] * (boundary.normal is not None) + sorted(end.frame for end in boundary.ends)
+    demand(frames[0] <= j < frames[-1], f"{where}: boundary: it does not depend on the joint")
+    low, high = (number(row[key], f"{where}: {key}") for key in ("from", "to"))
+    demand(low < high, f"{where}: from is not less than to")
+    largest = LARGEST_ANGLE[robot.angle_unit]
+    small = not robot.joints[j].turns or max(abs(low), abs(high)) <= largest
+    demand(small, f"{where}: an angle of more than {largest} {robot.angle_unit}")
+    form = boundary_form(kinematics, boundary, boundary.gap(statement.margin))
+    reach = tuple(
+        max(map(abs, (low, high) if i == j else joint.limits or (Fraction(1),)))
+        for i, joint in enumerate(robot.joints)
+    )
+    function = function_of(robot, least_violation(robot, form, j, reach))
+    [[start, _]], tree = statement.loops, row["tree"]
+    ends = [(*start[:j], end, *start[j + 1 :]) for end in (low, high)]
+    demand(type(tree) is str and tree, f"{where}: a tree is a text")
+
+    def asked(feature: int | None, where: str) -> list[Function]:
+        demand(feature is None, f"{where}: a leaf has a number, but there are no features")
+        return [function]
+
+    prove(asked, Box(*ends), tree, where)
+    return Blocked(j, boundary, low, high)
+
+
+def least_violation(robot: Robot, form: Form, j: int, reach: Point) -> Form:
+    """Return a form of joint j alone that is nowhere more than minus a form.
+
+    A term with factors of other joints may have either sign: its largest size is taken off.
+    """
+    found: Form = {(0,) * len(robot.joints): ZERO}
+    for key, amplitude in form.items():
+        if any(k for i, k in enumerate(key) if i != j):
+            powers = tuple(
+                0 if joint.turns else k for k, joint in zip(key, robot.joints, strict=True)
+            )
+            add_to(found, (0,) * len(key), ZERO - amplitude.size * monomial(powers, reach))
+        else:
+            add_to(found, key, ZERO - amplitude)
+    return found
+
+
 # --- the answer -----------------------------------------------------------------------------------
 
 
@@ -1838,9 +1974,13 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
     demand(pin in (None, sha256), f"it is about another robot: its sha256 is {sha256}")
     robot = read_robot(robot_text)
     bodies = any(boundary.bodies for boundary in robot.boundaries)
-    demand(grammar == 3 or not bodies, "schema: of a robot with pairs of bodies 3 is wanted")
+    demand(grammar >= 3 or not bodies, "schema: of a robot with pairs of bodies 3 is wanted")
     statement = read_statement(content["statement"], grammar, len(robot.joints))
     _check_angles(robot, statement)
+    if grammar == 4:
+        blocked = verify_no_path(robot, statement, content["proof"])
+        lines = [no_path_of(robot, statement, blocked), *described(robot, statement)]
+        return Answer(False, "\n".join([f"robot {robot.name!a}, sha256 {sha256}", *lines]))
     proving = Proving(robot, content.get("parts", {}), statement.margin)
     if refuted:
         name = text_of(content["boundary"], "boundary", 1_000)
@@ -1857,9 +1997,10 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
 def _read_heading(content: Any) -> tuple[int, bool]:
     """Return the number of the grammar, and whether the file refutes; verify its keys."""
     demand(type(content) is dict, "the file is no JSON object")
-    schemas = tuple(f"qbound/certificate/{number}" for number in (1, 2, 3))
+    schemas = tuple(f"qbound/certificate/{number}" for number in (1, 2, 3, 4))
     grammar = 1 + schemas.index(one_of(content.get("schema"), "schema", schemas))
-    refuted = one_of(content.get("verdict"), "verdict", ("proved", "refuted")) == "refuted"
+    verdicts = ("proved", "refuted") if grammar < 4 else ("proved",)
+    refuted = one_of(content.get("verdict"), "verdict", verdicts) == "refuted"
     statement = content.get("statement")
     box = type(statement) is dict and statement.get("set") == "box"
     witness = ("at",) if grammar > 1 and box else ("cell", "weights")
@@ -1888,6 +2029,21 @@ def proof_of(robot: Robot, statement: Statement) -> str:
     return f"proved: {keeps}{limits}"
 
 
+def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -> str:
+    """Say between which configurations there is no path, and which joint cannot pass what."""
+    j, margin = blocked[0].joint, f"{written(statement.margin)} {robot.length_unit}"
+    unit = robot.unit(j)
+    ranges = " nor ".join(
+        f"from {written(b.low)} {unit} to {written(b.high)} {unit}, where {b.boundary.name!a} is"
+        " violated whatever the other joints are"
+        for b in blocked
+    )
+    [[start, goal]] = statement.loops
+    ends = f"from {_point(start)} to {_point(goal)}"
+    keeps = f"keeps every boundary with a margin of {margin} and all limits"
+    return f"proved: no path {ends} {keeps}: {robot.joints[j].name!a} cannot pass {ranges}"
+
+
 def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
     """Say where the set was refuted."""
     margin = f" with a margin of {written(statement.margin)} {robot.length_unit}"
@@ -1904,6 +2060,8 @@ def described(robot: Robot, statement: Statement) -> list[str]:
     names = ", ".join(f"{joint.name!a} in {robot.unit(j)}" for j, joint in enumerate(robot.joints))
     lines = [f"set: {statement.kind} in ({names})"]
     points = [q for loop in statement.loops for q in loop]
+    if not statement.cells:
+        return [f"configurations: ({names})"]
     if len(points) <= MOST_SHOWN:
         lines += [" ".join(map(_point, loop)) for loop in statement.loops]
     else:

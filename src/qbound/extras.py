@@ -19,13 +19,15 @@ EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
+    "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
-    "skimage": Extra("a surface or a count on a grid", "scikit-image", "notebooks"),
+    "skimage": Extra("a surface", "scikit-image", "arms"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
+    "trimesh": Extra("a mesh", "trimesh", "arms"),
     "zarr": Extra("a sweep", "Zarr", "cluster"),
 }
 """By the name that is imported."""

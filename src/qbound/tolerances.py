@@ -27,6 +27,12 @@ NEGLIGIBLE: Final = 1e-13
 ROUNDING: Final = 16.0 * 2.0**-52
 """Error of a sum of three products beside the size of its terms, with that of its coefficients."""
 
+UNCERTAIN_SIGN: Final = 1e-9
+"""A bound on a form this near to zero, beside the size of the form's terms, proves no sign.
+
+The bounds are sums of a few dozen products, right to 1e-14 of that size, and coefficients that come
+from a longer chain are, too."""
+
 BLANK: Final = 1e-9
 """Coefficients this small beside their terms: the form vanishes on the fibre, as critical base
 values lie within `SAME_CRITICAL` of where it does."""
@@ -130,3 +136,9 @@ takes triangles of 1e-5 rad beside the place of contact, and only there."""
 CHORD: Final = 0.04
 """Angle between points of a circle in a drawn outline: a chord leaves the circle by 2e-4 of the
 radius, less than a line is wide."""
+
+OUTWARD: Final = 2.0**-44
+"""Part of a shape's size by which the balls that cover it are larger than exact numbers ask.
+
+A distance, and a corner halved sixty times, are each right to some 70 units in the last place of
+the largest coordinate, 2**-46 of it; what covers by this much more covers in exact numbers."""

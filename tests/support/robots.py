@@ -13,9 +13,10 @@ from support.forms import PP, PR, RP, RR, TURN
 OF_POINTS = [
     name
     for name in packaged_robots()
-    if not any(isinstance(boundary, BodyPair) for boundary in load_robot(name).used)
+    if len((robot := load_robot(name)).joints) == 2
+    and not any(isinstance(boundary, BodyPair) for boundary in robot.used)
 ]
-"""Packaged robots whose every boundary has one form."""
+"""Packaged robots of two joints whose every boundary has one form."""
 
 
 def random_robot(seed: int) -> Robot:

@@ -255,9 +255,13 @@ def margins(
 def hits(robot: Robot, q: Floats) -> NDArray[np.bool_]:
     """Tell where a boundary is violated or, without radius and clearance, cores meet; shape (n,).
 
-    Every pair is asked of shapely only where boxes round both bodies come that near.
+    Every pair is asked of shapely only where boxes round both bodies come that near. What stands
+    still is placed once.
     """
-    placed = {body.name: _placed(robot, body, q) for body in (*robot.bodies, *robot.obstacles)}
+    placed = {
+        body.name: _placed(robot, body, q[:1] if body.frame == robot.base else q)
+        for body in (*robot.bodies, *robot.obstacles)
+    }
     boxes = {name: shapely.bounds(geometry) for name, (geometry, _) in placed.items()}
     found = np.zeros(len(q), dtype=np.bool_)
     for boundary in robot.used:
@@ -267,7 +271,7 @@ def hits(robot: Robot, q: Floats) -> NDArray[np.bool_]:
             kept = p + r + boundary.clearance
             far = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:]).max(axis=1) > kept
             at = np.flatnonzero(~found & ~far)
-            distance = shapely.distance(one[at], other[at])
+            distance = shapely.distance(*(x[at] if len(x) > 1 else x[0] for x in (one, other)))
             found[at] = (distance < kept) | (distance == 0)
         else:
             found |= margins(robot, q, [boundary])[boundary.name] < 0
@@ -295,12 +299,19 @@ def in_cells(region: Region, q: Floats) -> NDArray[np.bool_]:
     return found
 
 
-def wrongly_told(robot: Robot, region: Region, q: Floats, least: float = 1e-9) -> Floats:
+def wrongly_told(
+    robot: Robot,
+    region: Region,
+    q: Floats,
+    least: float = 1e-9,
+    hit: NDArray[np.bool_] | None = None,
+) -> Floats:
     """Return the configurations that lie in a cell and in a body, or in neither.
 
-    Those within `least`, a length, of contact are left out: there rounding decides.
+    Those within `least`, a length, of contact are left out: there rounding decides. `hit` is what
+    `hits` says, if it is known already.
     """
-    wrong = q[in_cells(region, q) == hits(robot, q)]
+    wrong = q[in_cells(region, q) == (hits(robot, q) if hit is None else hit)]
     margin = Separation(robot).margins(wrong).min(axis=-1)
     return wrong[np.abs(margin) > least]
 

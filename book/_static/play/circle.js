@@ -195,7 +195,7 @@
         drawn.names[i].toggleAttribute("hidden", count < 2);
         place(drawn.names[i], drawn.at([0.78 * Math.cos(ends[i]), 0.78 * Math.sin(ends[i])]));
       }
-      place(drawn.names[2], at(d / ARROW + 0.14, 0.1));
+      place(drawn.names[2], at((0.55 * d) / ARROW, 0.24)); // beside the arrow: around its tip are arcs
       const lean = 90 - (theta * 180) / Math.PI; // of the line, so that its name is not upside down
       const [lineX, lineY] = at(height - (uy < 0 ? -0.12 : 0.2), uy < 0 ? -0.1 : 0.1);
       place(drawn.names[3], [lineX, lineY]);

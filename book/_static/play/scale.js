@@ -153,6 +153,9 @@
       const inside = make("path", { class: "home" });
       group.append(inside, before);
       const lines = vertices.map(() => group.appendChild(make("path", { class: "arc" })));
+      const arrows = vertices.map(() =>
+        group.appendChild(make("path", { class: "heading", d: "M-5 -4.5L6 0L-5 4.5Z" })),
+      );
       const [x, y] = fitted.at(centroid);
       group.append(make("path", { class: "centroid", d: `M${x - 6} ${y}h12M${x} ${y - 6}v12` }));
       const numbers = vertices.map((_, i) =>
@@ -161,7 +164,7 @@
         ),
       );
       const dot = group.appendChild(make("circle", { class: "handle", r: 7 }));
-      return { joints: fitted, inside, lines, numbers, dot };
+      return { joints: fitted, inside, lines, arrows, numbers, dot };
     }
 
     /** The part of the plane that the arm takes where the tool is lowest, at any scale.
@@ -221,6 +224,10 @@
       for (const [i, line] of drawn.lines.entries()) {
         line.setAttribute("d", pathText([places[i], places[next(i)]]));
         line.classList.toggle("lit", values[i] < -TOUCHING);
+        const [[ax, ay], [bx, by]] = [places[i], places[next(i)]];
+        const turn = (Math.atan2(by - ay, bx - ax) * 180) / Math.PI;
+        const [mx, my] = [(ax + bx) / 2, (ay + by) / 2].map((value) => value.toFixed(1));
+        drawn.arrows[i].setAttribute("transform", `translate(${mx} ${my}) rotate(${turn})`);
       }
       const [gx, gy] = drawn.joints.at(centroid);
       for (const [i, text] of drawn.numbers.entries()) {

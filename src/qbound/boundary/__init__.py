@@ -4,5 +4,6 @@
 - `parts`, `poses`: the bodies that a boundary is about, and where they stand in the plane;
 - `contacts`: how two convex parts touch, as forms; `body_contacts`: all contacts of a robot;
 - `separation`: how far bodies are apart, at millions of configurations; `nearest`: and where;
-- `evaluator`: all of them compiled once, for one configuration or for millions.
+- `evaluator`: all of them compiled once, for one configuration or for millions;
+- `chain`, `balls`: the same for an arm of many joints, by places and distances in place of forms.
 """

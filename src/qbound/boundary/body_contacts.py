@@ -19,7 +19,7 @@ from qbound.boundary.contacts import (
     heights,
     pose,
 )
-from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts
+from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 
 Floats = NDArray[np.float64]
@@ -39,11 +39,12 @@ def body_contacts(
     Raises
     ------
     ValueError
-        If the robot leaves every plane.
+        If the robot or a body leaves every plane.
     """
     about = [boundary for boundary in boundaries if bounds_bodies(boundary)]
     if not about:
         return gathered([])
+    refuse_off_plane(robot, about)
     moves, poses = _moves(robot, held), dict[tuple[int, int], Pose]()
 
     def between(near: int, far: int) -> Pose:

@@ -31,6 +31,7 @@ Indices = NDArray[np.intp]
 Range = tuple[float, float] | None
 Array = NDArray[Any]
 Index = tuple[int, ...]
+Denominator = tuple[Floats, Floats, Floats]
 Monomial = tuple[Callable[[float], float], Callable[[Floats], Floats]]
 
 BLOCK = 8192
@@ -177,17 +178,11 @@ class Evaluator:
         return table
 
     @cached_property
-    def _denominator(self) -> tuple[Floats, Floats, Floats]:
-        """(a, b, d) of ``sqrt(a value + b) + d``: |B| + d_min of a pair, 1 elsewhere."""
-        pair = ~np.isnan(self.distance)
-        d = np.where(pair, np.maximum(self.distance, NO_DISTANCE), 0.0)
-        return pair.astype(float), np.where(pair, d * d, 1.0), d
+    def _denominator(self) -> Denominator:
+        return denominators(self.distance)
 
     def _lengths(self, values: Floats) -> Floats:
-        if values.size and values.min() < 0:
-            values[(values < 0) & (values >= -self.rounding)] = 0
-        a, b, d = self._denominator
-        return np.asarray(values / (np.sqrt(np.maximum(a * values + b, 0)) + d))
+        return lengths(values, self.rounding, self._denominator)
 
     def _one(self, q: Sequence[float]) -> list[float]:
         row = [1.0]
@@ -325,6 +320,30 @@ def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:
     """Return the clearance forms of boundaries as one stack, shape (m,)."""
     forms = np.array([clearance(robot, boundary).coefficients for boundary in boundaries])
     return HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
+
+
+def denominators(distance: Floats) -> Denominator:
+    r"""Return (a, b, d) of ``sqrt(a value + b) + d``: :math:`|B| + d_{\min}`, or 1 without one.
+
+    Parameters
+    ----------
+    distance : ndarray
+        :math:`d_{\min}` of the pairs; NaN where the value is a length.
+    """
+    pair = ~np.isnan(distance)
+    d = np.where(pair, np.maximum(distance, NO_DISTANCE), 0.0)
+    return pair.astype(float), np.where(pair, d * d, 1.0), d
+
+
+def lengths(values: Floats, rounding: Floats, denominator: Denominator) -> Floats:
+    """Return the margins of values of forms, shape (..., m); what rounding makes negative is 0.
+
+    The values may be changed.
+    """
+    if values.size and values.min() < 0:
+        values[(values < 0) & (values >= -rounding)] = 0
+    a, b, d = denominator
+    return np.asarray(values / (np.sqrt(np.maximum(a * values + b, 0)) + d))
 
 
 def limit_names(joint: str) -> tuple[str, str]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.model.bodycheck import is_oblique, off_plane
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
+from qbound.printable import printable
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +28,25 @@ def bounded_bodies(robot: Robot, boundary: Boundary) -> tuple[Body, ...]:
     if isinstance(boundary, HalfSpace) and boundary.body is not None:
         return (robot.body(boundary.body),)
     return ()
+
+
+def refuse_off_plane(robot: Robot, boundaries: Sequence[Boundary]) -> None:
+    """Refuse bodies, and walls about them, that leave the plane of motion.
+
+    A file has been asked this when it was read, a robot that is made otherwise has not: where all
+    joints slide along one line they do not settle in which plane the bodies lie.
+
+    Raises
+    ------
+    ValueError
+        If one does, or the robot leaves every plane.
+    """
+    bodies = {body.name: body for b in boundaries for body in bounded_bodies(robot, b)}
+    for body, text in off_plane(robot.plane, list(bodies.values())) if bodies else ():
+        raise ValueError(f"{printable(body.name)}: {text}")
+    for wall in boundaries:
+        if isinstance(wall, HalfSpace) and bounds_bodies(wall) and is_oblique(wall, robot.plane):
+            raise ValueError(f"{printable(wall.name)}: it leaves the plane in which the arm moves")
 
 
 def flat_parts(robot: Robot, body: Body) -> list[tuple[Floats, float]]:

@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts
+from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
 from qbound.boundary.poses import POSE, PlanePoses, of_far_places, of_near_places
 from qbound.geometry.distance import View, edges, signed
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Held, Robot
@@ -138,7 +138,7 @@ class Separation:
     Raises
     ------
     ValueError
-        If the robot leaves every plane, or a boundary is about points.
+        If the robot or a body leaves every plane, or a boundary is about points.
     """
 
     def __init__(
@@ -152,6 +152,7 @@ class Separation:
         for boundary in boundaries:
             if not bounds_bodies(boundary):
                 raise ValueError(f"{boundary.name}: it is about points, not about bodies")
+        refuse_off_plane(robot, boundaries)
         self.robot = robot
         self.held = robot.held_indices(held or {})
         self.boundaries = tuple(boundaries)

@@ -1,7 +1,8 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `traverse`, `sample`, `sweep`, `pave`,
-  `certify`, `check`, `draw`, `explore`, `robots`;
+- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `reach`,
+  `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
+  (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -20,18 +21,24 @@ from typing import Any, NoReturn
 
 from qbound import __version__
 from qbound.cli import (
+    allowed,
     certify,
     check,
     connected,
     contains,
     draw,
     explore,
+    fibre,
+    import_urdf,
     pave,
+    reach,
     region,
     robots,
     sample,
+    surface,
     sweep,
     traverse,
+    why,
     workspace,
 )
 from qbound.cli.files import check_targets
@@ -44,14 +51,20 @@ COMMANDS = (
     workspace,
     contains,
     connected,
+    why,
     traverse,
+    fibre,
+    reach,
     sample,
     sweep,
     pave,
+    allowed,
+    surface,
     certify,
     check,
     draw,
     explore,
+    import_urdf,
     robots,
 )
 """In the order of the help; after them come those of the entry-point group."""
@@ -59,8 +72,8 @@ COMMANDS = (
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
-WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros")
-READ = ("robot", "certificate", "path", "polygon", "specification")
+WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
+READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf", "specification")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141

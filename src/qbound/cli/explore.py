@@ -7,11 +7,14 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import write_text
+from qbound.cli.progress import progress
 from qbound.cli.terminal import complain
-from qbound.cli.values import held
+from qbound.cli.values import held, strip
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
+from qbound.region import Slices, find_slices
+from qbound.tolerances import SAME_POINT
 
 
 def add_to(commands: Any) -> None:
@@ -28,6 +31,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
     add_rule(parser)
     add_slice(parser)
+    parser.add_argument(
+        "--strip",
+        metavar="q3[=LOW..HIGH:COUNT]",
+        help="a held joint whose slider shows exact slices: so many values (25 over its range)",
+    )
     parser.set_defaults(run=run)
 
 
@@ -35,11 +43,26 @@ def run(options: argparse.Namespace) -> int:
     """Write the page; 1 if the home pose is in no component."""
     robot = load_robot(options.robot)
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
+    row = None if options.strip is None else _row(robot, options, values)
     region = region_by_rule(robot, options.rule, values)
-    write_text(options.output, explorer_page(region))
+    write_text(options.output, explorer_page(region, row=row))
     if region.home is None:
         complain("the home pose is in no component")
     return 0 if region.home is not None else 1
+
+
+def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) -> Slices:
+    """Find the slices along a joint, the one that the page opens with among them.
+
+    The joint is taken out of those that are held, and back at its value there, or at home.
+    """
+    if options.rule == "paper":
+        raise ValueError("--strip: the paper's rule knows two joints only")
+    along, chosen = strip(robot, options.strip, {})
+    opened = values.setdefault(along, float(robot.home[along]))
+    others = {j: value for j, value in values.items() if j != along}
+    chosen = sorted([*(q for q in chosen if abs(q - opened) > SAME_POINT), opened])
+    return find_slices(robot, along, chosen, others, progress("slices", len(chosen)))
 
 
 def _beyond_two(robot: Robot) -> dict[int, float]:

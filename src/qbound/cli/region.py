@@ -1,4 +1,7 @@
-"""``qbound region``: all regions of two joints, on the screen, as JSON, polygons, a picture."""
+"""``qbound region``: all regions of two joints, on the screen, as JSON, polygons, a picture.
+
+With ``--strip`` a third joint goes through several values: a row of regions, a panel each.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,15 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import Output, deliver
-from qbound.cli.values import held
-from qbound.export.document import home_content
+from qbound.cli.progress import progress
+from qbound.cli.values import held, strip
+from qbound.export.document import home_content, slices_document
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
+from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
-from qbound.region import Region
-from qbound.units import counted, margin_text
+from qbound.region import Region, Slices, find_slices
+from qbound.units import counted, joint_text, margin_text
 
 
 def add_to(commands: Any) -> None:
@@ -23,7 +28,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "region",
         help="all regions of two joints",
-        epilog="example: qbound region minervabot-v2 --json -",
+        epilog="examples: qbound region minervabot-v2 --json -\n"
+        "          qbound region arm.toml --slice q4=0 --strip q3=-90deg..90deg:9 --svg strip.svg",
     )
     add_robot(parser)
     add_rule(parser)
@@ -40,15 +46,56 @@ def add_to(commands: Any) -> None:
         help="largest distance of polygons from the exact arcs, joint units (default 0.001)",
     )
     add_slice(parser)
+    parser.add_argument(
+        "--strip",
+        metavar="q3=LOW..HIGH:COUNT",
+        help="a region for each of so many values of a third joint, --slice holding the others:"
+        " a strip of panels with --svg, all of them with --json",
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find the region; 1 if the home pose is in none of its components."""
+    """Find the region; 1 if the home pose is in none of its components.
+
+    Of a strip: 1 if every slice is empty.
+    """
     robot = load_robot(options.robot)
+    if options.strip is not None:
+        return _strip(robot, options)
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
     return 0 if region.home is not None else 1
+
+
+def _strip(robot: Robot, options: argparse.Namespace) -> int:
+    """Find, write and list the slices of a strip."""
+    polygons = next((name for name in ("csv", "geojson", "npz") if getattr(options, name)), None)
+    if polygons is not None:
+        raise ValueError(f"--{polygons}: polygons are of one region; leave out --strip, or --json")
+    if options.rule == "paper":
+        raise ValueError("--strip: the paper's rule knows two joints only")
+    fixed = held(robot, options.slice)
+    along, values = strip(robot, options.strip, fixed)
+    slices = find_slices(robot, along, values, fixed, progress("slices", len(values)))
+    outputs: list[Output] = [
+        (options.svg, lambda: _draw_strip(slices)),
+        (options.json, lambda: json_text(slices_document(slices))),
+    ]
+    deliver(outputs, _strip_lines(slices))
+    return 0 if slices.areas.any() else 1
+
+
+def _strip_lines(slices: Slices) -> Iterator[str]:
+    unit = slices.regions[0].area_unit
+    for k, (value, region) in enumerate(zip(slices.values, slices.regions, strict=True)):
+        where = joint_text(slices.robot, [value], [slices.along])
+        home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
+        if region.components:
+            parts = counted(len(region.components), "component")
+            yield f"{where}: area {region.area:.9g} {unit}, {parts}{home}"
+        else:
+            yield f"{where}: no room is left by {', '.join(region.empty_because)}"
 
 
 def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
@@ -92,3 +139,9 @@ def _draw(region: Region) -> bytes:
     from qbound.figures.pictures import region_picture
 
     return region_picture(region)
+
+
+def _draw_strip(slices: Slices) -> bytes:
+    from qbound.figures.pictures import strip_picture
+
+    return strip_picture(slices)

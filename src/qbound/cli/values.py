@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
 from qbound.proofs.points import joint_decimal, limits_as_decimals
 from qbound.units import counted, parse_joint_value
+
+MOST_PANELS = 100
+"""Slices of a strip: more would be no picture."""
 
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
@@ -30,6 +34,28 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
     if len(found) == len(robot.joints):
         raise ValueError("--slice: every joint is held; one or more must move")
     return found
+
+
+def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list[float]]:
+    """Read ``q3=-90deg..90deg:9``: a joint that is not held, and so many values, evenly apart.
+
+    Of ``q3`` alone there are 25, over its limits or one turn.
+    """
+    if "=" not in text:
+        text = f"{text}={_whole_range(robot, text)}"
+    j, span = _assigned(robot, "--strip", text)
+    ends, _, count = span.partition(":")
+    if ".." not in ends or not count.isascii() or not count.isdecimal():
+        raise ValueError(f"--strip {text}: wanted NAME=LOW..HIGH:COUNT, as q3=-90deg..90deg:9")
+    if j in held:
+        raise ValueError(f"--strip {text}: {robot.joints[j].name!r} is held by --slice")
+    low, high = (parse_joint_value(robot, j, end) for end in ends.split("..", 1))
+    if not 2 <= int(count) <= MOST_PANELS or not low < high:
+        raise ValueError(
+            f"--strip {text}: from 2 to {MOST_PANELS} values are wanted, the lower end first"
+        )
+    steps = int(count) - 1
+    return j, [low + (high - low) * k / steps for k in range(steps)] + [high]
 
 
 def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -76,6 +102,14 @@ def _assigned(robot: Robot, option: str, text: str) -> tuple[int, str]:
     if name not in names:
         raise ValueError(f"{option} {text}: no joint {name!r}; there are {', '.join(names)}")
     return names.index(name), value
+
+
+def _whole_range(robot: Robot, name: str) -> str:
+    """Write a joint's limits, or one turn, as a strip of 25 values."""
+    joint = next((joint for joint in robot.joints if joint.name == name), None)
+    low, high = (-math.pi, math.pi) if joint is None or joint.limits is None else joint.limits
+    unit = "rad" if joint is not None and joint.turns else ""
+    return f"{low!r}{unit}..{high!r}{unit}:25"
 
 
 def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:

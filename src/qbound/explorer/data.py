@@ -21,7 +21,7 @@ from qbound.geometry.polylines import flatten
 from qbound.measures.bodies import outline_in_frame
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
-from qbound.region import Component, Region
+from qbound.region import Component, Region, Slices
 from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.version import __version__
@@ -38,7 +38,7 @@ IN_PLANE: Final = 1e-6
 Walks = Sequence[Sequence[int]]
 
 
-def explorer_data(region: Region, walks: Walks = ()) -> Data:
+def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
     """Return what the explorer's page is told, as JSON (schema qbound/explorer/1).
 
     Parameters
@@ -49,6 +49,8 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
     walks : sequence of sequences of int, optional
         Orders in which a traversal visits the vertices, by index, besides once round; one that
         names a vertex that is not there is left out.
+    row : Slices, optional
+        Of the same two joints, the region's own among them, along one of the held joints.
 
     Returns
     -------
@@ -59,7 +61,8 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot.
+        If the region is of forms, not of a robot, or the row of slices is not of its joints, or
+        goes past the region.
     """
     robot, problem = region.robot, region.problem
     free = list(problem.joints)
@@ -80,10 +83,7 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
             {"frame": robot.depth(b.frame), "outline": outline_in_frame(robot, b).tolist()}
             for b in (*robot.bodies, *robot.obstacles)
         ],
-        "boundaries": [
-            _boundary(robot, b, problem.rule)
-            for b in dict.fromkeys((*robot.boundaries, *robot.used))
-        ],
+        "boundaries": [_boundary(robot, b, problem.rule) for b in _listed(robot)],
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],
@@ -91,6 +91,8 @@ def explorer_data(region: Region, walks: Walks = ()) -> Data:
         "plane": _plane(robot, q, free[0], free[1]),
         "views": views,
         "components": [_component(c, views) for c in region.components],
+        "walls": _walls(region),
+        "row": None if row is None else _row(region, row, views),
         "polygon": _polygon(region, walks),
         "workspace": workspace_content(region)["workspace"],
     }
@@ -115,6 +117,11 @@ def _point(robot: Robot, i: int) -> Data:
     point = robot.points[i]
     depth = robot.depth(point.frame)
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
+
+
+def _listed(robot: Robot) -> list[Boundary]:
+    """Return the boundaries in the order in which the page has them."""
+    return list(dict.fromkeys((*robot.boundaries, *robot.used)))
 
 
 def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
@@ -233,6 +240,43 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     return {"boundary": arc.boundary, "branch": arc.branch, "points": points}
 
 
+def _walls(region: Region) -> list[int] | None:
+    """List the boundaries that can bound a slice, by index; None where none was ruled out."""
+    if not region.irrelevant:
+        return None
+    out = set(region.irrelevant)
+    return [k for k, b in enumerate(_listed(region.robot)) if b.used and b.name not in out]
+
+
+def _row(region: Region, row: Slices, views: Sequence[Data]) -> Data:
+    """Describe a row of slices by rising value; those of one joint, the others as the region's."""
+    own, problems = region.problem, [each.problem for each in row.regions]
+    others = {j: value for j, value in own.held.items() if j != row.along}
+    alike = all({**problem.held, **others} == problem.held for problem in problems)
+    if row.robot is not region.robot or problems[0].joints != own.joints or not alike:
+        raise ValueError("the row of slices is of other joints, or of other held values")
+    if own.held[row.along] not in row.values.tolist():
+        raise ValueError("the region is none of the slices of its row")
+    return {
+        "joint": row.along,
+        "unit": region.area_unit.replace("^2", "²"),
+        "slices": [
+            {
+                "value": float(row.values[k]),
+                "walls": _walls(row.regions[k]),
+                "components": [_outline(c, views) for c in row.regions[k].components],
+            }
+            for k in np.argsort(row.values, kind="stable")
+        ],
+    }
+
+
+def _outline(component: Component, views: Sequence[Data]) -> Data:
+    """Keep of a component what is drawn of a slice."""
+    whole = _component(component, views)
+    return {key: whole[key] for key in ("home", "area", "loops")}
+
+
 def _polygon(region: Region, walks: Walks) -> Data | None:
     """Return the vertex polygon of the home component, its largest safe scale, its walks."""
     home = region.home
@@ -251,10 +295,10 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
         "centroid": centre.tolist(),
         "largest": largest.scale,
         "binds": None if largest.form < 0 else names[largest.form],
-        "walks": _walks(len(vertices), walks),
+        "walks": _orders(len(vertices), walks),
     }
 
 
-def _walks(m: int, others: Walks) -> list[list[int]]:
+def _orders(m: int, others: Walks) -> list[list[int]]:
     """List orders in which to visit m vertices: once round (Figure 7), and those asked for."""
     return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]

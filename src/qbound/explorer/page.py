@@ -20,7 +20,7 @@ from typing import Any, Final
 from qbound.explorer.data import Data, Walks, explorer_data
 from qbound.files import write_whole
 from qbound.printable import printable
-from qbound.region import Region
+from qbound.region import Region, Slices
 
 ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
 """What repeats the library's computations and knows no page."""
@@ -62,13 +62,13 @@ class Explorer:
         stays.
         """
         name = escape(printable(self.region.robot.name))
-        frame = Template(_web("frame.html")).substitute(
+        frame = Template(web_text("frame.html")).substitute(
             page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
         )
         picture, drawn = "", self.region._repr_svg_()
         if drawn is not None:
             content = b64encode(drawn.encode()).decode()
-            picture = Template(_web("picture.html")).substitute(content=content, name=name)
+            picture = Template(web_text("picture.html")).substitute(content=content, name=name)
         return f"<div>\n{picture}{frame}</div>"
 
     def save(self, path: str | Path) -> None:
@@ -76,13 +76,15 @@ class Explorer:
         write_whole(path, self.html.encode())
 
 
-def explore(region: Region) -> Explorer:
+def explore(region: Region, row: Slices | None = None) -> Explorer:
     """Return the explorer of a region.
 
     Parameters
     ----------
     region : Region
         Of a robot.
+    row : Slices, optional
+        Regions along one of the held joints, this one among them: its slider shows them.
 
     Returns
     -------
@@ -91,7 +93,7 @@ def explore(region: Region) -> Explorer:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot.
+        If the region is of forms, not of a robot, or the row of slices is none of its own.
 
     Examples
     --------
@@ -99,10 +101,10 @@ def explore(region: Region) -> Explorer:
     >>> page = explore(find_region(load_robot("pp-portal")))
     >>> page.save("portal.html")  # doctest: +SKIP
     """
-    return Explorer(region, explorer_page(region))
+    return Explorer(region, explorer_page(region, row=row))
 
 
-def explorer_page(region: Region, walks: Walks = ()) -> str:
+def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) -> str:
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
     It opens from the file system, asks nothing of a network (a content policy forbids it), and runs
@@ -114,6 +116,8 @@ def explorer_page(region: Region, walks: Walks = ()) -> str:
         Of a robot.
     walks : sequence of sequences of int, optional
         Orders in which a traversal visits the vertices, by index, besides once round.
+    row : Slices, optional
+        As in `explore`.
 
     Returns
     -------
@@ -123,18 +127,18 @@ def explorer_page(region: Region, walks: Walks = ()) -> str:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot.
+        If the region is of forms, not of a robot, or the row of slices is none of its own.
     """
-    data = _shown(explorer_data(region, walks))
+    data = _shown(explorer_data(region, walks, row))
     name = escape(printable(region.robot.name))
-    style, script = engine_style() + _web("page.css"), engine_script() + _web("start.js")
-    return Template(_web("explorer.html")).substitute(
+    style, script = engine_style() + web_text("page.css"), engine_script() + web_text("start.js")
+    return Template(web_text("explorer.html")).substitute(
         title=f"{name}: safe poses",
         name=name,
-        policy=f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}"
-        "; img-src data:",
+        policy=f"default-src 'none'; style-src {source_hash(style)};"
+        f" script-src {source_hash(script)}; img-src data:",
         style=style,
-        data=_embedded(data),
+        data=embedded(data),
         script=script,
         summary=_summary(data),
     )
@@ -147,10 +151,10 @@ def engine_script(*, explorer: bool = True) -> str:
     names belong to one explorer, and a page may have several. A page whose figures are of other
     kinds may do without: then `explorer` is false, and ``mount`` is null.
     """
-    shared = "".join(map(_web, ENGINE))
+    shared = "".join(map(web_text, ENGINE))
     mount = "const mount = null;\n"
     if explorer:
-        own, markup = "".join(map(_web, EXPLORER)), _embedded(_web("parts.html"))
+        own, markup = "".join(map(web_text, EXPLORER)), embedded(web_text("parts.html"))
         mount = f"const MARKUP = {markup};\n"
         mount += f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
     return shorter_script(f"(() => {{\n{mount}{shared}}})();\n")
@@ -158,7 +162,7 @@ def engine_script(*, explorer: bool = True) -> str:
 
 def engine_style() -> str:
     """Return the style of an explorer: every rule stands below the class ``qbound``."""
-    return _web("explorer.css")
+    return web_text("explorer.css")
 
 
 def shorter_script(script: str) -> str:
@@ -171,7 +175,8 @@ def shorter_script(script: str) -> str:
     return "".join(f"{line}\n" for line in lines if line and not line.startswith("//"))
 
 
-def _web(name: str) -> str:
+def web_text(name: str) -> str:
+    """Return a file of ``web``."""
     return (resources.files("qbound") / "explorer" / "web" / name).read_text(encoding="utf-8")
 
 
@@ -184,13 +189,13 @@ def _shown(data: Any) -> Any:
     return printable(data) if isinstance(data, str) else data
 
 
-def _embedded(data: Any) -> str:
+def embedded(data: Any) -> str:
     """Write JSON that no HTML parser can take for markup, whatever a name contains."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def _hash(text: str) -> str:
+def source_hash(text: str) -> str:
     """Return the source expression that lets just this style or script through."""
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 

@@ -12,7 +12,7 @@ from qbound.boundary.parts import bounds_bodies
 from qbound.export.formats import heading
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
-from qbound.region import Component, NoHomeError, Region, Vertex, find_region, margins
+from qbound.region import Component, NoHomeError, Region, Slices, Vertex, find_region, margins
 from qbound.region.arcs import Arc
 from qbound.version import __version__
 from qbound.workspace.areas import find_workspace
@@ -21,19 +21,37 @@ from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 def region_document(region: Region) -> dict[str, Any]:
     """Return a region as JSON holds it, schema qbound/region/2: rad, lengths, the robot's unit."""
-    problem = region.problem
     content = {
         **heading("qbound/region/2", region.robot),
-        "rule": problem.rule,
-        "joints": list(problem.joint_names),
+        "rule": region.problem.rule,
+        "joints": list(region.problem.joint_names),
+    }
+    return content | _region_content(region) | workspace_content(region)
+
+
+def slices_document(slices: Slices) -> dict[str, Any]:
+    """Return a row of slices as JSON holds it, schema qbound/slices/1; units as for a region."""
+    joints, first = slices.robot.joints, slices.regions[0].problem
+    held = {joints[j].name: value for j, value in first.held.items() if j != slices.along}
+    rows = zip(slices.values.tolist(), slices.regions, strict=True)
+    return {
+        **heading("qbound/slices/1", slices.robot),
+        "joints": list(first.joint_names),
+        "held": held,
+        "along": joints[slices.along].name,
+        "slices": [{"value": value, **_region_content(region)} for value, region in rows],
+    }
+
+
+def _region_content(region: Region) -> dict[str, Any]:
+    content: dict[str, Any] = {
         "home_component": None if region.home is None else 0,
         "feasible_area": region.area,
         "home": home_content(region),
         "components": [_component_content(component) for component in region.components],
     }
-    if region.empty_because:
-        content["empty_because"] = list(region.empty_because)
-    return content | workspace_content(region)
+    because = {"empty_because": list(region.empty_because)} if region.empty_because else {}
+    return content | because
 
 
 def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:

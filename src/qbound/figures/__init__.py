@@ -6,7 +6,8 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 Here are the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images; `cells`: pavings; `sweeps`: measures of many arms.
+- `workspace`: aspects and their images; `cells`: pavings; `surfaces`: those of three joints; `why`:
+  why a plan fails; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations
@@ -487,10 +488,15 @@ def as_text(name: str) -> str:
     return printable(name).replace("$", r"\$")
 
 
-def every(span: float) -> Any:
-    """Return ticks at 30 or 60 degrees, whichever suits the span; farther apart over many turns."""
+def every(span: float, *, few: bool = False) -> Any:
+    """Return ticks at 30 or 60 degrees, whichever suits the span; farther apart over many turns.
+
+    With `few`, for a small panel, three times as far apart.
+    """
     from matplotlib.ticker import MultipleLocator
 
+    if few:
+        return MultipleLocator(180 * np.ceil(span / 1200) if span > 400 else 90)
     return MultipleLocator(60 * np.ceil(span / 1200) if span > 180 else 30)
 
 

@@ -13,13 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import figures
+from qbound.arms.reach import Reach
 from qbound.extras import require
 from qbound.figures import INK
+from qbound.figures.reach import draw_section
 from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.forms.angles import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
-from qbound.region import Component, Region
+from qbound.region import Component, Region, Slices
+from qbound.units import amount
 from qbound.workspace.areas import Workspace
 
 if TYPE_CHECKING:
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 PANEL: Final = (5.4, 5.0)
+SMALL: Final = (3.2, 3.4)
+ACROSS: Final = 5
+"""Size of a strip's panels, and how many stand side by side."""
 Limits = tuple[float, float]
 Line = tuple[float, float, float]
 """Where a half-space that stands upright on the plane cuts it: unit normal and offset."""
@@ -66,7 +72,7 @@ def pose_picture(
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 
-    return _picture((region is not None) + (plane is not None), draw, kind)
+    return picture((region is not None) + (plane is not None), draw, kind)
 
 
 def traversal_picture(
@@ -94,7 +100,7 @@ def traversal_picture(
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
         _space_panel(space, robot, plane)
 
-    return _picture(2, draw, kind)
+    return picture(2, draw, kind)
 
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
@@ -108,7 +114,16 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
 
-    return _picture(1, draw, kind, size=(7, 6))
+    return picture(1, draw, kind, size=(7, 6))
+
+
+def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> bytes:
+    """Draw the section of a map of reach where a coordinate (0, 1, 2 for x, y, z) has a value."""
+
+    def draw(axes: Sequence[Axes]) -> None:
+        draw_section(axes[0], found, axis, value)
+
+    return picture(1, draw, kind, size=(6.4, 5.6))
 
 
 def plot_region(region: Region, ax: Axes | None = None) -> Axes:
@@ -126,14 +141,49 @@ def plot_region(region: Region, ax: Axes | None = None) -> Axes:
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
     """Return the picture of `plot_region`, the first component's vertices numbered."""
-    return _picture(1, lambda axes: plot_region(region, axes[0]), kind)
+    return picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
-def _picture(
+def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
+    """Draw slices side by side, each with its value and its area, and home where it lies in one."""
+    count = len(slices.regions)
+
+    def draw(axes: Sequence[Axes]) -> None:
+        for k, (ax, region) in enumerate(zip(axes, slices.regions, strict=True)):
+            q = slices.robot.home[None][: slices.holds_home(k)]
+            _joint_panel(ax, region, None, q)
+            place = q[:, list(region.problem.joints)] * figures.joint_scales(region)
+            ax.plot(*place.T, "P", color=INK, ms=9, mec="white", zorder=7)
+            ax.set_title(_slice_title(slices, k))
+            for axis, turns in zip((ax.xaxis, ax.yaxis), region.problem.forms.kinds, strict=True):
+                if turns == "revolute":
+                    axis.set_major_locator(
+                        figures.every(np.ptp(axis.get_view_interval()), few=True)
+                    )
+            below, left = k + ACROSS >= count, k % ACROSS == 0
+            ax.tick_params(labelbottom=below, labelleft=left)
+            ax.set(**({} if below else {"xlabel": ""}), **({} if left else {"ylabel": ""}))
+
+    return picture(count, draw, kind, size=SMALL, columns=ACROSS)
+
+
+def _slice_title(slices: Slices, k: int) -> str:
+    """Say where a slice lies, and how large it is."""
+    joint, region = slices.robot.joints[slices.along], slices.regions[k]
+    turn = np.degrees(1.0) if joint.turns else 1.0
+    value = amount(
+        float(slices.values[k] * turn), joint.unit(slices.robot.length_unit, "°"), digits=4
+    )
+    area = f"{region.area:#.4g} {region.area_unit.replace('^2', '²')}"
+    return figures.minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
+
+
+def picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
     kind: str,
     size: tuple[float, float] = PANEL,
+    columns: int = 2,
 ) -> bytes:
     """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
     require("matplotlib")
@@ -142,8 +192,12 @@ def _picture(
 
     silent = ("Date", "Creator") if kind == "svg" else ("Software",)
     with mpl.rc_context(figures.STYLE):  # type: ignore[arg-type]
-        figure = Figure(figsize=(size[0] * panels, size[1]))
-        draw(figure.subplots(1, panels, squeeze=False)[0])
+        rows, across = -(-panels // columns), min(panels, columns)
+        figure = Figure(figsize=(size[0] * across, size[1] * rows))
+        axes = figure.subplots(rows, across, squeeze=False).ravel()
+        for spare in axes[panels:]:
+            spare.remove()
+        draw(axes[:panels].tolist())
         buffer = BytesIO()
         figure.savefig(buffer, format=kind, dpi=160, metadata=dict.fromkeys(silent))
     return buffer.getvalue()

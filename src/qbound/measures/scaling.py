@@ -15,10 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.functions import clearance, margin_of
+from qbound.boundary.parts import bounds_bodies
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
 from qbound.measures.conditions import Conditions, conditions
+from qbound.measures.worst_bodies import least_margin_over
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
 
@@ -186,8 +188,12 @@ def worst_margins(
 
     Raises
     ------
-    ValueError
-        If a boundary is about whole bodies, which have no single form.
+    ArithmeticError
+        If it takes too many triangles to find it.
+
+    Notes
+    -----
+    Of bodies it is their signed distance less the clearance, to 1e-6 of the arm between them.
     """
     return {b.name: _worst(robot, b, vertices, centre) for b in robot.used}
 
@@ -195,6 +201,9 @@ def worst_margins(
 def _worst(
     robot: Robot, boundary: Boundary, vertices: ArrayLike, centre: ArrayLike
 ) -> tuple[float, Floats]:
+    if bounds_bodies(boundary):
+        cells = _fan(np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float))
+        return least_margin_over(robot, boundary, cells)
     value, q = least(clearance(robot, boundary), vertices, centre)
     return float(margin_of(robot, boundary, value)), q
 

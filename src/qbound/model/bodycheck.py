@@ -77,29 +77,38 @@ def _check_names(robot: Robot, table: Table) -> None:
 
 def _check_plane(robot: Robot, table: Table, part: Mapping[str, Boundary]) -> None:
     """Refuse bodies and walls that leave the plane of motion."""
-    first, boundary = next(iter(part.items()))
+    boundary = next(iter(part.values()))
     try:
         plane = robot.plane
     except ValueError as error:
         where = _place_of(robot, boundary)
         raise fault(table, where, f"bodies keep apart in one plane only; {error}") from None
-    height = plane.height(robot.body(first).frame, robot.body(first).shape.places)[0]
-    rounding = ZERO_AMPLITUDE * _size(plane, [robot.body(name) for name in part])
-    for path, body in _placed(robot):
-        if body.name in part:
-            off = np.abs(plane.height(body.frame, body.shape.places) - height)
-            if off.max() > rounding:
-                place = shown(body.shape.places[np.argmax(off)].tolist())
-                text = f"{place} lies {off.max():.6g} off the plane of body {shown(first)}"
-                raise fault(table, (*path, body.shape.key), text)
+    places = {body.name: path for path, body in _placed(robot)}
+    for body, text in off_plane(plane, [robot.body(name) for name in part]):
+        raise fault(table, (*places[body.name], body.shape.key), text)
     for i, wall in enumerate(robot.boundaries):
-        if isinstance(wall, HalfSpace) and wall.body and _oblique(wall, plane):
+        if isinstance(wall, HalfSpace) and wall.body and is_oblique(wall, plane):
             normal = shown(table["boundary"][i]["normal"])
             text = f"{normal} leaves the plane in which the arm moves"
             raise fault(table, ("boundary", i, "normal"), text)
 
 
-def _oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:
+def off_plane(plane: PlaneOfMotion, bodies: Sequence[Body]) -> Iterator[tuple[Body, str]]:
+    """Yield each body that lies off the plane of the first one, and say how far."""
+    height = plane.height(bodies[0].frame, bodies[0].shape.places)[0]
+    rounding = ZERO_AMPLITUDE * _size(plane, bodies)
+    for body in bodies:
+        off = np.abs(plane.height(body.frame, body.shape.places) - height)
+        if off.max() > rounding:
+            place = shown(body.shape.places[np.argmax(off)].tolist())
+            yield (
+                body,
+                f"{place} lies {off.max():.6g} off the plane of body {shown(bodies[0].name)}",
+            )
+
+
+def is_oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:
+    """Tell whether a wall is not at right angles to the plane."""
     return bool(abs(wall.normal @ plane.normal) > ZERO_AMPLITUDE)
 
 

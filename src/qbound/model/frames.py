@@ -186,10 +186,13 @@ def whole_numbers(values: Array) -> Array:
 
 
 def _cos_sin(angle: Any) -> tuple[Array, Array]:
-    """Cosine and sine of floats, or of SymPy expressions."""
+    """Cosine and sine of floats, of balls, or of SymPy expressions."""
     angle = np.asarray(angle)
     if angle.dtype != object:
         return np.cos(angle), np.sin(angle)
+    if all(hasattr(x, "sin_cos") for x in angle.flat):
+        sine, cosine = np.frompyfunc(lambda x: x.sin_cos(), 1, 2)(angle)
+        return np.asarray(cosine), np.asarray(sine)
     import sympy
 
     return tuple(np.vectorize(f, otypes=[object])(angle) for f in (sympy.cos, sympy.sin))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import tomllib
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import date, datetime, time
 from importlib import resources
@@ -32,19 +33,36 @@ __all__ = [
     "load_robot",
     "packaged_robots",
     "parse_robot",
+    "robot_table",
     "robot_text",
     "save_robot",
 ]
 
 
-def load_robot(source: str | Path) -> Robot:
+def load_robot(
+    source: str | Path,
+    *,
+    chain: tuple[str | None, str | None] | None = None,
+    srdf: str | Path | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    excess: float | None = None,
+) -> Robot:
     """Read a robot from a file, or a packaged one by its name.
 
     Parameters
     ----------
     source : str or Path
         A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
-        robot; a file that is called just so is reached by ``./name``.
+        robot; a file that is called just so is reached by ``./name``. A path that ends in
+        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone.
+    chain : pair of str, optional
+        First and last link of a URDF's arm; default: its root and its only leaf.
+    srdf : str or Path, optional
+        The SRDF beside a URDF: pairs of links that may touch, and the home pose.
+    limits : mapping of str to pair of float, optional
+        Limits of a URDF's joints in place of its own, rad or m.
+    excess : float, optional
+        How far a ball may stick out of the link that it covers, m.
 
     Raises
     ------
@@ -68,12 +86,25 @@ def load_robot(source: str | Path) -> Robot:
     Traceback (most recent call last):
     qbound.model.robotcheck.RobotFileError: arm.tml: No such file or directory; packaged robots ...
     """
+    asked = {"chain": chain, "srdf": srdf, "limits": limits, "excess": excess}
+    given = {key: value for key, value in asked.items() if value is not None}
+    if is_urdf(source):
+        from qbound.urdf.arm import import_urdf
+
+        return import_urdf(source, **given).robot  # type: ignore[arg-type]  # by their names
+    if given:
+        raise ValueError(f"{', '.join(given)}: for a URDF only; {source} is a robot file")
     text, label = robot_text(source)
     try:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
         raise RobotFileError(f"{label}: not TOML: {error}") from None
     return _robot(table, f"{label}: ")
+
+
+def is_urdf(source: str | Path) -> bool:
+    """Tell whether a path is that of a URDF, by its ending."""
+    return Path(source).suffix.lower() == ".urdf"
 
 
 def save_robot(robot: Robot, path: str | Path) -> None:
@@ -106,7 +137,7 @@ def save_robot(robot: Robot, path: str | Path) -> None:
     require("tomlkit")
     import tomlkit
 
-    table = _table(robot)
+    table = robot_table(robot)
     try:
         check_bodies(_built(read_table(table)), table)
     except RobotFileError as error:
@@ -163,6 +194,9 @@ def _robot(table: Table, label: str) -> Robot:
 
 def robot_text(source: str | Path) -> tuple[str, str]:
     """Return the text of a robot file, or of a packaged one, and the name to call it by."""
+    if is_urdf(source):
+        text = "a URDF, not a robot file; make one of it by: qbound import"
+        raise RobotFileError(f"{source}: {text} {source} -o arm.toml")
     if str(source) in packaged_robots():
         name = f"{source}.toml"
         return (resources.files("qbound") / "robots" / name).read_text(encoding="utf-8"), name
@@ -212,8 +246,8 @@ def _flat_coordinate(robot: Robot, frame: str) -> int:
     return 1 if along is None else along
 
 
-def _table(robot: Robot) -> Table:
-    """Undo `_built`; what a file may leave out is left out."""
+def robot_table(robot: Robot) -> Table:
+    """Return the content of a robot's file, what `parse_robot` undoes; defaults are left out."""
     angle = ANGLE[robot.angle_unit]
     home = zip(robot.joints, robot.home, strict=True)
     file = {

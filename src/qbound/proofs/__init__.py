@@ -1,18 +1,20 @@
 """What is proved? Exact numbers, balls, cells, and certificates that a checker accepts.
 
 - answers: `verdict` (proved, refuted, undecided: of every prover);
-- numbers: `exact` (a robot as its file writes it), `balls` (python-flint's, and their precision);
+- numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
+  `balls` (python-flint's, and their precision);
 - boundaries: `crossings` (where two curves meet, none left out), `runs` (pieces between them),
   `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
   `exact_windows` (the paper's rule, Table 6);
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
-  `connection` (what is joined, and what is not);
+  `connection` (what is joined, and what is not), `blocked` (ranges of one joint that nothing
+  passes);
 - bodies: `parts` (of outlines), `features` (what separates them), `separating` (the search for one
   on each cell), `overlap` (places that refute);
 - certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
   which polygon), `unrolled` (what goes all the way round a joint, cut open), `minorant` (lower
   bounds), `boxes` (the search over a box) and `forest` (the cuts of a search), `certify` (the
-  search, and the file), `witness` (what refutes);
+  search, and the file), `no_path` (that nothing leads past a range), `witness` (what refutes);
 - the second checker, after `qbound.check`: `grammar`, `grammar_robot` and `grammar_values` (what a
   file may say), `cells` (what makes up the set), `interpolation` (boundary functions), `flat_balls`
   (bodies in the plane of motion), `check_arb`;

@@ -12,6 +12,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property, partial
 from itertools import product
 from typing import Any
@@ -19,13 +20,15 @@ from typing import Any
 from qbound.extras import require
 from qbound.proofs.cells import Box, Cell, Simplex, cells_of
 from qbound.proofs.flat_balls import Core, Features, FlatArm, cores_of
-from qbound.proofs.grammar import Content, Witness, read_certificate
+from qbound.proofs.grammar import Barrier, Blocked, Content, Witness, read_certificate
 from qbound.proofs.grammar_robot import Boundary, Place, Robot
 from qbound.proofs.grammar_values import refuse, shown
 from qbound.proofs.interpolation import (
+    Wave,
     Waves,
     boundary_value,
     exact,
+    joints_of,
     reach_of,
     units,
     values_of,
@@ -62,7 +65,7 @@ def verify(text: str | bytes) -> Verdict:
     Parameters
     ----------
     text : str or bytes
-        The certificate, grammar 1, 2 or 3.
+        The certificate, grammar 1, 2, 3 or 4.
 
     Raises
     ------
@@ -101,6 +104,9 @@ def verify(text: str | bytes) -> Verdict:
 
 def _verified(text: str | bytes) -> Verdict:
     content = read_certificate(text)
+    if content.barrier is not None:
+        _check_barrier(content, content.barrier)
+        return content.verdict
     cells = _exact_cells(content)
     asked = _Asked(content)
     if content.witness is not None:
@@ -312,6 +318,71 @@ class _Leaf:
     def _scaled(self, values: Sequence[Any]) -> list[Any]:
         """Turn the file's units into radians and lengths."""
         return [unit * x for unit, x in zip(self.units, values, strict=True)]
+
+
+# --- no path --------------------------------------------------------------------------------------
+
+
+def _check_barrier(content: Content, barrier: Barrier) -> None:
+    """Verify that every path between two configurations violates one of the boundaries named."""
+    robot, j, work = content.robot, barrier.joint, _Work()
+    start, goal = ([exact(x) for x in point] for point in content.statement.points)
+    for point in (start, goal):
+        beyond = _beyond_limits(robot, point)
+        if beyond:
+            refuse(f"a configuration is beyond {shown(beyond[0])}")
+    for blocked in barrier.blocked:
+        if j not in joints_of(blocked.boundary):
+            refuse(f"{shown(blocked.boundary.name)} does not depend on the joint")
+        work.add(WAVES_WORK * values_of(robot, blocked.boundary))
+        ends = [[*start[:j], exact(end), *start[j + 1 :]] for end in (blocked.low, blocked.high)]
+        waves = _violation(content, barrier, blocked)
+        functions = partial(_without_number, [_Leaf(robot, waves, work)])
+        if not _covers(functions, Box(*map(tuple, ends)), blocked.tree, work):
+            refuse(f"{shown(blocked.boundary.name)}: not violated all the way")
+    if not _is_between(robot, barrier, start[j], goal[j]):
+        refuse("both configurations are on one side of what is blocked")
+
+
+def _violation(content: Content, barrier: Barrier, blocked: Blocked) -> Waves:
+    """Return a function of the joint alone that is at most minus the boundary function."""
+    from flint import arb
+
+    robot, j = content.robot, barrier.joint
+    ends = [joint.limits or (Fraction(1),) for joint in robot.joints]
+    ends[j] = (blocked.low, blocked.high)
+    reach = [
+        arb(1) if joint.turns else arb(exact(max(map(abs, pair))))
+        for joint, pair in zip(robot.joints, ends, strict=True)
+    ]
+    whole = waves_of(robot, blocked.boundary, content.statement.margin, reach)
+    place, rows, rest = whole.joints.index(j), list[Wave](), whole.rest
+    for wave in whole.rows:
+        k, p = wave.turns[place], wave.powers[place]
+        if sum(map(abs, wave.turns)) + sum(wave.powers) == abs(k) + p:
+            rows.append(Wave(-wave.amplitude, (k,), (p,)))
+        else:
+            lengths = zip((reach[i] for i in whole.joints), wave.powers, strict=True)
+            rest += math.prod((x**p for x, p in lengths if p), start=abs(wave.amplitude))
+    return Waves(range(j, j + 1), rows, rest)
+
+
+def _is_between(robot: Robot, barrier: Barrier, start: Any, goal: Any) -> bool:
+    """Tell whether the joint passes something blocked on every way, round the joint included."""
+    from flint import arb, fmpq
+
+    ends = [(exact(b.low), exact(b.high)) for b in barrier.blocked]
+    if len(ends) == 1:
+        [(low, high)] = ends
+        return bool(min(start, goal) < low and high < max(start, goal))
+    turn = arb(360) if robot.degrees else 2 * arb.pi()
+    (low, high), (next_low, next_high) = ends
+    away = arb(fmpq(goal - start))
+    k = math.floor(float(away / turn))
+    lifted = [away - (k + i) * turn for i in (-1, 0, 1)]  # the goal, seen from the start
+    return bool(start < low and next_high - start < turn) and any(
+        bool(high - start < x < next_low - start) for x in lifted
+    )
 
 
 # --- the witness ----------------------------------------------------------------------------------

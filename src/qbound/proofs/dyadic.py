@@ -86,6 +86,8 @@ class BoxBounds:
         Coefficients exact or balls.
     ends : sequence of (arb, arb)
         Lower and upper end of each joint's range.
+    rows : dict, optional
+        Factors at centres that are known already: bounds of the same ranges may share them.
 
     Raises
     ------
@@ -95,7 +97,7 @@ class BoxBounds:
 
     forms: HarmonicForm
     ends: Ends
-    _rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
+    rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Round the coefficients, and bound what that and all later rounding can do."""
@@ -122,15 +124,25 @@ class BoxBounds:
         """Return the one cell that is the whole range."""
         return Cells(0, np.zeros((1, len(self.forms.kinds)), dtype=np.int64))
 
-    def bounds(self, cells: Cells) -> tuple[Floats, Floats]:
-        """Bound every form over every closed cell: below and above, shape (k, m) each."""
+    def bounds(self, cells: Cells, forms: Ints | None = None) -> tuple[Floats, Floats]:
+        """Bound forms over every closed cell: below and above, shape (k, m) each.
+
+        Parameters
+        ----------
+        cells : Cells
+        forms : ndarray of int, optional
+            Which forms; default all.
+        """
         with precision(BITS):
             h = self._half_widths(cells)
             factors = [self._factor(j, b, cells.index[:, j]) for j, b in enumerate(cells.bits)]
-        found = self.table.combined(factors, (len(cells),))
-        slope = (np.abs(found[..., 1:]) + self.slack[:, 1:]) @ h
-        bend = 0.5 * np.einsum("mij,i,j->m", self.curvature, h, h)
-        spread = slope + bend + self.slack[:, 0]
+        table, slack, curvature = self.table, self.slack, self.curvature
+        if forms is not None and len(forms) < len(slack):
+            table, slack, curvature = table[forms], slack[forms], curvature[forms]
+        found = table.combined(factors, (len(cells),))
+        slope = (np.abs(found[..., 1:]) + slack[:, 1:]) @ h
+        bend = 0.5 * np.einsum("mij,i,j->m", curvature, h, h)
+        spread = slope + bend + slack[:, 0]
         spread += 2.0**-47 * (np.abs(found[..., 0]) + spread)  # the roundings of these two lines
         return found[..., 0] - spread, found[..., 0] + spread
 
@@ -166,12 +178,12 @@ class BoxBounds:
 
     def _row(self, joint: int, bits: int, index: int) -> list[float]:
         key = joint, bits, index
-        if key not in self._rows:
+        if key not in self.rows:
             low, high = self.ends[joint]
             centre = low + (high - low) * (2 * index + 1) / 2 ** (bits + 1)
             one, two = FACTORS[self.forms.kinds[joint]].functions(centre)
-            self._rows[key] = [1.0, float(one), float(two)]
-        return self._rows[key]
+            self.rows[key] = [1.0, float(one), float(two)]
+        return self.rows[key]
 
 
 def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
@@ -188,7 +200,8 @@ def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
         Largest absolute value of each joint.
     """
     first = len(forms.shape)
-    blocks = balls(forms.coefficients) ** 2
+    coefficients = balls(forms.coefficients)
+    blocks = coefficients * coefficients  # `** 2` of a ball with 0 inside is NaN
     for axis, (kind, largest) in enumerate(zip(forms.kinds, reach, strict=True), start=first):
         row = FACTORS[kind]
         squares = row.units * balls(row.largest(ball(largest))) ** 2

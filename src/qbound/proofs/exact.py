@@ -19,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.evaluator import limit_names, stacked
+from qbound.boundary.parts import bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, Kind
-from qbound.model.robot import Boundary, Joint, Robot
+from qbound.model.robot import Body, Boundary, Capsule, Disc, Joint, Polygon, Robot, Shape
 from qbound.model.robotfile import load_robot, robot_text
 from qbound.proofs.balls import arb, ball, pi, precision
+from qbound.proofs.exact_bodies import ExactSeparation, exact_separations
 
 Array = NDArray[Any]
 Table = Mapping[str, Any]
@@ -48,12 +50,15 @@ class ExactProblem:
         One a joint; None where it turns all the way round.
     limits : tuple of (str, str)
         Names of the lower and the upper end of each range.
+    bodies : tuple of ExactSeparation
+        What separates the bodies that are to keep apart.
     """
 
     forms: HarmonicForm
     names: tuple[str, ...]
     ranges: tuple[tuple[arb, arb] | None, ...]
     limits: tuple[tuple[str, str], ...]
+    bodies: tuple[ExactSeparation, ...] = ()
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
@@ -96,11 +101,19 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
         From `exact_robot`.
     held : mapping of int to number, optional
         Values of joints that are held, rad or length: floats or balls.
+
+    Raises
+    ------
+    ValueError
+        If bodies are to keep apart and cannot in a proof, see `exact_separations`.
     """
     held = {j: ball(value) for j, value in (held or {}).items()}
     free = [joint for j, joint in enumerate(robot.joints) if j not in held]
     limits = [limit_names(joint.name) for joint in free]
-    return exact_state(robot, robot.used, [joint.limits for joint in free], limits, held)
+    formed = [boundary for boundary in robot.used if not bounds_bodies(boundary)]
+    problem = exact_state(robot, formed, [joint.limits for joint in free], limits, held)
+    with precision(BITS):
+        return replace(problem, bodies=exact_separations(robot, robot.used, held))
 
 
 def exact_state(
@@ -112,11 +125,41 @@ def exact_state(
 ) -> ExactProblem:
     """Gather the exact clearance forms of some boundaries within given ranges."""
     with precision(BITS):
-        forms = stacked(robot, used)
-        values: Any = held
-        forms = forms.restrict(values) if held else forms
+        forms = stacked(frozen(robot, held) if held else robot, used)
     balls = tuple(None if r is None else (ball(r[0]), ball(r[1])) for r in ranges)
     return ExactProblem(forms, tuple(b.name for b in used), balls, tuple(limits))
+
+
+def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
+    """Return a robot without some joints: what they carry stands still where they are held.
+
+    A form has 3^n numbers, and these are made one by one: of three joints 27, of six 729.
+
+    Parameters
+    ----------
+    robot : Robot
+        From `exact_robot`.
+    held : mapping of int to arb
+        Some joints, not all.
+    """
+    carried = {robot.base: (robot.base, _rationals(np.eye(3, dtype=int)), _rationals([0, 0, 0]))}
+    joints = []
+    for j, joint in enumerate(robot.joints):
+        carrier, turn, shift = carried[joint.parent]
+        if j in held:
+            still = joint.frame_at(held[j])
+            carried[joint.frame] = carrier, turn @ still.rotation, shift + turn @ still.origin
+        else:
+            moved = {"origin": shift + turn @ joint.origin, "mount": turn @ joint.mount}
+            joints.append(replace(joint, parent=carrier, **moved))
+            plain = _rationals(np.eye(3, dtype=int)), _rationals([0, 0, 0])
+            carried[joint.frame] = joint.frame, *plain
+    points = []
+    for point in robot.points:
+        carrier, turn, shift = carried[point.frame]
+        points.append(replace(point, frame=carrier, at=shift + turn @ point.at))
+    home = robot.home[robot.free(held)]
+    return replace(robot, joints=tuple(joints), points=tuple(points), home=home)
 
 
 # --- numbers --------------------------------------------------------------------------------------
@@ -167,7 +210,31 @@ def _from_doubles(robot: Robot) -> Robot:
         replace(p, at=_rationals(p.at), radius=_rational(p.radius)) for p in robot.points
     )
     boundaries = tuple(b.with_numbers(vars(b), _rational, _rationals) for b in robot.boundaries)
-    return replace(robot, joints=joints, points=points, boundaries=boundaries)
+    return replace(
+        robot,
+        joints=joints,
+        points=points,
+        boundaries=boundaries,
+        bodies=tuple(map(_body, robot.bodies)),
+        obstacles=tuple(map(_body, robot.obstacles)),
+        clearance=_rational(robot.clearance),
+    )
+
+
+def _body(body: Body) -> Body:
+    """Return a body with its doubles as rationals."""
+    shape = body.shape
+    radius = _rational(getattr(shape, "radius", 0))
+    return replace(body, shape=_shape(shape, _rationals(shape.places), radius))
+
+
+def _shape(shape: Shape, places: Array, radius: Any) -> Shape:
+    """Return a shape of the same kind with other numbers."""
+    if isinstance(shape, Polygon):
+        return Polygon(places)
+    if isinstance(shape, Capsule):
+        return Capsule(places[0], places[1], radius)
+    return Disc(places[0], radius)
 
 
 # --- from a file ----------------------------------------------------------------------------------
@@ -183,7 +250,46 @@ def _from_table(robot: Robot, table: Table) -> Robot:
     )
     rows = zip(robot.boundaries, table.get("boundary", ()), strict=True)
     boundaries = tuple(boundary.with_numbers(row, _rational, _unit) for boundary, row in rows)
-    return replace(robot, joints=tuple(joints), points=tuple(points), boundaries=boundaries)
+    bodies, obstacles = (
+        tuple(_body_of_row(*pair) for pair in zip(found, table.get(key, ()), strict=True))
+        for found, key in ((robot.bodies, "body"), (robot.obstacles, "obstacle"))
+    )
+    return replace(
+        robot,
+        joints=tuple(joints),
+        points=tuple(points),
+        boundaries=boundaries,
+        bodies=bodies,
+        obstacles=obstacles,
+        clearance=_rational(table.get("clearance", 0)),
+    )
+
+
+def _body_of_row(body: Body, row: Table) -> Body:
+    """Return a body with the decimals of its table."""
+    shape, value = body.shape, row[body.shape.key]
+    if isinstance(shape, Polygon):
+        rows, radius = value, 0
+    else:
+        keys = ("from", "to") if isinstance(shape, Capsule) else ("at",)
+        rows, radius = [value[key] for key in keys], value["radius"]
+    places = np.array([_place(*pair) for pair in zip(rows, shape.places, strict=True)])
+    return replace(body, shape=_shape(shape, places, _rational(radius)))
+
+
+def _place(numbers: Sequence[Any], near: Array) -> Array:
+    """Return a place of the frame; of two numbers, with the 0 where the robot has put it."""
+    exact = _rationals(numbers)
+    if len(exact) == 3:
+        return exact
+    zero = next(
+        k for k in (1, 2, 0) if not near[k] and np.array_equal(np.delete(near, k), _floats(exact))
+    )
+    return np.insert(exact, zero, _rational(0))
+
+
+def _floats(numbers: Array) -> Array:
+    return np.array([int(x.p) / int(x.q) for x in numbers])
 
 
 def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:

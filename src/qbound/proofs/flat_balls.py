@@ -271,7 +271,7 @@ class Features:
     def overlap(self, weights: Sequence[Sequence[Any]], q: Sequence[Any]) -> bool:
         """Tell whether two places, means of the cores' corners, show them nearer than the gap.
 
-        They are nearer than that, or one of them is inside the other core.
+        They are nearer than that, or one of them is inside the other core; two segments may cross.
         """
         q = [q[j] for j in self.joints]
         places = [
@@ -281,7 +281,20 @@ class Features:
         way = places[1] - places[0]
         if _dot(way, way) - self.gap * self.gap < 0:
             return True
-        return self._holds(self.one, places[1], q) or self._holds(self.other, places[0], q)
+        inside = self._holds(self.one, places[1], q) or self._holds(self.other, places[0], q)
+        return inside or self._crosses(q)
+
+    def _crosses(self, q: Sequence[Any]) -> bool:
+        """Tell whether two segments cross: the line of each parts the other's ends."""
+        if not len(self.one.places) == len(self.other.places) == 2:
+            return False
+        for core, far in ((self.one, self.other), (self.other, self.one)):
+            normal, start = self._direction(core, core.normals[0], q), core.places[0]
+            start = self._place(core, start, q)
+            first, second = (_dot(normal, self._place(far, r, q) - start) for r in far.places)
+            if not first * second < 0:
+                return False
+        return True
 
     def _holds(self, core: Core, place: Any, q: Sequence[Any]) -> bool:
         """Tell whether a place is strictly inside an outline."""

@@ -18,6 +18,7 @@ from qbound.proofs.grammar_robot import (
     LARGEST_ANGLE,
     LARGEST_NUMBER,
     MOST_CORNERS,
+    Boundary,
     Robot,
     read_robot,
 )
@@ -27,10 +28,13 @@ from qbound.proofs.verdict import Verdict
 MOST_BYTES = 2_000_000
 MOST_POINTS = 20_000
 MOST_TRIANGLES = 20_000
-GRAMMAR, GRAMMAR_OF_BODIES = 2, 3
-"""What the producers write: of robots without pairs of bodies, and of others."""
+GRAMMAR, GRAMMAR_OF_BODIES, GRAMMAR_OF_NO_PATH = 2, 3, 4
+"""What the producers write: of robots without pairs of bodies, of others, and of no path."""
 
-SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3)}
+SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3, 4)}
+
+NO_PATH = "no path"
+"""Stands for a set: of all paths from one configuration to another none keeps every boundary."""
 
 DECIMAL = re.compile(r"-?[0-9]{1,40}([.][0-9]{1,40})?([eE][+-]?[0-9]{1,2})?")
 INDEX = re.compile(r"0|[1-9][0-9]{0,8}")
@@ -48,9 +52,9 @@ class Statement:
     Attributes
     ----------
     kind : str
-        "box", "path" or "polygon".
+        "box", "path", "polygon", or `NO_PATH`.
     lists : tuple of tuple of Point
-        Two corners of a box, the lists of a path, the loops of a polygon.
+        Two corners of a box, the lists of a path, the loops of a polygon; both ends of no path.
     triangles : tuple of (int, int, int)
         Of a polygon: indices into all points, list after list.
     """
@@ -79,18 +83,38 @@ class Witness:
 
 
 @dataclass(frozen=True, eq=False)
+class Blocked:
+    """Values of a joint, ends included, at which a boundary is said to be violated."""
+
+    boundary: Boundary
+    low: Fraction
+    high: Fraction
+    tree: str
+
+
+@dataclass(frozen=True, eq=False)
+class Barrier:
+    """What no path passes: one range of a joint with limits, two of a joint without."""
+
+    joint: int
+    blocked: tuple[Blocked, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Content:
     """A certificate that follows the grammar; nothing in it is proved yet.
 
     Attributes
     ----------
     grammar : int
-        1, 2 or 3.
+        1, 2, 3 or 4.
     proof : dict of str to tuple of str
-        Trees by the name of the boundary; empty where it is refuted.
+        Trees by the name of the boundary; empty where it is refuted, and of no path.
     witness : Witness or None
     parts : dict of str to tuple of tuple of int
         Corners of the convex parts of outlines, by the name of the body.
+    barrier : Barrier or None
+        The proof that there is no path.
     """
 
     grammar: int
@@ -101,6 +125,7 @@ class Content:
     proof: dict[str, tuple[str, ...]]
     witness: Witness | None
     parts: dict[str, tuple[tuple[int, ...], ...]]
+    barrier: Barrier | None = None
 
 
 def read_certificate(text: str | bytes) -> Content:
@@ -121,11 +146,19 @@ def read_certificate(text: str | bytes) -> Content:
     if schema not in SCHEMAS:
         refuse(f"schema: {shown(schema)} is none of {', '.join(SCHEMAS)}")
     grammar = SCHEMAS[schema]
+    if (grammar == GRAMMAR_OF_NO_PATH) != (kind == NO_PATH):
+        refuse(f"set: {NO_PATH} has the grammar {GRAMMAR_OF_NO_PATH}, and nothing else has it")
+    if grammar == GRAMMAR_OF_NO_PATH and verdict != "proved":
+        refuse(f"the verdict is {shown(verdict)}: of {NO_PATH} only proved is written")
     others = ("places",) if (grammar, verdict) == (3, "refuted") else ()
     keys(data, "the file", _keys_of(grammar, verdict, kind), others)
     robot = read_robot(text_of(data["robot"], "robot"))
     if grammar < GRAMMAR_OF_BODIES and any(b.used and b.apart for b in robot.boundaries):
         refuse(f"schema: pairs of bodies need {GRAMMAR_OF_BODIES}")
+    if grammar == GRAMMAR_OF_NO_PATH:
+        ends, sha256 = read_statement(statement, robot), _sha256(data)
+        barrier = _barrier(data["proof"], robot)
+        return Content(grammar, Verdict.PROVED, ends, robot, sha256, {}, None, {}, barrier)
     return Content(
         grammar,
         Verdict(verdict),
@@ -244,8 +277,8 @@ def index(value: Any, where: str, size: int) -> int:
 def read_statement(data: Any, robot: Robot) -> Statement:
     """Read a set of joint values of a robot, and a margin."""
     kind = data.get("set") if isinstance(data, dict) else None
-    if kind not in ("box", "path", "polygon"):
-        refuse(f"set: {shown(kind)} is no box, path or polygon")
+    if kind not in ("box", "path", "polygon", NO_PATH):
+        refuse(f"set: {shown(kind)} is no box, path or polygon, nor {NO_PATH}")
     triangles = ("triangles",) if kind == "polygon" else ()
     keys(data, "statement", ("set", "margin", "points", *triangles))
     margin = decimal(data["margin"], "margin")
@@ -259,8 +292,10 @@ def read_statement(data: Any, robot: Robot) -> Statement:
 
 
 def _lists(data: Any, kind: str, robot: Robot) -> tuple[tuple[Point, ...], ...]:
-    fewest, most = {"box": (2, 2), "path": (2, MOST_POINTS), "polygon": (3, MOST_POINTS)}[kind]
-    rows = items(data, "points", 1, 1 if kind == "box" else MOST_POINTS)
+    two, many = (2, 2), (2, MOST_POINTS)
+    counts = {"box": two, NO_PATH: two, "path": many, "polygon": (3, MOST_POINTS)}
+    fewest, most = counts[kind]
+    rows = items(data, "points", 1, 1 if counts[kind] == two else MOST_POINTS)
     rows = [items(row, "points", fewest, most) for row in rows]
     if sum(map(len, rows)) > MOST_POINTS:
         refuse(f"points: more than {MOST_POINTS}")
@@ -287,6 +322,34 @@ def _trees(name: str, rows: Any) -> tuple[str, ...]:
     if not all(isinstance(tree, str) and TREE.fullmatch(tree) for tree in trees):
         refuse(f"{where}: a tree is written with the letters a to z, points and numbers")
     return tuple(trees)
+
+
+def _barrier(data: Any, robot: Robot) -> Barrier:
+    """Read the ranges of a joint that are said to be blocked."""
+    keys(data, "proof", ("joint", "blocked"))
+    names = [joint.name for joint in robot.joints]
+    name = text_of(data["joint"], "joint")
+    if name not in names:
+        refuse(f"joint: {shown(name)} is no joint of the robot")
+    j = names.index(name)
+    count = 2 if robot.joints[j].limits is None else 1
+    rows = items(data["blocked"], "blocked", count, count)
+    return Barrier(j, tuple(_blocked(row, robot, j) for row in rows))
+
+
+def _blocked(row: Any, robot: Robot, j: int) -> Blocked:
+    keys(row, "blocked", ("boundary", "from", "to", "tree"))
+    name = text_of(row["boundary"], "boundary")
+    used = {b.name: b for b in robot.boundaries if b.used and not b.bodies}
+    if name not in used:
+        refuse(f"boundary: {shown(name)} is no boundary of points in use")
+    low, high = decimal(row["from"], "from"), decimal(row["to"], "to")
+    if not low < high:
+        refuse("from is not less than to")
+    if robot.joints[j].turns and max(-low, high) > LARGEST_ANGLE[robot.degrees]:
+        refuse("blocked: an angle is too large")
+    (tree,) = _trees(name, [row["tree"]])
+    return Blocked(used[name], low, high, tree)
 
 
 def _witness(data: dict[str, Any], robot: Robot) -> Witness:

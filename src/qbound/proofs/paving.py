@@ -1,14 +1,15 @@
 """Certified pavings: cells proved feasible, cells proved infeasible, and what is undecided.
 
-A cell is feasible where every form is positive all over it, infeasible where one form is negative
-all over it. The region lies between the inner paving (feasible cells) and the outer one (feasible
-and undecided cells); the undecided volume is measured. Any number of joints.
+A cell is feasible where every form is positive all over it and of every two bodies some feature
+separates them all over it; infeasible where one form is negative all over it, or every feature of
+two bodies has a form that is. The region lies between the inner paving (feasible cells) and the
+outer one (feasible and undecided cells); the undecided volume is measured. Any number of joints.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -19,10 +20,53 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.proofs.balls import arb, ball, below, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
+from qbound.proofs.exact_bodies import ExactSeparation
 from qbound.proofs.verdict import Verdict
+
+Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
+Run = tuple[int, Ints]
+
+LONGEST_RUN, SHORTEST_RUN = 2048, 256
+"""Cells that are looked at together: few, so that few forms may vanish among them."""
 
 MOST_CELLS = 2_000_000
 """Undecided cells at which a paving stops on its own: about a gigabyte of bounds."""
+
+BLOCK = 2**20
+"""Bounds of bodies' forms that are held at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeparationBounds:
+    """Bounds of what separates two convex parts, over dyadic cells.
+
+    Attributes
+    ----------
+    bounds : BoxBounds
+        Of the forms of all features.
+    starts : ndarray of int
+        First form of each feature.
+    """
+
+    bounds: BoxBounds
+    starts: NDArray[np.intp]
+
+    def proved(self, cells: Cells) -> tuple[Bools, Bools]:
+        """Tell on which closed cells a feature separates throughout, and on which none anywhere.
+
+        The latter where each feature has a form that is negative all over the cell.
+        """
+        step = max(1, BLOCK // len(self.bounds.slack))
+        apart, together = np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
+        for k in range(0, len(cells), step):
+            low, high = self.bounds.bounds(cells[k : k + step])
+            apart[k : k + step] = (self._least(low) > 0).any(axis=1)
+            together[k : k + step] = (self._least(high) < 0).all(axis=1)
+        return apart, together
+
+    def _least(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(np.minimum.reduceat(values, self.starts, axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +78,18 @@ class Paving:
     problem : ExactProblem
     bounds : BoxBounds
     feasible, infeasible : tuple of Cells
-        One entry a size. Every form is positive on every closed feasible cell; on every closed
-        infeasible cell some form is negative throughout.
+        One entry a size. Every form is positive on every closed feasible cell, and every two
+        bodies are separated; on every closed infeasible cell some form is negative throughout, or
+        two bodies are nowhere separated.
     undecided : Cells
         The cells about which nothing is claimed.
+    runs : tuple of (int, ndarray of int)
+        How many undecided cells, one after the other, have to do with which forms: all others are
+        proved positive there, and so on every part of these cells.
+    bodies : tuple of SeparationBounds
+        Of each two parts of bodies that are to keep apart.
+    unseparated : ndarray of bool, shape (undecided cells, pairs)
+        Which pairs are not proved apart on an undecided cell: no other is looked at on its halves.
     """
 
     problem: ExactProblem
@@ -45,6 +97,9 @@ class Paving:
     feasible: tuple[Cells, ...]
     infeasible: tuple[Cells, ...]
     undecided: Cells
+    runs: tuple[Run, ...]
+    bodies: tuple[SeparationBounds, ...]
+    unseparated: Bools
 
     @property
     def level(self) -> int:
@@ -88,7 +143,8 @@ class Paving:
         """
         if self.level >= DEEPEST:
             raise ValueError(f"cells have been halved {DEEPEST} times: no smaller ones")
-        return _sorted(self, self.undecided.halves())
+        halves = _in_order(self.undecided.halves())
+        return _sorted(self, halves, _doubled(self.runs), np.repeat(self.unseparated, 2, axis=0))
 
     def verdicts(self, q: ArrayLike) -> set[Verdict]:
         """Return what is known of a configuration being feasible, by all cells that may hold it.
@@ -186,21 +242,83 @@ def start(problem: ExactProblem) -> Paving:
         for (low, high), names in zip(bounds.ends, problem.limits, strict=True):
             if not below(high - low) > 0:
                 raise ValueError(f"{names[0]} and {names[1]}: the range is empty")
-    empty = Paving(problem, bounds, (), (), bounds.whole())
-    return _sorted(empty, bounds.whole())
+        bodies = tuple(_of_bodies(found, bounds) for found in problem.bodies)
+    whole, every = bounds.whole(), np.arange(len(problem.names))
+    open_pairs = np.ones((1, len(bodies)), dtype=bool)
+    empty = Paving(problem, bounds, (), (), whole, (), bodies, open_pairs)
+    return _sorted(empty, whole, [(len(whole), every)], open_pairs)
 
 
-def _sorted(paving: Paving, cells: Cells) -> Paving:
-    """Sort new cells into a paving; they replace its undecided ones."""
-    low, high = paving.bounds.bounds(cells)
-    feasible, infeasible = (low > 0).all(axis=1), (high < 0).any(axis=1)
+def _of_bodies(found: ExactSeparation, bounds: BoxBounds) -> SeparationBounds:
+    """Prepare the bounds of a pair; cosines and sines are computed once for all."""
+    return SeparationBounds(BoxBounds(found.forms, bounds.ends, bounds.rows), found.starts)
+
+
+def _in_order(halves: Cells) -> Cells:
+    """Put the two halves of each cell beside each other: neighbours stay together."""
+    return halves[np.arange(len(halves)).reshape(2, -1).T.ravel()]
+
+
+def _doubled(runs: Iterable[Run]) -> list[Run]:
+    return [(2 * count, forms) for count, forms in runs]
+
+
+def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bools) -> Paving:
+    """Sort new cells into a paving; they replace its undecided ones.
+
+    Run by run, so that each looks at no more forms than may vanish in it; long ones are parted.
+    """
+    feasible, infeasible = (np.zeros(len(cells), dtype=bool) for _ in range(2))
+    unseparated = unseparated.copy()
+    left, start = list[Run](), 0
+    for length, forms in runs:
+        for first in range(start, start + length, LONGEST_RUN):
+            part = slice(first, min(first + LONGEST_RUN, start + length))
+            low, high = paving.bounds.bounds(cells[part], forms)
+            bad: Bools = np.asarray((high < 0).any(axis=1))
+            _separate(paving.bodies, cells[part], unseparated[part], bad)
+            good = (low > 0).all(axis=1) & ~unseparated[part].any(axis=1) & ~bad
+            feasible[part], infeasible[part] = good, bad
+            open_cells = ~good & ~bad
+            if open_cells.any():
+                may = forms[(low[open_cells] <= 0).any(axis=0)]
+                left.append((int(open_cells.sum()), may))
+        start += length
+    open_cells = ~feasible & ~infeasible
     return Paving(
         paving.problem,
         paving.bounds,
         (*paving.feasible, *_some(cells[feasible])),
         (*paving.infeasible, *_some(cells[infeasible])),
-        cells[~feasible & ~infeasible],
+        cells[open_cells],
+        tuple(_joined(left)),
+        paving.bodies,
+        unseparated[open_cells],
     )
+
+
+def _separate(
+    bodies: Sequence[SeparationBounds], cells: Cells, unseparated: Bools, infeasible: Bools
+) -> None:
+    """Strike out, in place, what is proved separated; mark cells where two bodies nowhere are."""
+    for k, pair in enumerate(bodies):
+        asked = np.flatnonzero(unseparated[:, k] & ~infeasible)
+        if len(asked):
+            apart, together = pair.proved(cells[asked])
+            unseparated[asked[apart], k] = False
+            infeasible[asked[together]] = True
+
+
+def _joined(runs: Sequence[Run]) -> list[Run]:
+    """Join neighbouring runs that are short: a handful of cells is not worth a call."""
+    found = list[Run]()
+    for count, forms in runs:
+        if found and found[-1][0] + count <= SHORTEST_RUN:
+            before, known = found.pop()
+            found.append((before + count, np.union1d(known, forms)))
+        else:
+            found.append((count, forms))
+    return found
 
 
 def _some(cells: Cells) -> tuple[Cells, ...]:

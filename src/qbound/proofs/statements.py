@@ -237,7 +237,7 @@ def inner_polygon(
 
 def _decimals(robot: Robot, loop: Floats, held: Mapping[int, float] | None) -> list[Point]:
     """Write the corners of a loop of two joints in decimals, with the joints that are held."""
-    return _distinct(_within_limits(robot, robot.with_held(loop, held or {})))
+    return _distinct(within_limits(robot, robot.with_held(loop, held or {})))
 
 
 def _cut_open(
@@ -353,8 +353,11 @@ def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
     return np.concatenate([*parts, [len(straight)]]) / len(straight)
 
 
-def _within_limits(robot: Robot, q: Floats) -> list[Point]:
-    """Round to decimals, and what leaves a limit by that back onto it."""
+def within_limits(robot: Robot, q: Floats) -> list[Point]:
+    """Round configurations, shape (m, n), to decimals of the file's units.
+
+    What leaves a limit by that is put back onto it.
+    """
     ends = [joint.limits for joint in robot.joints]
     return [
         [_clamped(x, end, unit) for x, end, unit in zip(row, ends, units(robot), strict=True)]

@@ -1,16 +1,19 @@
 """Which values of two joints are safe? All of them, as components bounded by exact arcs.
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
+- `relevant`: of many forms, those that can bound anything here;
 - `plane`: forms over a base, their roots and signs; `critical`: where roots may meet;
 - `pieces`: where bodies touch, and where such contacts cross;
 - `decomposition`: cells in which all is free; `cells`: which of them are adjacent;
+- `emptiness`: which boundaries leave no room, where there are none;
 - `loops`, `arcs`: the boundary of each component; `components`: what else is known of it;
-- `region`: the answer, and what it can be asked.
+- `region`: the answer, and what it can be asked; `slices`: a row of such answers.
 """
 
 from qbound.region.components import Component, Vertex
 from qbound.region.problem import Problem, Rule, clearance_problem, state
 from qbound.region.region import NoHomeError, Region, find_region, margins, solve, violated
+from qbound.region.slices import Slices, find_slices
 
 __all__ = [
     "Component",
@@ -18,9 +21,11 @@ __all__ = [
     "Problem",
     "Region",
     "Rule",
+    "Slices",
     "Vertex",
     "clearance_problem",
     "find_region",
+    "find_slices",
     "margins",
     "solve",
     "state",

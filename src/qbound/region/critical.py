@@ -101,12 +101,19 @@ def _line(a: Complexes, b: Complexes) -> Events:
     sharing = one & other & (np.abs(both) <= NEGLIGIBLE).all(axis=-1)
     first = _times(_times(a2, b0), b0) - _times(_times(a1, b0), b1) + _times(_times(a0, b1), b1)
     second = _times(_times(b2, a0), a0) - _times(_times(b1, a0), a1) + _times(_times(b0, a1), a1)
+    # An affine form whose root a quadratic always has changes sign at the other where it vanishes.
+    under, over = (
+        (np.abs(c) <= NEGLIGIBLE).all(axis=-1) & quadratic & ~affine
+        for c, quadratic, affine in ((first, one, other), (second, other, one))
+    )
     for chosen, polynomials in (
         (~one & ~other, p),
         (one & other, both),
         (one & ~other, first),
         (~one & other, second),
         (sharing, apart),
+        (under, b1),
+        (over, a1),
     ):
         yield rows[chosen], polynomials[chosen]
 

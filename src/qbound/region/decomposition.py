@@ -251,7 +251,7 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     are apart is left as it is, and said to be doubtful: where bodies only touch, coming in and out
     are at one place, in no order.
     """
-    touching = np.flatnonzero(fibres.piece >= 0)
+    touching = _counted(plane, fibres, pieces)
     piece = fibres.piece[touching]
     group = (
         fibres.slab[touching] * plane.contacts.pairs + plane.contacts.pair[pieces.feature[piece]]
@@ -283,14 +283,15 @@ def _apart(
     The number of pairs in collision is counted from the widest gap of the slab, where it is tested.
     A slab in which the count does not return to itself round a circle, or is not what a second test
     finds at an end of a range, is doubtful, too. Such slabs are tested gap by gap, and so is what
-    is thin.
+    is thin, and pairs at rest: where one only touches, at both ends of an edge it slides along, it
+    comes in and goes out again at once.
     """
     slabs, widths = len(fibres.t), np.nan_to_num(tops - fibres.values, nan=-1.0)
     start = np.searchsorted(fibres.slab, np.arange(slabs))
     places = [start + _first_largest(widths, start, fibres.slab)]
     if not fibres.circle:
         places += [start, np.append(start[1:], len(fibres.slab)) - 2]
-    moving = Separation(plane, ~pieces.base_only & ~pieces.idle)
+    moving = Separation(plane, ~pieces.base_only & ~pieces.idle & ~pieces.resting)
     change, found = _changes(plane, fibres, pieces), []
     count = np.cumsum(change)
     for row in places:
@@ -312,7 +313,19 @@ def _apart(
     apart: Bools = np.asarray(possible & (count == 0))
     t, low = fibres.t[fibres.slab[looked]], fibres.values[looked]
     apart[looked] = plane.apart(t, low, tops[looked], NEGLIGIBLE)
+    if pieces.resting.any():
+        resting, looked = Separation(plane, pieces.resting), np.flatnonzero(apart)
+        middle = fibres.values[looked] + INSIDE * (tops - fibres.values)[looked]
+        heights = resting.heights(fibres.t[fibres.slab[looked]], middle)
+        apart[looked] = (heights > NEGLIGIBLE).all(axis=1)
     return apart, doubtful & ~blocked
+
+
+def _counted(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
+    """Return the rows that are contacts of pairs that are counted: those at rest are tested."""
+    touching = np.flatnonzero(fibres.piece >= 0)
+    pair = plane.contacts.pair[pieces.feature[fibres.piece[touching]]]
+    return touching[~pieces.resting[pair]]
 
 
 def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
@@ -326,7 +339,7 @@ def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
 def _changes(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
     """Return by how much each row changes the number of pairs in collision."""
     change = np.zeros(len(fibres.slab), dtype=np.int64)
-    touching = np.flatnonzero(fibres.piece >= 0)
+    touching = _counted(plane, fibres, pieces)
     change[touching] = np.where(pieces.enters[fibres.piece[touching]], 1, -1)
     return change
 

@@ -50,6 +50,9 @@ class Pieces:
         Pairs that the lift does not move.
     idle : ndarray of bool, shape (pairs,)
         Pairs that never touch: apart, or in collision, everywhere.
+    resting : ndarray of bool, shape (pairs,)
+        Pairs of which a feature's form vanishes everywhere, as of a slide along an edge: they may
+        touch, with no overlap, on open sets.
     """
 
     feature: Ints
@@ -61,6 +64,7 @@ class Pieces:
     walls: Floats
     base_only: Bools
     idle: Bools
+    resting: Bools
 
     def roots(self, plane: Plane, k: Ints) -> Ints:
         """Return the root that each of some contacts follows, as `Root`, shape (len(k), 3)."""
@@ -73,7 +77,7 @@ def find_pieces(plane: Plane) -> Pieces:
     if not contacts.pairs:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         no = np.zeros(0, dtype=np.bool_)
-        return Pieces(none, none, nothing, nothing, no, nothing, nothing, no, no)
+        return Pieces(none, none, nothing, nothing, no, nothing, nothing, no, no, no)
     forms, sides = plane.scaled[plane.count :], plane.sides
     low, high = _bounds(plane, forms)
     most = _bounds(plane, sides)[1]
@@ -82,9 +86,10 @@ def find_pieces(plane: Plane) -> Pieces:
     moved: Bools = np.asarray(lifts | sides[:, :, :, 1:].any(axis=(1, 2, 3)))
     base_only = ~_any_of(moved, contacts.pair, contacts.pairs)
     idle = ~_any_of(alive, contacts.pair, contacts.pairs)
+    resting = _any_of(alive & ~forms.any(axis=(1, 2)), contacts.pair, contacts.pairs)
     walls = _walls(plane, np.flatnonzero(alive), forms, sides)
     chosen = np.flatnonzero(alive & lifts)
-    return Pieces(*_contacts(plane, chosen, forms, sides), walls, base_only, idle)
+    return Pieces(*_contacts(plane, chosen, forms, sides), walls, base_only, idle, resting)
 
 
 def _any_of(found: Bools, group: Ints, count: int) -> Bools:

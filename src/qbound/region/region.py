@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
@@ -19,9 +18,11 @@ from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import Decomposition, decompose
+from qbound.region.emptiness import irreducible
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
+from qbound.region.relevant import without_irrelevant
 from qbound.tolerances import UNREAL_AREA
 from qbound.units import limited_joints, margin_text
 
@@ -57,6 +58,9 @@ class Region:
         Component of each cell.
     empty_because : tuple of str
         Where there is no component: boundaries that leave no room together, each of them needed.
+    irrelevant : tuple of str
+        Of many boundaries, those that were proved to bound nothing here (`relevant`) and took no
+        part in the search; `margins` and `contains` ask them all the same.
 
     Examples
     --------
@@ -79,6 +83,7 @@ class Region:
     base: int
     owner: dict[int, int]
     empty_because: tuple[str, ...] = ()
+    irrelevant: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Say in a line what was found."""
@@ -385,22 +390,23 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     Notes
     -----
     A component is open, and what people see is its closure; touching in points or curves neither
-    joins components nor makes one. A form that depends on no joint is decided beforehand.
+    joins components nor makes one. A form that depends on no joint is decided beforehand, and of
+    many forms those that can bound nothing are left out, by proof (`qbound.region.relevant`).
     """
     home = problem.home if home is None else home
     home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     constants = problem.constants()
-    inner = problem.without(list(constants))
+    inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
     if blocked:
         nothing = CellComplex(Decomposition(plane, np.array(plane.ends), [], np.zeros(0)))
-        return Region((), problem, nothing, base, {}, tuple(blocked[:1]))
+        return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
     cells = CellComplex(decompose(plane))
     if not cells.cells:
-        return Region((), problem, cells, base, {}, _irreducible(inner, base))
+        return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
     found = measured(cells, problem, home, base)
     if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
@@ -414,7 +420,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
     owner = {k: i for i, (_, windings) in enumerate(components) for k in windings}
-    return Region(tuple(component for component, _ in components), problem, cells, base, owner)
+    every = tuple(component for component, _ in components)
+    return Region(every, problem, cells, base, owner, irrelevant=irrelevant)
 
 
 def _why_no_home(region: Region) -> str:
@@ -427,35 +434,6 @@ def _why_no_home(region: Region) -> str:
     lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
-
-
-def _irreducible(problem: Problem, base: int) -> tuple[str, ...]:
-    """Return forms that leave no room together, but would if any one of them were dropped."""
-    dropped: list[int] = []
-    for k in range(len(problem.names)):
-        if _is_empty(problem.without([*dropped, k]), base):
-            dropped.append(k)
-    problem = problem.without(dropped)
-    problem = _shed(problem, [boundary.name for boundary in problem.bodies], base)
-    return (*problem.names, *(boundary.name for boundary in problem.bodies))
-
-
-def _shed(problem: Problem, bodies: Sequence[str], base: int) -> Problem:
-    """Drop boundaries about bodies that an empty region does not need, as many at once as can be.
-
-    What is needed beside others is needed when they are dropped: no one is asked twice.
-    """
-    if not bodies or _is_empty(left := problem.without_bodies(bodies), base):
-        return left if bodies else problem
-    if len(bodies) == 1:
-        return problem
-    half = len(bodies) // 2
-    return _shed(_shed(problem, bodies[:half], base), bodies[half:], base)
-
-
-def _is_empty(problem: Problem, base: int) -> bool:
-    plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
-    return not decompose(plane).cells
 
 
 def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:

@@ -1,7 +1,6 @@
 """What does a number of an arm's design do to its measures? A grid of arms, each one measured.
 
 - `specification`: the file that says which arm, which numbers, which measures, checked;
-- `numbers`: how a number of a robot file is named, and given another value;
 - `measures`: the names of measures, and what computes each;
 - `grid`: the arms of a sweep as cells, and the chunks in which they are measured;
 - `cells`: the measures of one chunk, on whatever machine;

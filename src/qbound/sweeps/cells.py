@@ -14,22 +14,25 @@ from typing import Any
 
 import numpy as np
 
+from qbound.design import Path as Place
+from qbound.design import varied
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
-from qbound.model.schema import JsonPath
 from qbound.printable import printable
 from qbound.region import Rule
-from qbound.sweeps.measures import MEASURES, Design
-from qbound.sweeps.numbers import with_number
+from qbound.sweeps.measures import MEASURES, Arm
 from qbound.version import __version__
 
 OF_THE_MACHINE = (MemoryError, OSError, ImportError)
 
-Settings = Sequence[tuple[JsonPath | str, float]]
-"""Values of one arm: of a place of the robot file, or of a joint that is held, by its name."""
+HELD = "held."
+"""What the name of a held joint's value begins with, such as ``held.wrist``."""
+
+Numbers = Mapping[str, float]
+"""Values of one arm by their names: as `qbound.design.varied` has them, or of held joints."""
 
 
-class OtherVersionError(RuntimeError):
+class OtherVersionError(ValueError):
     """A worker that computes with other versions than the sweep was begun with."""
 
 
@@ -44,11 +47,11 @@ class Job:
     table : dict
         Content of the robot file.
     held : dict of str to float
-        In the file's units.
+        Joints that are held at one value, in the file's units.
     rule, tolerance
         As in a specification.
     measures : tuple of str
-    arms : tuple of Settings
+    arms : tuple of dict of str to float
         In the order of the grid, the last varied number first to change.
     versions : dict of str to str
         What the sweep was begun with.
@@ -60,7 +63,7 @@ class Job:
     rule: Rule
     tolerance: float
     measures: tuple[str, ...]
-    arms: tuple[Settings, ...]
+    arms: tuple[Numbers, ...]
     versions: Mapping[str, str]
 
 
@@ -89,28 +92,24 @@ def measure_job(job: Job) -> Measured:
     """
     if (found := versions()) != dict(job.versions):
         raise OtherVersionError(f"a worker has {_listed(found)}; wanted: {_listed(job.versions)}")
-    measured = [_measured(job, settings) for settings in job.arms]
+    measured = [_measured(job, numbers) for numbers in job.arms]
     return Measured([values for values, _ in measured], [reason for _, reason in measured])
 
 
-def design(job: Job, settings: Settings) -> Design:
-    """Return one arm of a job: its robot file with the values put in, read and checked again.
+def arm_of(job: Job, numbers: Numbers) -> Arm:
+    """Return one arm of a job: its robot with the values put in, checked as a file is.
 
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
         If that is no robot.
     """
-    table, held = job.table, dict(job.held)
-    for number, value in settings:
-        if isinstance(number, str):
-            held[number] = value
-        else:
-            table = with_number(table, number, value)
+    placed: dict[Place, float] = {n: x for n, x in numbers.items() if not n.startswith(HELD)}
+    values = {n.removeprefix(HELD): x for n, x in numbers.items() if n not in placed}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # was said when the sweep began
-        robot = parse_robot(table)
-    return Design(robot, in_library_units(robot, held), job.rule, job.tolerance)
+        robot = varied(parse_robot(job.table), placed)
+    return Arm(robot, in_library_units(robot, {**job.held, **values}), job.rule, job.tolerance)
 
 
 def in_library_units(robot: Robot, held: Mapping[str, float]) -> dict[int, float]:
@@ -120,9 +119,9 @@ def in_library_units(robot: Robot, held: Mapping[str, float]) -> dict[int, float
     return {j: value * robot.joints[j].scale(angle) for j, value in joints}
 
 
-def _measured(job: Job, settings: Settings) -> tuple[list[float], str]:
+def _measured(job: Job, numbers: Numbers) -> tuple[list[float], str]:
     try:
-        arm = design(job, settings)
+        arm = arm_of(job, numbers)
     except ValueError as error:
         return [math.nan] * len(job.measures), printable(error)
     found = [_value(arm, name) for name in job.measures]
@@ -133,7 +132,7 @@ def _reasons(names: Sequence[str], found: Sequence[tuple[float, str]]) -> Iterat
     return (f"{name}: {why}" for name, (_, why) in zip(names, found, strict=True) if why)
 
 
-def _value(arm: Design, name: str) -> tuple[float, str]:
+def _value(arm: Arm, name: str) -> tuple[float, str]:
     """Return a measure of an arm; or NaN and why: it is a fault of this arm, the others go on."""
     try:
         with np.errstate(all="ignore"):

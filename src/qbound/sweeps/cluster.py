@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from itertools import islice
 from typing import Any
@@ -34,6 +35,8 @@ def on_dask(jobs: Iterable[Job], client: Any, compute: Callable[..., Any]) -> It
 
     Raises
     ------
+    OSError
+        If the scheduler is gone.
     Exception
         What a worker raised; `measure_job` raises what says nothing about an arm.
     """
@@ -44,12 +47,12 @@ def on_dask(jobs: Iterable[Job], client: Any, compute: Callable[..., Any]) -> It
     coming = as_completed(list(sent), loop=client.loop)
     for future in coming:
         job = sent.pop(future)
-        if future.status == "finished":
+        try:  # a result that was lost with its worker since it came is computed again meanwhile
             yield job, future.result(), ""
-        elif isinstance(error := future.exception(), KilledWorker):
+        except KilledWorker:
             yield job, None, "worker after worker died of it"
-        else:
-            raise error
+        except CancelledError:
+            raise OSError("the scheduler is gone; the same command goes on") from None
         for new in islice(waiting, 1):
             sent[extra := _send(client, compute, new)] = new
             coming.add(extra)

@@ -9,9 +9,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.sweeps.cells import Job, Settings, versions
-from qbound.sweeps.numbers import find_number
-from qbound.sweeps.specification import HELD, Specification, Study, VaryRow
+from qbound.model.robotfile import robot_table
+from qbound.sweeps.cells import Job, versions
+from qbound.sweeps.specification import Specification, Study
 
 Floats = NDArray[np.float64]
 Chunk = tuple[int, ...]
@@ -61,30 +61,20 @@ def job(study: Study, chunk: Chunk) -> Job:
     values = product(*(axis[part].tolist() for axis, part in parts))
     return Job(
         chunk=chunk,
-        table=study.table,
+        table=robot_table(study.robot),
         held=specification.slice,
         rule=specification.rule,
         tolerance=specification.tolerance,
         measures=tuple(specification.measure),
-        arms=tuple(settings(study, arm) for arm in values),
+        arms=tuple(_numbers(study, arm) for arm in values),
         versions=versions(),
     )
 
 
-def settings(study: Study, values: tuple[float, ...]) -> Settings:
-    """Return what has which value in the arm with these values on the axes."""
+def _numbers(study: Study, values: tuple[float, ...]) -> dict[str, float]:
+    """Return the number of each name in the arm with these values on the axes."""
     rows = zip(study.specification.vary, values, strict=True)
-    return [setting for row, value in rows for setting in _settings(study, row, value)]
-
-
-def _settings(study: Study, row: VaryRow, value: float) -> Settings:
-    return [
-        (
-            name.removeprefix(HELD) if name.startswith(HELD) else find_number(study.table, name),
-            value,
-        )
-        for name in row.numbers
-    ]
+    return {name: value for row, value in rows for name in row.numbers}
 
 
 def values_text(study: Study, index: tuple[int, ...]) -> str:

@@ -12,17 +12,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from qbound.design import home_area, region_area, workspace_area
 from qbound.model.robot import Robot
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import Paving, pave
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_units
-from qbound.workspace.areas import Workspace, find_workspace
-from qbound.workspace.planar import planar_arm
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class Arm:
     """One arm of a sweep; what several measures share is computed once, where one asks for it.
 
     Attributes
@@ -46,13 +45,6 @@ class Design:
         return find_region(self.robot, dict(self.held), self.rule)
 
     @cached_property
-    def workspace(self) -> Workspace:
-        """The geometric workspace of the home component."""
-        problem = self.region.problem
-        arm = planar_arm(self.robot, problem.held)
-        return find_workspace(arm, problem, self.robot.home[list(problem.joints)])
-
-    @cached_property
     def paving(self) -> Paving:
         """The proved paving of all joints that are not held."""
         return pave(exact_problem(exact_robot(self.robot), self.held), self.tolerance)
@@ -60,12 +52,12 @@ class Design:
 
 @dataclass(frozen=True)
 class Measure:
-    """What is computed of a design, in which unit (`unit_of`), and of how many joints.
+    """What is computed of an arm, in which unit (`unit_of`), and of how many joints.
 
     Attributes
     ----------
     compute : callable
-        From a `Design` to a number.
+        From a `Arm` to a number.
     dimension : {"joints", "plane", "one"}
         Product of both joints' units, length squared, or a plain number.
     planar : bool
@@ -74,7 +66,7 @@ class Measure:
         What it is, for people.
     """
 
-    compute: Callable[[Design], float]
+    compute: Callable[[Arm], float]
     dimension: str
     planar: bool
     says: str
@@ -82,39 +74,31 @@ class Measure:
 
 MEASURES: Mapping[str, Measure] = {
     "region.area": Measure(
-        lambda design: design.region.area, "joints", True, "area of all safe components"
+        lambda arm: region_area(arm.region), "joints", True, "area of all safe components"
     ),
     "region.home.area": Measure(
-        lambda design: design.region.home_component.area,
+        lambda arm: home_area(arm.region),
         "joints",
         True,
-        "area of the component with the home pose",
+        "area of the component with the home pose; 0 where home is in none",
     ),
     "region.components": Measure(
-        lambda design: len(design.region.components), "one", True, "number of safe components"
+        lambda arm: len(arm.region.components), "one", True, "number of safe components"
     ),
     "workspace.area": Measure(
-        lambda design: design.workspace.area,
+        lambda arm: workspace_area(arm.region),
         "plane",
         True,
-        "area of the places that the tool reaches from home",
-    ),
-    "workspace.covered_twice": Measure(
-        lambda design: design.workspace.covered_twice,
-        "plane",
-        True,
-        "area of those that it reaches in both postures",
+        "area of the places that the tool reaches from home; 0 where home is in no component",
     ),
     "paving.inner": Measure(
-        lambda design: rounded_down(design.paving.inner_fraction),
+        lambda arm: rounded_down(arm.paving.inner_fraction),
         "one",
         False,
         "part of the joint range that is proved safe",
     ),
     "paving.outer": Measure(
-        lambda design: (
-            -rounded_down(-design.paving.inner_fraction - design.paving.undecided_fraction)
-        ),
+        lambda arm: -rounded_down(-arm.paving.inner_fraction - arm.paving.undecided_fraction),
         "one",
         False,
         "part of the joint range outside which all is proved unsafe",

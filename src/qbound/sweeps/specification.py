@@ -5,16 +5,17 @@
     measure = ["region.area", "workspace.area"]
     vary = [{ number = "joint.elbow.origin.0", from = 0.2, to = 0.6, count = 41 }]
 
-Numbers are named by `numbers`, measures by `measures`; ``held.wrist`` is the value of a joint that
-is held. Optional: `also` in a row of `vary`, numbers that take the same values with it; `slice`,
-joints that are held at one value; `rule`; `tolerance`, of pavings; `chunk`, arms that are measured
-together. Every number is in the robot file's unit.
+Numbers are named as `qbound.design.varied` has them, measures by `measures`; ``held.wrist`` is the
+value of a joint that is held. Optional: `also` in a row of `vary`, numbers that take its values,
+too; `slice`, joints that are held at one value; `rule`; `tolerance`, of pavings; `chunk`, arms that
+are measured together. Every number is in the robot file's unit.
 """
 
 from __future__ import annotations
 
 import math
 import tomllib
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -24,27 +25,25 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, field
 
+from qbound.design import Path as Place
+from qbound.design import varied
 from qbound.model.robot import Robot
-from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, robot_text
+from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots
 from qbound.model.rows import Label, Number, Row
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.printable import printable
+from qbound.sweeps.cells import HELD
 from qbound.sweeps.measures import MEASURES
-from qbound.sweeps.numbers import find_number
 
 MOST_VARIED = 6
 MOST_CELLS = 1_000_000
 """Arms of a sweep at most."""
-
-HELD = "held."
-"""What the name of a held joint's value begins with, such as ``held.wrist``."""
 
 MeasureName = Literal[
     "region.area",
     "region.home.area",
     "region.components",
     "workspace.area",
-    "workspace.covered_twice",
     "paving.inner",
     "paving.outer",
 ]
@@ -100,10 +99,9 @@ class Specification(Row, kw_only=True):
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A specification, the content of the robot file that it names, and the robot of it."""
+    """A specification, and the robot that it names."""
 
     specification: Specification
-    table: dict[str, Any]
     robot: Robot
 
 
@@ -143,13 +141,9 @@ def read_specification(path: str | Path) -> Study:
     source = _robot_source(specification.robot, Path(path).parent)
     try:
         robot = load_robot(source)
-        content = tomllib.loads(robot_text(source)[0])
-    except tomllib.TOMLDecodeError:
-        text = f"{specification.robot!r} is no robot file in TOML, whose numbers have names"
-        raise fault(path, table, ("robot",), text) from None
     except RobotFileError as error:
         raise SpecificationError(f"{path}: robot: {error}") from None
-    study = Study(specification, content, robot)
+    study = Study(specification, robot)
     for where, text in _faults(study):
         raise fault(path, table, where, text)
     return study
@@ -194,32 +188,57 @@ def _faults(study: Study) -> Faults:
 
 def _number_faults(study: Study) -> Faults:
     """Yield numbers that the robot has not, that are named twice, and values that do not rise."""
-    seen: dict[JsonPath | str, str] = {}
+    seen = set()
     for i, row in enumerate(study.specification.vary):
         for k, name in enumerate(row.numbers):
             where = ("vary", i, "number") if k == 0 else ("vary", i, "also", k - 1)
-            try:
-                key = _key(study, name)
-            except ValueError as error:
-                yield where, str(error)
-                continue
-            if key in seen:
+            if text := _place_fault(study.robot, name, row.first):
+                yield where, text
+            if (key := _key(name)) in seen:
                 yield where, f"{one_line(name)} is varied twice"
-            seen[key] = name
-        if not (row.first < row.last or (row.count == 1 and row.first == row.last)):
-            text = f"{row.last:g} is not above {row.first:g}, the value of 'from'"
-            yield ("vary", i, "to"), text
-        elif row.count == 1 and row.first != row.last:
+            seen.add(key)
+        if row.last < row.first or (row.last == row.first and row.count > 1):
+            yield ("vary", i, "to"), f"{row.last:g} is not above {row.first:g}, the value of 'from'"
+        if row.count == 1 and row.first != row.last:
             yield ("vary", i, "count"), "1 value cannot be both 'from' and 'to'; wanted: 2 or more"
+        ends = [_robot_fault(study.robot, row, value) for value in (row.first, row.last)]
+        if all(ends):
+            yield ("vary", i), f"neither end is a robot: {ends[0]}"
 
 
-def _key(study: Study, name: str) -> JsonPath | str:
-    """Return what a number is: a joint that is held, or a place of the robot file."""
-    if name.startswith(HELD):
-        joint = name.removeprefix(HELD)
-        study.robot.joint_index(joint)
-        return HELD + joint
-    return find_number(study.table, name)
+def _key(name: str) -> tuple[str | int, ...]:
+    """Return what two names of one number have in common."""
+    return tuple(int(step) if step.isdecimal() else step for step in name.split("."))
+
+
+def _place_fault(robot: Robot, name: str, value: float) -> str | None:
+    """Say why a name is that of no number; what value it may have is another question."""
+    try:
+        if name.startswith(HELD):
+            robot.joint_index(name.removeprefix(HELD))
+        else:
+            _varied(robot, {name: value})
+    except RobotFileError:
+        return None
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def _robot_fault(robot: Robot, row: VaryRow, value: float) -> str | None:
+    """Say why a robot with this value in a row's numbers is none."""
+    placed: list[Place] = [name for name in row.numbers if not name.startswith(HELD)]
+    try:
+        _varied(robot, dict.fromkeys(placed, value))
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def _varied(robot: Robot, numbers: dict[Place, float]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        varied(robot, numbers)
 
 
 def _joint_faults(study: Study) -> Faults:

@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 
 from qbound.extras import require
 from qbound.files import write_whole
+from qbound.model.robotfile import robot_table
 from qbound.model.schema import one_line
 from qbound.printable import printable
 from qbound.sweeps import grid
-from qbound.sweeps.cells import Measured, versions
+from qbound.sweeps.cells import HELD, Measured, versions
 from qbound.sweeps.measures import MEASURES, unit_of
-from qbound.sweeps.numbers import find_number
-from qbound.sweeps.specification import HELD, Study, held_names
+from qbound.sweeps.specification import Study, held_names
 from qbound.units import file_units
 
 SCHEMA = "qbound/sweep/1"
@@ -132,7 +132,7 @@ def about(study: Study) -> dict[str, Any]:
         "schema": SCHEMA,
         "versions": versions(),
         "specification": msgspec.to_builtins(study.specification),
-        "robot": study.table,
+        "robot": robot_table(study.robot),
     }
 
 
@@ -222,12 +222,12 @@ def number_unit(study: Study, name: str) -> str:
     robot = study.robot
     if name.startswith((HELD, "home.")):
         return file_units(robot)[robot.joint_index(name.partition(".")[2])]
-    path = find_number(study.table, name)
-    if path[0] == "joint" and isinstance(path[1], int):
+    kind, joint, key, *_ = [*name.split("."), "", ""]
+    if kind == "joint":
         units = {"origin": robot.length_unit, "rpy": robot.angle_unit, "axis": "1"}
-        own = file_units(robot)[path[1]]
-        return units.get(str(path[2]), f"{own}/s" if path[2] == "velocity" else own)
-    return "1" if "normal" in path else robot.length_unit
+        own = file_units(robot)[robot.joint_index(joint)]
+        return units.get(key, f"{own}/s" if key == "velocity" else own)
+    return "1" if key == "normal" else robot.length_unit
 
 
 def measure_unit(study: Study, measure: str) -> str:

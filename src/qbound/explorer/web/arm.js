@@ -3,24 +3,24 @@
 /** The part of the plane that the arm can reach, its bodies included, whatever joint moves.
  * @type {(robot: Robot) => number[][]} */
 function planeBox(robot) {
-  const [xs, ys] = [[0], [0]];
+  const box = [
+    [0, 0],
+    [0, 0],
+  ];
   const steps = Array.from({ length: 17 }, (_, i) => i / 16);
   for (const q of posesOfHeld(robot)) {
     for (const a of steps) {
       for (const b of steps) {
         const pair = robot.views.map((v, k) => v.low + (k ? b : a) * (v.high - v.low));
-        for (const [x, y] of planePlaces(robot, withPair(robot, q, pair))) {
-          xs.push(x);
-          ys.push(y);
-        }
+        for (const place of planePlaces(robot, withPair(robot, q, pair)))
+          place.forEach((value, k) => {
+            box[k] = [Math.min(box[k][0], value), Math.max(box[k][1], value)];
+          });
       }
     }
   }
-  const pad = 0.04 * Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
-  return [
-    [Math.min(...xs) - pad, Math.max(...xs) + pad],
-    [Math.min(...ys) - pad, Math.max(...ys) + pad],
-  ];
+  const pad = 0.04 * Math.max(...box.map(([low, high]) => high - low));
+  return box.map(([low, high]) => [low - pad, high + pad]);
 }
 
 /** The pose that the page opens with, and each held joint on its own at places of its range.

@@ -63,7 +63,8 @@ function largestScale() {
 /* --- controls ---------------------------------------------------------------------------------- */
 
 function buildPose() {
-  byId("pose").replaceChildren(...robot.joints.map(poseRow));
+  const note = newPart("row", element("p", { className: "readout", hidden: !robot.row }));
+  byId("pose").replaceChildren(...robot.joints.map(poseRow), note);
 }
 
 /** A slider and a field for one joint.
@@ -74,7 +75,9 @@ function poseRow(joint, j) {
   const [low, high] = rangeShown(joint, j).map((value) => value / factor);
   const [min, max] = [String(low), String(high)];
   const step = String(turn ? 0.1 : (high - low) / 1000);
-  const slide = newPart(`slide-${j}`, element("input", { type: "range", min, max, step }));
+  const row = rowValues(j); // its slider counts slices
+  const reach = row ? { min: "0", max: String(row.length - 1), step: "1" } : { min, max, step };
+  const slide = newPart(`slide-${j}`, element("input", { type: "range", ...reach }));
   const field = newPart(`value-${j}`, element("input", { type: "number", min, max, step: "any" }));
   const name = joint.name + (robot.free.includes(j) ? "" : " (held)");
   slide.ariaLabel = name;
@@ -82,7 +85,8 @@ function poseRow(joint, j) {
   for (const input of [slide, field]) {
     input.addEventListener("input", () => {
       const value = Number(input.value);
-      if (input.value !== "" && Number.isFinite(value)) setJoint(j, value * factor);
+      if (input.value === "" || !Number.isFinite(value)) return;
+      setJoint(j, row && input === slide ? row[value] : value * factor);
     });
   }
   field.addEventListener("blur", showPose);

@@ -31,6 +31,8 @@ interface Robot {
   plane: { frame: number; u: Place; v: Place; n: Place; oblique: boolean };
   views: View[];
   components: Component[];
+  walls: number[] | null; // boundaries that can bound this slice; null: all
+  row: SliceRow | null;
   polygon: VertexPolygon | null;
   workspace: { area: number; covered_twice: number } | null;
 }
@@ -93,6 +95,17 @@ interface Component {
   wraps: boolean[];
   loops: { boundary: string; branch: -1 | 1 | null; points: Pair[] }[][];
   vertices: { q: Pair; boundaries: string[] }[];
+}
+
+interface KnownSlice {
+  components: Pick<Component, "home" | "area" | "loops">[];
+  walls: number[] | null;
+}
+
+interface SliceRow {
+  joint: number; // a held one
+  unit: string; // of areas
+  slices: (KnownSlice & { value: number })[]; // by rising value
 }
 
 interface VertexPolygon {
@@ -193,7 +206,8 @@ interface DrawnArc {
 interface Slice {
   cells: Cell[];
   home: number | null;
-  exact: boolean;
+  exact: boolean; // whether the arcs are the library's
+  own: boolean; // whether it is the slice that the page opened with
   map: ToolMap;
   arm: Arm;
   regular: boolean;

@@ -13,7 +13,7 @@ function drawJointSpace(svg, robot, state, slice) {
     drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
   const singular = drawSingular(drawn, slice);
   const arcs = drawArcs(drawn, robot, slice);
-  if (state.show.polygon && slice.exact && robot.polygon)
+  if (state.show.polygon && slice.own && robot.polygon)
     drawPolygon(drawn, robot.polygon, state.scale);
   const path = layer(drawn, "joint-path").appendChild(make("path", { class: "path" }));
   const ghost = layer(drawn, "joint-ghost").appendChild(make("circle", { class: "ghost", r: 8 }));

@@ -23,7 +23,7 @@ function redraw() {
   showLegends();
   byId("area").textContent = areaText();
   root.dispatchEvent(new CustomEvent("qbound-draw"));
-  if (robot.polygon) inputOf("show-polygon").disabled = !slice.exact;
+  if (robot.polygon) inputOf("show-polygon").disabled = !slice.own;
   refresh();
 }
 
@@ -39,7 +39,7 @@ function showLegends() {
     ...legend(
       "polygon",
       `polygon of the vertices, at scale ${number(state.scale, 4)}`,
-      polygon && slice.exact,
+      polygon && slice.own,
     ),
     ...legend("dots", "random, safe", sample),
     ...legend("dots away", "random, safe, cut off", sample && cutOff),
@@ -144,19 +144,20 @@ function showMargins(found, lit) {
 
 function showPose() {
   if (!shows("pose")) return;
+  if (robot.row) byId("row").textContent = rowText(robot.row);
   for (const [j, { kind }] of robot.joints.entries()) {
     const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
     const value = String(Number((state.q[j] / unit).toFixed(digits)));
     const [field, slide] = [inputOf(`value-${j}`), inputOf(`slide-${j}`)];
     if (document.activeElement !== field) field.value = value; // not while one types
-    slide.value = value;
+    slide.value = String(rowValues(j)?.indexOf(state.q[j]) ?? value);
     slide.setAttribute("aria-valuetext", jointText(j, state.q[j]));
   }
 }
 
 function showScale() {
   if (!robot.polygon || !shows("scaling")) return;
-  byId("scaling").hidden = !slice.exact;
+  byId("scaling").hidden = !slice.own;
   inputOf("scale").value = String(state.scale);
   byId("scale-value").textContent = number(state.scale, 4);
   if (scaleShown !== state.scale) showClearance(robot.polygon);

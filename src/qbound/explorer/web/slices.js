@@ -7,9 +7,11 @@ const SEAM = -3; // where a joint that turns all the way round is cut open for d
 /* --- fibres: Theorem 2 along the second joint ------------------------------------------------- */
 
 /** What bounds a slice: its walls' forms at the held values of q, and the ranges of both joints.
- * @type {(robot: Robot, q: Pose) => SliceProblem} */
-function sliceProblem(robot, q) {
-  const walls = robot.boundaries.filter((wall) => wall.used);
+    `known` are the walls that can bound it, where the library has told.
+ * @type {(robot: Robot, q: Pose, known?: number[] | null) => SliceProblem} */
+function sliceProblem(robot, q, known = null) {
+  const chosen = known?.map((i) => robot.boundaries[i]) ?? robot.boundaries;
+  const walls = chosen.filter((wall) => wall.used);
   return {
     kinds: freeKinds(robot),
     forms: walls.map((wall) => restrict(wall.form, robot, q)),

@@ -70,10 +70,10 @@ const state = {
 /** The slice's cells, arcs, images and singular lines; the library's exact arcs where it has them.
  * @type {() => Slice} */
 function findSlice() {
-  const problem = sliceProblem(robot, state.q);
+  const known = knownSlice();
+  const problem = sliceProblem(robot, state.q, known?.walls);
   const cells = sliceCells(problem, COLUMNS);
   const home = pieceAt(cells, inView(pairOf(robot.q)));
-  const exact = robot.joints.every((_, j) => robot.free.includes(j) || state.q[j] === robot.q[j]);
   const map = toolMap(robot, state.q);
   const arm = armOf(map);
   const regular = map.planar && sweepsAnArea(arm, robot.reach);
@@ -83,22 +83,37 @@ function findSlice() {
   return {
     cells,
     home,
-    exact,
+    exact: known !== null,
+    own: robot.joints.every((_, j) => isAsOpened(j)),
     map,
     arm,
     regular,
-    arcs: exact ? exactArcs() : slicedArcs(problem, cells, home),
+    arcs: known ? exactArcs(known) : slicedArcs(problem, cells, home),
     images: postureImages(map, arm, regular ? inside : [], problem.ranges[1]),
     lines: regular ? lines : [],
     largest: largestDeterminant(map),
   };
 }
 
-/** @type {() => DrawnArc[]} */
-function exactArcs() {
-  return robot.components.flatMap(({ home, loops }) =>
-    loops.flat().map((arc) => ({ ...arc, home })),
-  );
+/** Whether a joint is free, or held where the page opened.
+ * @type {(j: number) => boolean} */
+function isAsOpened(j) {
+  return robot.free.includes(j) || state.q[j] === robot.q[j];
+}
+
+/** What the library found for the held joints: the slice that the page opened with, or one of the
+    row along a third joint.
+ * @type {() => KnownSlice | null} */
+function knownSlice() {
+  const moved = robot.joints.flatMap((_, j) => (isAsOpened(j) ? [] : [j]));
+  if (moved.length === 0) return robot;
+  const row = moved.length === 1 && robot.row?.joint === moved[0] ? robot.row : null;
+  return row?.slices.find(({ value }) => value === state.q[row.joint]) ?? null;
+}
+
+/** @type {(known: KnownSlice) => DrawnArc[]} */
+function exactArcs({ components }) {
+  return components.flatMap(({ home, loops }) => loops.flat().map((arc) => ({ ...arc, home })));
 }
 
 /** @type {(problem: SliceProblem, cells: Cell[], home: number | null) => DrawnArc[]} */
@@ -142,9 +157,17 @@ function pairOf(q) {
   return robot.free.map((j) => q[j]);
 }
 
-/** A held joint's value, within its limits.
+/** The values of a joint along which the library found a row of slices.
+ * @type {(j: number) => number[] | null} */
+function rowValues(j) {
+  return robot.row?.joint === j ? robot.row.slices.map((one) => one.value) : null;
+}
+
+/** A held joint's value, within its limits; along a row of slices that of the nearest one.
  * @type {(value: number, j: number) => number} */
 function heldValue(value, j) {
+  const row = rowValues(j);
+  if (row) return leastBy(row, (one) => Math.abs(one - value)) ?? value;
   const { limits } = robot.joints[j];
   return limits ? between(value, limits[0], limits[1]) : value;
 }

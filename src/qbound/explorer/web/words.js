@@ -85,10 +85,22 @@ function otherPostureText() {
   return isSafe(margins(robot, withPair(robot, state.q, other))) ? "safe" : "not safe";
 }
 
+/** Which slice of a row this is, how large it is, and that nothing is known between two of them.
+ * @type {(row: SliceRow) => string} */
+function rowText({ joint, slices, unit }) {
+  const { name } = robot.joints[joint];
+  const k = slices.findIndex(({ value }) => value === state.q[joint]);
+  const words = `${name} goes through ${slices.length} slices, each exact; between two of them nothing is computed.`;
+  if (!slice.exact || k < 0)
+    return `${words} Another held joint has moved: this outline is drawn from fibres.`;
+  const area = sum(slices[k].components.map((one) => one.area));
+  return `Slice ${k + 1} of ${slices.length}: safe area ${Number(area.toPrecision(5))} ${unit}. ${words}`;
+}
+
 /** The exact areas of the workspace, as the library found them for the slice it was given.
  * @type {() => string} */
 function areaText() {
-  if (!robot.workspace || !slice.exact || !state.show.workspace) return "";
+  if (!robot.workspace || !slice.own || !state.show.workspace) return "";
   const [whole, twice] = [robot.workspace.area, robot.workspace.covered_twice].map(
     (value) => `${Number(value.toPrecision(6))} ${robot.length_unit}²`,
   );

@@ -1,0 +1,300 @@
+r"""How far may one joint move, the others held? Exact intervals, thousands of rows at a time.
+
+About the joint's axis a ball is at a radius and a height, and a pair is nearest when both stand in
+one half-plane through the axis. It can touch only if their distance there is less than it must
+keep, which few pairs do; for these the forbidden angles are one arc (Theorem 2), whose half-width
+is :math:`2 \arctan\sqrt{(d^2 - r_0^2) / (r_\pi^2 - d^2)}` with the distances :math:`r_0` in one
+half-plane and :math:`r_\pi` in opposite ones. Along a slide they are one interval.
+
+What fibres are for: the whole travel of a joint at once, exactly, with what ends it, where samples
+would miss a thin obstacle. What they are not: a better way to a volume. At equal time evenly spread
+points are as good (`benchmarks/fibres.py`). Not in the paper.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, tau
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.arms.gaps import NONE, Gaps, Indices, Intervals, on_circle, on_line
+from qbound.boundary.balls import Balls, blocks
+from qbound.boundary.chain import Pose
+from qbound.boundary.evaluator import limit_names
+from qbound.model.robot import Joint, Robot, refuse_no_robot
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+class Interval(NamedTuple):
+    """Values that a joint may take, ends included: rad or length.
+
+    Attributes
+    ----------
+    low, high : float
+    below, above : str or None
+        What ends it: a boundary, or a limit of the joint; None where nothing does.
+    """
+
+    low: float
+    high: float
+    below: str | None
+    above: str | None
+
+
+@dataclass(frozen=True, eq=False)
+class Fibres:
+    """Feasible intervals along one joint, for each of n configurations.
+
+    Attributes
+    ----------
+    robot : Robot
+    joint : int
+    offsets : ndarray of int, shape (n + 1,)
+        Row i has the intervals ``offsets[i]`` to ``offsets[i + 1]``, ascending.
+    low, high : ndarray, shape (m,)
+        Their ends, rad or length. Round a joint without limits an interval begins in [-pi, pi) and
+        may end beyond pi.
+    below, above : ndarray of int, shape (m,)
+        What ends them: indices of `names`, -1 where nothing does.
+    names : tuple of str
+        The boundaries in use, then the joint's two limits.
+    """
+
+    robot: Robot
+    joint: int
+    offsets: Indices
+    low: Floats
+    high: Floats
+    below: Indices
+    above: Indices
+    names: tuple[str, ...]
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.offsets) - 1
+
+    def __getitem__(self, row: int) -> list[Interval]:
+        """Return the intervals of a row."""
+        if not -len(self) <= row < len(self):
+            raise IndexError(f"row {row} of {len(self)}")
+        row %= len(self)
+        return [self._interval(k) for k in range(*self.offsets[row : row + 2].tolist())]
+
+    def __iter__(self) -> Iterator[list[Interval]]:
+        """Yield the intervals of each row."""
+        return (self[row] for row in range(len(self)))
+
+    @cached_property
+    def rows(self) -> Indices:
+        """The row of each interval, shape (m,)."""
+        return np.repeat(np.arange(len(self)), np.diff(self.offsets))
+
+    @property
+    def length(self) -> Floats:
+        """How much the joint may move in all, shape (n,)."""
+        return np.bincount(self.rows, self.high - self.low, len(self)).astype(float)
+
+    def contains(self, values: ArrayLike) -> Bools:
+        """Tell which values of the joint are feasible; modulo a turn where it has no limits.
+
+        Parameters
+        ----------
+        values : array_like, shape (n,) or (n, k)
+            One or several a row.
+        """
+        values = np.asarray(values, dtype=float)
+        if values.shape[:1] != (len(self),) or not np.isfinite(values).all():
+            raise ValueError(f"finite values of {len(self)} rows are wanted")
+        above = values.reshape(len(self), -1)[self.rows] - self.low[:, None]
+        if self.robot.joints[self.joint].limits is None:
+            above = np.mod(above, tau)
+        inside, column = np.nonzero((above >= 0) & (above <= (self.high - self.low)[:, None]))
+        result = np.zeros(values.reshape(len(self), -1).shape, dtype=np.bool_)
+        result[self.rows[inside], column] = True
+        return result.reshape(values.shape)
+
+    def _interval(self, k: int) -> Interval:
+        low, high = float(self.low[k]), float(self.high[k])
+        below, above = (
+            None if i == NONE else self.names[i] for i in (self.below[k], self.above[k])
+        )
+        return Interval(low, high, below, above)
+
+
+def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
+    """Return the feasible values of one joint at each of many configurations of the others.
+
+    Parameters
+    ----------
+    joint : int or str
+        By index or by name.
+    q : array_like, shape (joints,) or (n, joints)
+        rad or length. The entry of the joint itself is not read; where another one is outside its
+        limits nothing is feasible.
+
+    Raises
+    ------
+    ValueError
+        If there is no such joint, a boundary is about bodies, or q are no configurations.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> found = fibres(robot, "q2", [[0.2, 0.0], [1.5, 0.0]])
+    >>> [(round(i.low, 4), round(i.high, 4), i.below, i.above) for i in found[0]]
+    [(-1.2965, 0.4987, 'B1', 'B7'), (2.1962, 3.2839, 'B7', 'B3')]
+    >>> found.length.round(4).tolist(), found.contains([-0.5, 0.0]).tolist()
+    ([2.8829, 0.0], [True, False])
+    """
+    refuse_no_robot("fibres", robot)
+    balls, j, q = Balls.of(robot), robot.joint_index(joint), robot.configuration(q)
+    q = q.reshape(-1, q.shape[-1])
+    outside = ~balls.within_limits(q, but=j)
+    found = [Gaps(*np.zeros((5, 0)))]
+    for here, columns in blocks(q):
+        gaps = _of_block(balls, j, columns, outside[here])
+        found.append(gaps._replace(row=gaps.row + here.start))
+    row, low, high, below, above = (np.concatenate(each) for each in zip(*found, strict=True))
+    offsets = np.searchsorted(row, np.arange(len(q) + 1))
+    start, _ = _range(robot.joints[j])
+    names = (*balls.names, *limit_names(robot.joints[j].name))
+    ends = below.astype(np.intp), above.astype(np.intp)
+    return Fibres(robot, j, offsets, low + start, high + start, *ends, names)
+
+
+def _range(joint: Joint) -> tuple[float, float | None]:
+    """Return the least value and the span; none where the joint turns all the way round."""
+    return (
+        (-pi, None) if joint.limits is None else (joint.limits[0], np.subtract(*joint.limits[::-1]))
+    )
+
+
+def _of_block(balls: Balls, joint: int, columns: Floats, outside: Bools) -> Gaps:
+    """Return the feasible intervals of some configurations, from the least value on."""
+    poses = balls.chain.poses(columns, joint)
+    x = balls.chain.places(poses)
+    rows = columns.shape[1]
+    if x.shape[2] < rows:  # no other joint moves anything
+        x = np.broadcast_to(x, (3, x.shape[1], rows))
+    outside = outside | _violated(balls, joint, x, poses[0])
+    turns = balls.robot.joints[joint].turns
+    taken = [
+        _of_pairs_turning(balls, joint, x) if turns else _of_pairs_sliding(balls, joint, x),
+        _of_walls(balls, joint, x, poses[0]),
+        _nothing(np.flatnonzero(outside)),
+    ]
+    start, span = _range(balls.robot.joints[joint])
+    number = np.concatenate([which for which, _ in taken])
+    row, low, high = (np.concatenate(each) for each in zip(*(t for _, t in taken), strict=True))
+    intervals = Intervals(row, low - start, high - start)
+    gaps = on_circle(intervals, rows, span) if turns else on_line(intervals, rows, span or 0.0)
+    return _named(gaps, number, len(balls.names), span is not None)
+
+
+def _named(gaps: Gaps, number: Indices, boundaries: int, limited: bool) -> Gaps:
+    """Say which boundary or limit ends each gap, in place of which interval."""
+    ends = (boundaries, boundaries + 1) if limited else (NONE, NONE)
+    number = np.append(number, NONE)
+    below, above = (
+        np.where(each == NONE, end, number[each])
+        for each, end in zip((gaps.below, gaps.above), ends, strict=True)
+    )
+    return gaps._replace(below=below, above=above)
+
+
+Taken = tuple[Indices, Intervals]
+"""The boundary of each forbidden interval, and the interval; modulo a turn of a turning joint."""
+
+
+def _violated(balls: Balls, joint: int, x: Floats, base: Pose) -> Bools:
+    """Tell where a boundary is violated that does not depend on the joint."""
+    still = np.setdiff1d(np.arange(len(balls.pairs)), balls.across(joint))
+    found = (balls.squared(x, still) < _kept(balls)[still, None]).any(axis=0)
+    walls = np.setdiff1d(np.arange(len(balls.walls)), balls.beyond(joint))
+    if len(walls):
+        heights = balls.walls_along(joint, x, base)[0, walls]
+        found |= (heights < -balls.rounding[balls.walls[walls], None]).any(axis=0)
+    return np.asarray(found)
+
+
+def _of_pairs_turning(balls: Balls, joint: int, x: Floats) -> Taken:
+    """Return the arcs of a turning joint that pairs forbid."""
+    which, kept = balls.across(joint), _kept(balls)
+    about = np.stack([x[2], np.hypot(x[0], x[1])])  # height and radius
+    nearest = balls.squared(about, which)
+    pair, row = np.nonzero(nearest < kept[which, None])
+    nearest, pair = nearest[pair, row], which[pair]
+    near, far, kept = balls.near[pair], balls.far[pair], kept[pair]
+    farthest = nearest + 4 * about[1, near, row] * about[1, far, row]
+    (x1, y1), (x2, y2) = x[:2, near, row], x[:2, far, row]
+    centre = np.arctan2(y1 * x2 - x1 * y2, x1 * x2 + y1 * y2)
+    half = 2 * np.arctan2(np.sqrt(kept - nearest), np.sqrt(np.maximum(farthest - kept, 0)))
+    half[farthest < kept] = np.inf
+    used = _not_within_longest(row, centre, half, x.shape[2])
+    row, centre, half = row[used], centre[used], half[used]
+    low = centre - np.minimum(half, pi)
+    return balls.pairs[pair[used]], Intervals(row, low, centre + half)
+
+
+def _not_within_longest(row: Indices, centre: Floats, half: Floats, rows: int) -> Indices:
+    """Return the arcs that no longer one of their row holds, but for a few: sorting costs most."""
+    longest = np.zeros(rows)
+    np.maximum.at(longest, row, half)
+    held = np.zeros(rows)
+    is_longest = half == longest[row]
+    held[row[is_longest]] = centre[is_longest]
+    apart = np.abs(centre - held[row])
+    apart = np.minimum(apart, np.abs(tau - apart))
+    return np.flatnonzero((apart + half > longest[row]) | (apart == 0))
+
+
+def _of_pairs_sliding(balls: Balls, joint: int, x: Floats) -> Taken:
+    """Return the intervals of a sliding joint that pairs forbid."""
+    which, kept = balls.across(joint), _kept(balls)
+    nearest = balls.squared(x[:2], which)
+    pair, row = np.nonzero(nearest < kept[which, None])
+    nearest, pair = nearest[pair, row], which[pair]
+    centre = x[2, balls.near[pair], row] - x[2, balls.far[pair], row]
+    half = np.sqrt(kept[pair] - nearest)
+    return balls.pairs[pair], Intervals(row, centre - half, centre + half)
+
+
+def _of_walls(balls: Balls, joint: int, x: Floats, base: Pose) -> Taken:
+    """Return what half-spaces forbid."""
+    which = balls.beyond(joint)
+    if not len(which):
+        return _nothing(np.zeros(0, dtype=np.intp))
+    c, a, b = balls.walls_along(joint, x, base)[:, which]
+    c = c + balls.rounding[balls.walls[which], None]
+    if balls.robot.joints[joint].turns:
+        size = np.hypot(a, b)
+        wall, row = np.nonzero(c < size)
+        a, b, c, size = (each[wall, row] for each in (a, b, c, size))
+        half = 2 * np.arctan2(np.sqrt(size - c), np.sqrt(np.maximum(size + c, 0)))
+        low = np.arctan2(-b, -a) - half
+        high = np.where(c < -size, np.inf, low + 2 * half)
+    else:
+        wall, row = np.nonzero((a != 0) | (c < 0))
+        a, c = a[wall, row], c[wall, row]
+        root = np.divide(-c, a, out=np.full(len(a), np.inf), where=a != 0)
+        low, high = np.where(a < 0, root, -np.inf), np.where(a < 0, np.inf, root)
+    return balls.walls[which][wall], Intervals(row, low, high)
+
+
+def _nothing(row: Indices) -> Taken:
+    """Return intervals that take all of some rows, of no boundary."""
+    far = np.full(len(row), np.inf)
+    return np.full(len(row), NONE), Intervals(row, -far, far)
+
+
+def _kept(balls: Balls) -> Floats:
+    """Return the squared distance under which a pair is violated, less rounding; shape (pairs,)."""
+    return np.asarray(np.square(balls.distance) - balls.rounding[balls.pairs])

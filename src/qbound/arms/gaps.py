@@ -1,0 +1,148 @@
+"""What do intervals leave free? Gaps between them, row by row, on a line or round a circle.
+
+Everything is in arrays, thousands of rows at once. Intervals are open, what is left of them closed;
+a single place between two that touch is left out.
+"""
+
+from __future__ import annotations
+
+from math import ceil, tau
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+NONE = -1
+"""Stands for an interval where a gap ends at an end of the range, or nowhere."""
+
+
+class Intervals(NamedTuple):
+    """Intervals of rows, shape (m,) a field.
+
+    Attributes
+    ----------
+    row : ndarray of int
+    low, high : ndarray
+        Infinite where an interval has no end.
+    """
+
+    row: Indices
+    low: Floats
+    high: Floats
+
+
+class Gaps(NamedTuple):
+    """What is left, by rows and ascending in each; shape (m,) a field.
+
+    Attributes
+    ----------
+    row : ndarray of int
+    low, high : ndarray
+    below, above : ndarray of int
+        The intervals that end a gap, or `NONE`.
+    """
+
+    row: Indices
+    low: Floats
+    high: Floats
+    below: Indices
+    above: Indices
+
+
+def on_line(taken: Intervals, rows: int, span: float) -> Gaps:
+    """Return what intervals leave of [0, span] in each of so many rows."""
+    row = np.concatenate([taken.row, np.arange(rows)])
+    low = np.concatenate([taken.low, np.full(rows, span)])  # one more at the end of each row
+    high = np.concatenate([taken.high, np.full(rows, np.inf)])
+    gaps = _between(Intervals(row, low, high), np.zeros(rows))
+    number = len(taken.row)
+    return gaps._replace(
+        below=np.where(gaps.low > 0, gaps.below, NONE),
+        above=np.where(gaps.above < number, gaps.above, NONE),
+    )
+
+
+def on_circle(taken: Intervals, rows: int, span: float | None) -> Gaps:
+    """Return what intervals modulo a full turn leave of [0, span], or of the whole circle.
+
+    Parameters
+    ----------
+    taken : Intervals
+        Shorter than a turn, or without an upper end: these take all.
+    span : float or None
+        It may be longer than a turn. None: round the circle; a gap then begins within [0, 2 pi) and
+        may end beyond, and a row without intervals has the gap [0, 2 pi].
+    """
+    endless = np.isinf(taken.high)
+    low = np.where(endless, 0.0, taken.low)
+    high = np.where(endless, np.inf, taken.high - low)
+    low = np.mod(low, tau)
+    high += low
+    last = np.full(rows, -np.inf)
+    np.maximum.at(last, taken.row, high)
+    gaps = _between(Intervals(taken.row, low, high), last - tau)
+    if span is None:
+        turned = _sorted(_moved(gaps, np.where(gaps.low < 0, tau, 0.0)))
+        return _sorted(_joined([turned, _free(last, tau)]))
+    copies = [_clipped(_moved(gaps, tau * m), span) for m in range(ceil(span / tau) + 1)]
+    return _sorted(_joined([*copies, _free(last, span)]))
+
+
+def _between(taken: Intervals, first: Floats) -> Gaps:
+    """Return the gaps below each interval's start, above all that start before, and `first`.
+
+    Where `first` is the highest end of the row a turn back, its interval ends the first gap.
+    """
+    n, order = len(taken.row), np.lexsort((taken.low, taken.row))
+    row, low, high = taken.row[order], taken.low[order], taken.high[order]
+    by_end = np.argsort(high, kind="stable")
+    rank = np.empty(n, dtype=np.intp)
+    rank[by_end] = np.arange(n)
+    highest = by_end[np.maximum.accumulate(row * n + rank) - row * n]  # of the row, so far
+    begins, ends = np.ones((2, n), dtype=np.bool_)
+    begins[1:] = ends[:-1] = row[1:] != row[:-1]
+    before = np.empty(n, dtype=np.intp)
+    before[1:] = highest[:-1]
+    before[begins] = highest[ends]
+    edge = np.where(begins, -np.inf, high[before])
+    around = first[row] >= edge
+    edge = np.where(around, first[row], edge)
+    below = np.where(around, highest[ends][np.cumsum(begins) - 1], before)
+    kept = edge < low
+    return Gaps(row[kept], edge[kept], low[kept], order[below[kept]], order[kept])
+
+
+def _free(last: Floats, span: float) -> Gaps:
+    """Return the whole range for each row without intervals."""
+    row = np.flatnonzero(last == -np.inf)
+    none = np.full(len(row), NONE)
+    return Gaps(row, np.zeros(len(row)), np.full(len(row), span), none, none)
+
+
+def _moved(gaps: Gaps, by: Floats | float) -> Gaps:
+    return gaps._replace(low=gaps.low + by, high=gaps.high + by)
+
+
+def _clipped(gaps: Gaps, span: float) -> Gaps:
+    """Return what lies in [0, span]; where it is cut, no interval ends it."""
+    low, high = np.maximum(gaps.low, 0), np.minimum(gaps.high, span)
+    below = np.where(gaps.low < 0, NONE, gaps.below)
+    above = np.where(gaps.high > span, NONE, gaps.above)
+    return _chosen(Gaps(gaps.row, low, high, below, above), np.flatnonzero(low < high))
+
+
+def _joined(many: list[Gaps]) -> Gaps:
+    row, low, high, below, above = (np.concatenate(each) for each in zip(*many, strict=True))
+    return Gaps(row, low, high, below, above)
+
+
+def _sorted(gaps: Gaps) -> Gaps:
+    return _chosen(gaps, np.lexsort((gaps.low, gaps.row)))
+
+
+def _chosen(gaps: Gaps, which: Indices) -> Gaps:
+    row, low, high, below, above = gaps
+    return Gaps(row[which], low[which], high[which], below[which], above[which])

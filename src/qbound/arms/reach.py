@@ -1,0 +1,328 @@
+r"""Where does the tool of an arm get to? A map of voxels, and the volume with an error bar.
+
+All joints but one are drawn, evenly as scrambled Sobol points and then about those that have led to
+the edge of the map; the travel of the one that is left is exact (`fibres`), and so are the voxels
+that its circle or line goes through. So a voxel that is marked is reached, and one that is not may
+be, too: what is sampled is the other joints. Directions are those half-way through a voxel.
+
+Voxels that a body touches have more volume than the body. On a grid that lies anywhere the surplus
+is proportional to the edge h, but for terms of second order, and the volume is
+:math:`2 V_h - V_{2h}`. Every scramble has a grid of its own.
+
+Not in the paper, whose workspaces are planar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import floor, log10
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.arms.fibres import fibres
+from qbound.arms.paths import ToolPaths
+from qbound.arms.voxels import Grid, coarsened, crossed, enclosed_volume
+from qbound.extras import require
+from qbound.model.robot import Robot, refuse_no_robot
+from qbound.model.rows import unit_vector
+from qbound.sampling import joint_ranges
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.intp]
+
+BANDS, SECTORS = 6, 12
+"""Directions are told apart by so many bands of equal height, each with so many sectors."""
+
+MOST_CELLS = 64_000_000
+"""Voxels of a grid, times directions where these are told apart."""
+
+ROWS = 512
+"""Fibres a block."""
+
+SPREADS = (0.1, 0.03, 0.01, 0.1, 0.03, 0.01)
+"""Standard deviations, as parts of a joint's range or a turn, of what is drawn about the edge."""
+
+PILOT = 256
+"""Fibres by which the joint is chosen that carries the tool farthest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """The places of a robot's tool over all feasible configurations.
+
+    Attributes
+    ----------
+    robot : Robot
+    grid : Grid
+    reached : ndarray of bool, shape grid.shape
+    index : ndarray or None, shape grid.shape
+        Reachability index: the part of all directions that the tool's axis has within a voxel.
+    joint : int
+        The joint whose travel is exact.
+    fibres : int
+        How many were looked at.
+    seed : int
+    volumes : ndarray, shape (scrambles, 3)
+        Of each scramble, length cubed: at last, a round before, and by voxels twice as long.
+    """
+
+    robot: Robot
+    grid: Grid
+    reached: Bools
+    index: Floats | None
+    joint: int
+    fibres: int
+    seed: int
+    volumes: Floats
+
+    @property
+    def volume(self) -> float:
+        """Mean of the scrambles' volumes; 0 where the extrapolation falls below it."""
+        return max(0.0, float(self.volumes[:, 0].mean()))
+
+    @property
+    def standard_error(self) -> float:
+        """Standard error of that mean: what chance does, and no more."""
+        return float(self.volumes[:, 0].std(ddof=1) / np.sqrt(len(self.volumes)))
+
+    @property
+    def error(self) -> float:
+        """An estimate of the volume's error: chance, what is not found yet, and the voxels' edge.
+
+        The standard error, what the last round added, and a third of the change from voxels twice
+        as long, since what is left is of second order in the edge.
+        """
+        last, before, coarse = self.volumes.mean(axis=0)
+        return float(self.standard_error + abs(last - before) + abs(last - coarse) / 3)
+
+    @property
+    def marked_volume(self) -> float:
+        """Volume of all voxels that are reached, in whole or in part."""
+        return float(self.reached.sum() * self.grid.edge**3)
+
+    @property
+    def box(self) -> Floats | None:
+        """Lowest and highest corner of the voxels that are reached, shape (2, 3); None: none is."""
+        if not self.reached.any():
+            return None
+        found = np.argwhere(self.reached)
+        ends = np.stack([found.min(axis=0), found.max(axis=0) + 1])
+        return np.asarray(self.grid.origin + self.grid.edge * ends)
+
+    def section(self, axis: int, value: float) -> Floats:
+        """Return the layer of voxels at a coordinate: index, or 1 where reached; NaN where not.
+
+        Raises
+        ------
+        ValueError
+            If the grid does not come to that value.
+        """
+        layer = floor((value - self.grid.origin[axis]) / self.grid.edge)
+        if not 0 <= layer < self.grid.shape[axis]:
+            low = float(self.grid.origin[axis])
+            high = low + self.grid.edge * self.grid.shape[axis]
+            raise ValueError(f"{'xyz'[axis]} = {value:g} is not within {low:g} and {high:g}")
+        shown = self.reached.astype(float) if self.index is None else self.index
+        return np.asarray(np.take(np.where(self.reached, shown, np.nan), layer, axis=axis))
+
+
+def reach(
+    robot: Robot,
+    voxel: float | None = None,
+    *,
+    seed: int = 0,
+    points: int = 4096,
+    scrambles: int = 4,
+    joint: int | str | None = None,
+    axis: ArrayLike | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Reach:
+    """Map where the tool gets to.
+
+    Parameters
+    ----------
+    voxel : float, optional
+        Edge of a voxel, length; default: some twentieth of the arm's reach.
+    seed : int
+        The same seed gives the same map.
+    points : int
+        Points a scramble that are drawn evenly, a power of two.
+    scrambles : int
+        At least 2: the error is that of their mean.
+    joint : int or str, optional
+        The joint whose travel is exact; default: the one that carries the tool farthest.
+    axis : array_like, shape (3,), optional
+        A direction fixed to the tool's frame; with one, directions are told apart.
+    progress : callable, optional
+        Told how many scrambles are done.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, the joint does not carry the tool, or a boundary is about
+        bodies.
+
+    Examples
+    --------
+    The gantry's tool moves in a plane: it has places, but no volume.
+
+    >>> from qbound import load_robot
+    >>> found = reach(load_robot("pr-gantry-arm"), 0.1, points=64, scrambles=2)
+    >>> bool(found.reached.any()), abs(found.volume) < 0.2
+    (True, True)
+    """
+    refuse_no_robot("reach", robot)
+    require("scipy", "a map of reach")
+    _refuse_numbers(points, scrambles, seed)
+    bins = 1 if axis is None else BANDS * SECTORS
+    grid = _grid(robot, voxel, bins)
+    paths = ToolPaths(robot, np.array([0.0, 0, 1]) if axis is None else unit_vector(_three(axis)))
+    if not paths.depth:
+        raise ValueError(f"{robot.tool}: the tool is fixed in the base")
+    one = _farthest(robot, paths, seed) if joint is None else _carrying(robot, joint, paths.depth)
+    survey = _Survey(robot, one, paths, grid, bins)
+    found = []
+    for scramble in range(scrambles):
+        rng = np.random.default_rng([seed, scramble])
+        shifted = Grid(grid.origin - rng.uniform(0, grid.edge, 3), grid.edge, grid.shape)
+        found.append(survey.volumes(shifted, points, rng))
+        if progress is not None:
+            progress(scramble + 1)
+    volumes = np.array(found)
+    index = None if axis is None else survey.marked.mean(axis=1).reshape(grid.shape)
+    reached: Bools = survey.marked.any(axis=1).reshape(grid.shape)
+    return Reach(robot, grid, reached, index, one, survey.fibres, seed, volumes)
+
+
+class _Survey:
+    """What has been reached so far: voxels of the map, and the number of fibres."""
+
+    def __init__(self, robot: Robot, joint: int, paths: ToolPaths, grid: Grid, bins: int) -> None:
+        self.robot, self.joint, self.paths, self.grid = robot, joint, paths, grid
+        self.marked = np.zeros((int(np.prod(grid.shape)), bins), dtype=np.bool_)
+        self.fibres = 0
+
+    def volumes(self, grid: Grid, points: int, rng: np.random.Generator) -> list[float]:
+        """Return volumes by a grid of its own: at last, a round before, by voxels twice as long.
+
+        Points are drawn evenly, then about what has led to voxels at the edge.
+        """
+        touched = np.zeros(len(self.marked), dtype=np.bool_)
+        leads = np.zeros((len(self.marked), len(self.robot.joints)))
+        for q in _drawn(self.robot, self.joint, points, rng):
+            self._look(q, grid, touched, leads)
+        for spread in SPREADS:
+            before = enclosed_volume(touched.reshape(grid.shape), grid.edge)
+            about = leads[grid.at_edge(touched)]
+            for k in range(0, len(about), ROWS):
+                q = _near(self.robot, about[k : k + ROWS], spread, rng)
+                self._look(q, grid, touched, leads)
+        whole = touched.reshape(grid.shape)
+        coarse = enclosed_volume(coarsened(whole), 2 * grid.edge)
+        return [enclosed_volume(whole, grid.edge), before, coarse]
+
+    def _look(self, q: Floats, grid: Grid, touched: Bools, leads: Floats) -> None:
+        """Mark where the tool gets along the fibres of some configurations."""
+        found = fibres(self.robot, self.joint, q)
+        along = self.paths.along(self.joint, q.T)[found.rows]
+        bins = self.marked.shape[1]
+        here = crossed(self.grid, along, found.low, found.high)
+        which = _bin(along[here.path].directions(here.q)) if bins > 1 else 0
+        self.marked[here.voxel, which] = True
+        here = crossed(grid, along, found.low, found.high)
+        new = np.flatnonzero(~touched[here.voxel])
+        voxel = here.voxel[new]
+        leads[voxel] = q[found.rows[here.path[new]]]
+        leads[voxel, self.joint] = here.q[new]
+        touched[voxel] = True
+        self.fibres += len(q)
+
+
+def _refuse_numbers(points: int, scrambles: int, seed: int) -> None:
+    if points < 2 or points & (points - 1):
+        raise ValueError(f"points: {points} is no power of two, from 2 on")
+    if scrambles < 2:
+        raise ValueError(f"scrambles: {scrambles}; an error takes at least 2")
+    if seed < 0:
+        raise ValueError(f"seed {seed}: a seed is 0 or above")
+
+
+def _three(axis: ArrayLike) -> list[float]:
+    values = np.asarray(axis, dtype=float)
+    if values.shape != (3,) or not np.isfinite(values).all() or not values.any():
+        raise ValueError("axis: three finite numbers are wanted, not all zero")
+    return [float(value) for value in values]
+
+
+def _carrying(robot: Robot, joint: int | str, depth: int) -> int:
+    one = robot.joint_index(joint)
+    if one >= depth:
+        raise ValueError(f"joint {robot.joints[one].name!r} does not carry the tool")
+    return one
+
+
+def _grid(robot: Robot, voxel: float | None, bins: int) -> Grid:
+    """Return a grid that holds all places of the tool, with a voxel to spare on every side."""
+    centre = np.asarray(robot.joints[0].origin, dtype=float)
+    length = robot.stretched(robot.tool) - float(np.linalg.norm(centre))
+    edge = _round_below(length / 20) if voxel is None else float(voxel)
+    if not 0 < edge < np.inf:
+        raise ValueError(f"voxel: {edge:g} is no length above 0")
+    half = float(np.ceil(length / edge)) + 1.0
+    if (2 * half) ** 3 * bins > MOST_CELLS:
+        count = f"{(2 * half) ** 3:.3g} voxels" + f" of {bins} directions" * (bins > 1)
+        raise ValueError(f"voxel: an edge of {edge:g} makes {count}; take a longer one")
+    return Grid(centre - half * edge, edge, (int(2 * half),) * 3)
+
+
+def _round_below(length: float) -> float:
+    """Return the next of 1, 2, 5, 10, ... below a length."""
+    if length <= 0:
+        return 1.0
+    power = 10.0 ** floor(log10(length))
+    return float(max(step for step in (1, 2, 5) if step * power <= length) * power)
+
+
+def _farthest(robot: Robot, paths: ToolPaths, seed: int) -> int:
+    """Return the joint whose feasible travel carries the tool farthest, on the mean of a few."""
+    lengths = []
+    for j in range(paths.depth):
+        q = next(_drawn(robot, j, PILOT, np.random.default_rng(seed)))
+        along = paths.along(j, q.T)
+        speed = np.sqrt(np.square(along.place[1]).sum(axis=0))
+        lengths.append(float(np.mean(fibres(robot, j, q).length * speed)))
+    return int(np.argmax(lengths))
+
+
+def _drawn(robot: Robot, joint: int, points: int, rng: np.random.Generator) -> Iterator[Floats]:
+    """Yield configurations with all joints but one drawn over their ranges; that one is at 0."""
+    from scipy.stats import qmc
+
+    others = [j for j in range(len(robot.joints)) if j != joint]
+    low, high = joint_ranges(robot)[others].T
+    sobol = qmc.Sobol(len(others), rng=rng) if others else None
+    rows = min(ROWS, points)
+    for _ in range(points // rows):
+        q = np.zeros((rows, len(robot.joints)))
+        if sobol is not None:
+            q[:, others] = low + (high - low) * sobol.random(rows)
+        yield q
+
+
+def _near(robot: Robot, q: Floats, spread: float, rng: np.random.Generator) -> Floats:
+    """Draw configurations about others, within the limits."""
+    low, high = joint_ranges(robot).T
+    drawn = q + rng.normal(0, spread, q.shape) * np.minimum(high - low, 2 * np.pi)
+    endless = [joint.limits is None for joint in robot.joints]
+    return np.asarray(np.where(endless, drawn, np.clip(drawn, low, high)))
+
+
+def _bin(directions: Floats) -> Indices:
+    """Return the number of the bin of unit vectors; all bins are as large on the sphere."""
+    x, y, z = directions
+    band = np.clip(np.floor((z + 1) / 2 * BANDS), 0, BANDS - 1)
+    sector = np.mod(np.floor(np.arctan2(y, x) / (2 * np.pi) * SECTORS), SECTORS)
+    return np.asarray(band * SECTORS + sector, dtype=np.intp)

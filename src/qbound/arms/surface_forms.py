@@ -1,0 +1,262 @@
+"""The boundary functions of three joints, of which a surface is made; and the joints' limits.
+
+All are evaluated at many places, each place by its own few functions: value and slope.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.boundary.evaluator import limit_names, stacked
+from qbound.boundary.parts import bounds_bodies
+from qbound.forms.angles import TURN
+from qbound.forms.bending import bending
+from qbound.forms.factors import basis
+from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import Robot
+from qbound.printable import printable
+from qbound.tolerances import NEGLIGIBLE
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+ON_FORM: Final = 1e-12
+"""Value of a form, relative to its size, at which a place is on it: Newton ends in rounding."""
+
+BLOCK: Final = 4096
+"""Places of which all functions are looked at at a time."""
+
+STEPS: Final = 12
+"""Of Newton: from a place on a grid each doubles the digits."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceForms:
+    """Boundary functions of three joints, then, where limits are closed, two more a joint.
+
+    Attributes
+    ----------
+    forms : HarmonicForm, shape (m,)
+        In the three joints.
+    names : tuple of str
+        Of the forms, then of the limits.
+    walls : tuple of (int, float, float)
+        Limits: axis, value, and sign of the side within.
+    sizes : ndarray, shape (m + limits,)
+        Sizes of the functions' terms: what their values are compared with.
+    box : ndarray, shape (2, 3)
+        Ends of the axes where the surface is open; infinite where it is closed by a limit.
+    """
+
+    forms: HarmonicForm
+    names: tuple[str, ...]
+    walls: tuple[tuple[int, float, float], ...]
+    sizes: Floats
+    box: Floats
+
+    def relative(self, q: Floats, which: Ints | None = None) -> Floats:
+        """Return the values of functions by their sizes, shape (N, 3) to (N, count).
+
+        Parameters
+        ----------
+        which : ndarray of int, optional
+            Forms to evaluate; the limits are always.
+        """
+        rows = self._relative_rows if which is None else self._relative_rows[which]
+        values = self._monomials(q) @ rows.T
+        if not self.walls:
+            return np.asarray(values)
+        far = self.sizes[len(self._rows) :]
+        walls = zip(self.walls, far, strict=True)
+        columns = [side * (q[:, axis] - value) / size for (axis, value, side), size in walls]
+        return np.column_stack([values, *columns])
+
+    def least(self, q: Floats) -> tuple[Ints, Floats]:
+        """Return the function of the least value by its size at each place, and that value."""
+        which, least = np.empty(len(q), dtype=np.intp), np.empty(len(q))
+        for start in range(0, len(q), BLOCK):
+            values = self.relative(q[start : start + BLOCK])
+            which[start : start + BLOCK] = values.argmin(axis=1)
+            least[start : start + BLOCK] = values.min(axis=1)
+        return which, least
+
+    def can_vanish(self, centres: Floats, half: Floats) -> NDArray[np.bool_]:
+        """Tell which forms may be 0 or less in boxes, by the bound of second order.
+
+        Parameters
+        ----------
+        centres : ndarray, shape (N, 3)
+        half : ndarray, shape (3,)
+            Half widths of each box.
+
+        Returns
+        -------
+        ndarray of bool, shape (N, m)
+        """
+        slope = np.abs(self.forms.gradient(centres)) @ half
+        bend = bending(
+            self.forms, _far_corners(centres, half), half[None, None].repeat(len(centres), 0)
+        )
+        lowest = self.forms(centres) - slope - bend[:, 0] / 2
+        return np.asarray(lowest <= ON_FORM * self.sizes[: len(self._rows)])
+
+    def only(self, which: NDArray[np.bool_]) -> SurfaceForms:
+        """Return it with some of the forms, and all limits."""
+        kept = np.concatenate([which, np.ones(len(self.walls), dtype=np.bool_)])
+        names = tuple(name for name, keep in zip(self.names, kept, strict=True) if keep)
+        return replace(self, forms=self.forms[which], names=names, sizes=self.sizes[kept])
+
+    def of(self, q: Floats, which: Ints) -> tuple[Floats, Floats]:
+        """Return value and slope of function number `which` at each place.
+
+        Parameters
+        ----------
+        q : ndarray, shape (N, 3)
+        which : ndarray of int, shape (N, s)
+
+        Returns
+        -------
+        values : ndarray, shape (N, s)
+        slopes : ndarray, shape (N, s, 3)
+        """
+        count = len(self._rows)
+        values, slopes = np.zeros(which.shape), np.zeros((*which.shape, 3))
+        if count:
+            form, monomials = np.minimum(which, count - 1), self._monomials(q)
+            values = np.einsum("nsc,nc->ns", self._rows[form], monomials)
+            slopes = np.einsum("nsjc,nc->nsj", self._slopes[form], monomials)
+        for k, (axis, value, side) in enumerate(self.walls, start=count):
+            here = which == k
+            values = np.where(here, side * (q[:, None, axis] - value), values)
+            slopes = np.where(here[..., None], side * np.eye(3)[axis], slopes)
+        return values, slopes
+
+    def onto(
+        self, q: Floats, which: Ints, held: NDArray[np.bool_], step: Floats
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """Move places onto their functions by Newton's method, the shortest way.
+
+        Parameters
+        ----------
+        q : ndarray, shape (N, 3)
+        which : ndarray of int, shape (N, s)
+            Functions that are to vanish.
+        held : ndarray of bool, shape (N, 3)
+            Coordinates that stay.
+        step : ndarray, shape (3,)
+            Units in which the way is measured: steps of the grid.
+
+        Returns
+        -------
+        q : ndarray, shape (N, 3)
+        found : ndarray of bool, shape (N,)
+            Whether all functions vanish, within two steps of where it began.
+        """
+        place, held = q.copy(), held.copy()
+        for _ in range(STEPS):
+            values, slopes = self.of(place, which)
+            size = self.sizes[which]
+            move = slopes * np.where(held, 0.0, step)[:, None] / size[..., None]
+            way = np.linalg.pinv(move, rcond=1e-9) @ (values / size)[..., None]
+            moved = place - np.clip(way[..., 0], -1, 1) * step
+            place = np.clip(moved, *self.box)
+            held |= place != moved  # what comes to a border goes on along it
+        values, _ = self.of(place, which)
+        near = (np.abs(place - q) <= 2 * step).all(axis=1)
+        return place, np.asarray(near & (np.abs(values) <= ON_FORM * self.sizes[which]).all(axis=1))
+
+    @cached_property
+    def _rows(self) -> Floats:
+        return np.asarray(self.forms.coefficients.reshape(-1, 27))
+
+    @cached_property
+    def _relative_rows(self) -> Floats:
+        return np.asarray(self._rows / self.sizes[: len(self._rows), None])
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        return np.asarray(self.forms.derivatives.coefficients.reshape(-1, 3, 27))
+
+    def _monomials(self, q: Floats) -> Floats:
+        a, b, c = (basis(kind, q[:, j]) for j, kind in enumerate(self.forms.kinds))
+        return np.asarray(np.einsum("ni,nj,nk->nijk", a, b, c).reshape(len(q), 27))
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One of the three joints.
+
+    Attributes
+    ----------
+    joint : int
+        By index of the robot.
+    ends : tuple of (float, float)
+        The limits; of a joint that turns a turn or more, one turn.
+    around : bool
+        Whether it is such a joint: what lies at one end goes on at the other.
+    """
+
+    joint: int
+    ends: tuple[float, float]
+    around: bool
+
+
+def axis_of(robot: Robot, joint: int) -> Axis:
+    """Return a joint as an axis; a turn is that about 0 if the limits hold it."""
+    limits, turns = robot.joints[joint].limits, robot.joints[joint].turns
+    if limits is None:
+        return Axis(joint, (-math.pi, math.pi), True)
+    low, high = limits
+    if not turns or high - low < TURN - NEGLIGIBLE:
+        return Axis(joint, (low, high), False)
+    centred = low <= -math.pi and math.pi <= high
+    return Axis(joint, (-math.pi, math.pi) if centred else (low, low + TURN), True)
+
+
+def surface_forms(
+    robot: Robot, held: dict[int, float], axes: Sequence[Axis], *, caps: bool
+) -> SurfaceForms:
+    """Return the functions in use of the three joints that are not held (eqs. 9-12).
+
+    Raises
+    ------
+    ValueError
+        If a boundary is about bodies, which have no single function, or there is none in use.
+    """
+    about = [boundary.name for boundary in robot.used if bounds_bodies(boundary)]
+    if about:
+        names = printable(", ".join(about[:3]))
+        raise ValueError(f"a surface is made of boundaries about points; about bodies: {names}")
+    if not robot.used:
+        raise ValueError(f"{printable(robot.name)}: no boundary is in use")
+    forms = stacked(robot, robot.used).restrict(held)
+    reach = [max(map(abs, axis.ends)) for axis in axes]
+    ended = [(k, axis) for k, axis in enumerate(axes) if caps and not axis.around]
+    box = np.array([axis.ends for axis in axes]).T
+    box[:, [k for k, _ in ended]] = [[-math.inf], [math.inf]]
+    return SurfaceForms(
+        forms=forms,
+        names=(
+            *(boundary.name for boundary in robot.used),
+            *(name for _, axis in ended for name in limit_names(robot.joints[axis.joint].name)),
+        ),
+        walls=tuple(
+            (k, end, side)
+            for k, axis in ended
+            for end, side in zip(axis.ends, (1.0, -1.0), strict=True)
+        ),
+        sizes=np.array([*forms.size(reach), *(1 + reach[k] for k, _ in ended for _ in range(2))]),
+        box=box,
+    )
+
+
+def _far_corners(centres: Floats, half: Floats) -> Floats:
+    """Return the two corners of each box between which it lies, shape (N, 2, 3)."""
+    return np.stack([centres - half, centres + half], axis=1)

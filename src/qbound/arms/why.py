@@ -1,0 +1,345 @@
+"""Why does a plan fail? Whether an arm can get from one configuration to another, and why not.
+
+In this order: does an end violate something; can one joint not pass a range (`separations`); is
+there a path (`search`), each leg of it proved; does a paving of up to three joints, the others
+held, prove that there is none. What none of these decides is not decided.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.arms.search import TRIES, find_path
+from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
+from qbound.boundary.evaluator import evaluator
+from qbound.boundary.parts import bounds_bodies
+from qbound.model.robot import Robot
+from qbound.model.robotfile import parse_robot, robot_text
+from qbound.proofs import statements
+from qbound.proofs.blocked import BlockedRange
+from qbound.proofs.certify import Certificate, certify
+from qbound.proofs.connection import Connection, connection
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.no_path import certify_no_path
+from qbound.proofs.verdict import Verdict
+from qbound.region import violated
+
+Floats = NDArray[np.float64]
+Answer = Literal["connected", "separated", "infeasible", "undecided"]
+During = Callable[[str], AbstractContextManager[None]]
+"""What is entered with a text while that lasts: for progress."""
+
+QUICK = 400
+"""Places drawn in a first search, before a paving."""
+
+SEEDS = 3
+"""Searches after it, each with other places, before none is made any more."""
+
+MOST_PAVED = 3
+"""Joints that a paving takes."""
+
+KEPT = 0.8
+"""Part of the least margin seen along a path for which a proof is tried first."""
+
+ALONG = 400
+"""Places of each leg at which margins are looked at."""
+
+
+def _silently(_: str) -> AbstractContextManager[None]:
+    return nullcontext()
+
+
+@dataclass(frozen=True, eq=False)
+class Why:
+    """What is known of two configurations; not in the paper.
+
+    Attributes
+    ----------
+    robot : Robot
+    ends : ndarray, shape (2, n)
+        Start and goal, rad or length.
+    answer : {"connected", "separated", "infeasible", "undecided"}
+        "separated" where both are feasible and it is proved that no path joins them; with `hold`,
+        no path that leaves the held joints where they are.
+    hold : bool
+        Whether only paths are asked about on which joints with one value at both ends stay there.
+    travels : tuple of JointTravel
+        Of every joint, what is blocked whatever the other joints are; empty where an end is
+        infeasible.
+    violated : tuple of (int, str, float)
+        Which end (0, 1), the boundary or limit, and its margin; the worst first.
+    separation : Separation or None
+        The joint that cannot pass.
+    path : ndarray, shape (k, n), or None
+        Corners, proved feasible with all that lies between; as the certificate has them.
+    margin : str
+        Length that the path is proved to keep from every boundary: a decimal.
+    least : float
+        Least margin at many places of the path: seen, not proved.
+    held : Connection or None
+        What a paving of the joints in which the ends differ proves, the others held.
+    certificate : Certificate or None
+        Of the path, of the separation, or of a violated boundary; what `check` reads.
+    tried : tuple of str
+        What was tried, in sentences.
+    """
+
+    robot: Robot
+    ends: Floats
+    answer: Answer
+    hold: bool = False
+    travels: tuple[JointTravel, ...] = ()
+    violated: tuple[tuple[int, str, float], ...] = ()
+    separation: Separation | None = None
+    path: Floats | None = None
+    margin: str = "0"
+    least: float = np.nan
+    held: Connection | None = None
+    certificate: Certificate | None = None
+    tried: tuple[str, ...] = field(default=())
+
+    @property
+    def differing(self) -> list[int]:
+        """Joints in which the two ends differ, by index."""
+        return differing(self.ends)
+
+
+def why(
+    source: str | Path,
+    start: ArrayLike,
+    goal: ArrayLike,
+    *,
+    seed: int = 0,
+    hold: bool = False,
+    during: During = _silently,
+) -> Why:
+    """Tell whether a robot can get from one configuration to another, and why or why not.
+
+    Parameters
+    ----------
+    source : str or Path
+        A robot file, or the name of a packaged robot.
+    start, goal : array_like, shape (n,)
+        rad or length.
+    seed : int
+        Of the search for a path; the same seed, the same answer.
+    hold : bool
+        Ask only about paths on which the joints that have one value at both ends stay there.
+    during : callable, optional
+        Entered with what is being done, in words.
+
+    Raises
+    ------
+    ValueError
+        If the file is none of a robot's, or an end is no configuration of it.
+    ModuleNotFoundError
+        Without the extra `proofs`.
+
+    Notes
+    -----
+    Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
+    with one of "no path"; a paving is a proof by itself and has no certificate.
+
+    Examples
+    --------
+    >>> found = why("minervabot-v2", [0.0, 0.0], [0.2, -0.5])
+    >>> found.answer, found.path.shape, found.certificate.verdict.value
+    ('connected', (2, 2), 'proved')
+
+    Of this robot, too, a joint has ranges that nothing passes:
+
+    >>> found = why("minervabot-v2", [0.0, 0.0], [0.0, 2.3])
+    >>> found.answer, found.separation.travel.name
+    ('separated', 'q2')
+    """
+    text, _ = robot_text(source)
+    robot = parse_robot(tomllib.loads(text))
+    ends = np.stack([robot.configuration(q) for q in (start, goal)])
+    bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
+    if bad:
+        with during("a proof that an end is infeasible"):
+            return _infeasible(text, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
+    with during("ranges that nothing passes"):
+        travels = separations(source)
+        found = _separated(text, robot, ends, hold, travels)
+    if found is not None:
+        return found
+    asked = _Asked(text, robot, ends, hold, travels)
+    with during("a path"):
+        path = _joined(asked, seed, 1, QUICK)
+    if path is not None:
+        return path
+    with during("a paving of the joints in which both ends differ"):
+        paved = _paved(asked, source)
+    if paved.answer != "undecided":
+        return paved
+    with during("a path, for longer"):
+        path = _joined(asked, seed, SEEDS, TRIES)
+    if path is not None:
+        return path
+    none = f"a search for a path ({SEEDS} times two growing trees) found none"
+    return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What is asked, and what is blocked."""
+
+    text: str
+    robot: Robot
+    ends: Floats
+    hold: bool
+    travels: tuple[JointTravel, ...]
+
+    def answer(self, answer: Answer, **found: Any) -> Why:
+        """Return an answer to it."""
+        return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+
+
+def differing(ends: Floats) -> list[int]:
+    """Return the joints in which two configurations, shape (2, n), differ."""
+    return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
+
+
+# --- an end that violates something ---------------------------------------------------------------
+
+
+def _infeasible(
+    text: str, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
+) -> Why:
+    """Certify the worst of what is violated."""
+    point = statements.points_of(robot, ends)[bad[0][0]]
+    certificate = certify(text, statements.box(point, point))
+    refuted = certificate if certificate.verdict is Verdict.REFUTED else None
+    return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
+
+
+# --- a joint that cannot pass ---------------------------------------------------------------------
+
+
+def _separated(
+    text: str, robot: Robot, ends: Floats, hold: bool, travels: tuple[JointTravel, ...]
+) -> Why | None:
+    parted = separation(travels, *ends.tolist())
+    if parted is None:
+        return None
+    ranges = [_widest(block) for block in parted.blocks]
+    certificate = certify_no_path(text, ends[0], ends[1], ranges)
+    proved = certificate if certificate.verdict is Verdict.PROVED else None
+    return Why(robot, ends, "separated", hold, travels, separation=parted, certificate=proved)
+
+
+def _widest(block: Block) -> BlockedRange:
+    return max(block.ranges, key=lambda each: each.high - each.low)
+
+
+def _said_of_separations(robot: Robot) -> str:
+    said = "no joint has a range between both ends that one boundary blocks by itself"
+    bodies = any(bounds_bodies(boundary) for boundary in robot.used)
+    return f"{said} (boundaries about bodies were not looked at)" if bodies else said
+
+
+# --- a path ---------------------------------------------------------------------------------------
+
+
+def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
+    """Search a path and prove all its legs; what cannot be proved is no answer."""
+    for k in range(seeds):
+        start, goal = asked.ends
+        path = find_path(asked.robot, start, goal, SEEDS * seed + k, tries=tries, hold=asked.hold)
+        found = None if path is None else _connected(asked, path)
+        if found is not None:
+            return found
+    return None
+
+
+def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
+    proved = _proved(asked.text, asked.robot, path)
+    if proved is None:
+        return None
+    corners, margin, least, certificate = proved
+    return asked.answer(
+        "connected",
+        path=corners,
+        margin=margin,
+        least=least,
+        held=held,
+        certificate=certificate,
+    )
+
+
+def _proved(text: str, robot: Robot, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
+    """Certify a path: its corners as they are written, the margin, what was seen, the file."""
+    points = statements.within_limits(robot, path)
+    corners = np.array(points, dtype=float) * statements.units(robot)
+    least = float(least_margins(robot, corners)[1].min())
+    likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
+    for margin in dict.fromkeys((likely, "0")):
+        certificate = certify(text, statements.path(points, margin))
+        if certificate.verdict is Verdict.PROVED:
+            return corners, margin, least, certificate
+    return None
+
+
+def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floats, Floats]:
+    """Return the least margin to any boundary at places along a path, and how far along they are.
+
+    Returns
+    -------
+    s : ndarray
+        Length along the path: the root of the sum of squares of joint values, rad and length.
+    margins : ndarray
+        Length; infinite without a boundary.
+    """
+    weights = np.linspace(0, 1, places + 1)[:, None]
+    legs = [a + weights * (b - a) for a, b in pairwise(path)]
+    q = np.concatenate(legs)
+    steps = np.linalg.norm(np.diff(q, axis=0), axis=1)
+    s = np.concatenate([[0.0], np.cumsum(steps)])
+    margins = evaluator(robot).margins(q)[:, : len(robot.used)]
+    return s, np.asarray(margins.min(axis=1, initial=np.inf))
+
+
+# --- a paving -------------------------------------------------------------------------------------
+
+
+def _paved(asked: _Asked, source: str | Path) -> Why:
+    """Pave the joints in which the ends differ, the others held; all of them where they are few."""
+    robot, ends, n = asked.robot, asked.ends, len(asked.robot.joints)
+    moving = list(range(n)) if n <= MOST_PAVED and not asked.hold else differing(ends)
+    if any(bounds_bodies(boundary) for boundary in robot.used):
+        return asked.answer("undecided", tried=("pavings know no boundaries about bodies",))
+    if not 0 < len(moving) <= MOST_PAVED:
+        said = f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
+        return asked.answer("undecided", tried=(said,))
+    still = {j: float(ends[0, j]) for j in range(n) if j not in moving}
+    found = connection(exact_problem(exact_robot(source), still), *ends[:, moving])
+    if found.path is not None:
+        path = np.tile(ends[0], (len(found.path), 1))
+        path[:, moving] = found.path
+        connected = _connected(asked, path, found)
+        if connected is not None:
+            return connected
+    proved = found.answer == "separated" and (asked.hold or len(moving) == n)
+    said = _said_of_paving(robot, moving, found)
+    return asked.answer("separated" if proved else "undecided", held=found, tried=(said,))
+
+
+def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
+    names = ", ".join(robot.joints[j].name for j in moving)
+    cells = f"a paving of {names} ({found.paving.cells} cells)"
+    others = " while the other joints are held" if len(moving) < len(robot.joints) else ""
+    if found.answer == "separated":
+        return f"{cells} proves that no path joins both ends{others}"
+    if found.answer == "connected":
+        return f"{cells} proves that a path joins both ends{others}"
+    return f"{cells} does not decide it{others}"

@@ -1,0 +1,45 @@
+"""``qbound fibre``: tell how far one joint may move while the others stay where they are."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from qbound.arms.fibres import fibres
+from qbound.arms.reports import fibre_document, fibre_lines
+from qbound.cli.chosen import add_robot
+from qbound.cli.files import deliver
+from qbound.cli.values import configuration
+from qbound.export.formats import json_text
+from qbound.model.robotfile import load_robot
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "fibre",
+        help="how far may one joint move, the others held? exactly, and what ends it",
+        description="Print every interval in which a joint may be while the others are held, and "
+        "the boundary or limit that ends it on either side; for any number of joints.",
+        epilog="example: qbound fibre minervabot-v2 q2 20deg -45deg",
+    )
+    add_robot(parser)
+    parser.add_argument("joint", metavar="JOINT", help="the joint that moves")
+    parser.add_argument(
+        "values",
+        nargs="*",
+        metavar="VALUE",
+        help="a value for each joint, 20deg, 0.35rad, a length; default: home",
+    )
+    parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the intervals; 1 if the joint may be nowhere."""
+    robot = load_robot(options.robot)
+    q = configuration(robot, options.values) if options.values else robot.home.tolist()
+    found = fibres(robot, options.joint, q)
+    document = (options.json, lambda: json_text(fibre_document(found, q)))
+    deliver([document], fibre_lines(found, q))
+    return 0 if found[0] else 1

@@ -1,0 +1,117 @@
+"""``qbound import``: make a robot file of a URDF, its links covered by balls."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from qbound.cli.files import deliver
+from qbound.cli.progress import working
+from qbound.region.region import violated
+from qbound.urdf.arm import EXCESS, Imported, import_urdf
+from qbound.urdf.robot_text import robot_text
+
+MOST_SHOWN = 5
+"""Pairs that touch at home that are named."""
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "import",
+        help="make a robot file of a URDF, its links covered by balls",
+        epilog="example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o arm.toml",
+    )
+    parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
+    parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
+    parser.add_argument("--from", dest="first", metavar="LINK", help="first link; default: root")
+    parser.add_argument("--to", dest="last", metavar="LINK", help="last link; default: only leaf")
+    parser.add_argument(
+        "--limits",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="JOINT=-360deg..360deg",
+        help="limits in place of the file's; plain numbers are rad or m",
+    )
+    parser.add_argument(
+        "--excess",
+        type=float,
+        default=EXCESS,
+        metavar="LENGTH",
+        help=f"how far a ball may stick out of a link, m (default {EXCESS})",
+    )
+    parser.add_argument(
+        "--clearance", type=float, default=0.0, metavar="LENGTH", help="kept by every pair, m"
+    )
+    parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
+    parser.add_argument(
+        "--package",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="FOLDER",
+        help="where package://NAME/... may lie: a folder NAME, or one that holds it",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", required=True, help="- is standard output"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Import; 0, also where home is not feasible: that is an answer, and is said."""
+    with working("covering links"):
+        imported = import_urdf(
+            options.urdf,
+            chain=(options.first, options.last),
+            srdf=options.srdf,
+            limits=limits(options.limits),
+            excess=options.excess,
+            packages=options.package,
+            clearance=options.clearance,
+            home=options.home,
+        )
+    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
+    return 0
+
+
+def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Read ``elbow=-360deg..360deg``: rad or m, by the names of joints."""
+    found: dict[str, tuple[float, float]] = {}
+    for text in texts:
+        name, _, span = text.rpartition("=")
+        low, _, high = span.partition("..")
+        try:
+            ends = _value(low), _value(high)
+        except ValueError:
+            ends = math.nan, math.nan
+        if not name or not all(map(math.isfinite, ends)):
+            raise ValueError(f"--limits {text}: wanted: JOINT=LOW..HIGH, as elbow=-180deg..180deg")
+        if name in found:
+            raise ValueError(f"--limits {text}: {name!r} has limits twice")
+        found[name] = ends
+    return found
+
+
+def _value(text: str) -> float:
+    for unit, scale in (("deg", math.radians(1.0)), ("rad", 1.0), ("m", 1.0)):
+        if text.strip().endswith(unit):
+            return float(text.strip().removesuffix(unit)) * scale
+    return float(text)
+
+
+def _lines(imported: Imported) -> Iterable[str]:
+    """Yield what was made, and what is wrong with home."""
+    robot = imported.robot
+    yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
+    yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
+    for note in imported.notes:
+        yield f"{note[0].upper()}{note[1:]}."
+    if touching := [name for name, _ in violated(robot, robot.home)]:
+        named = "; ".join(touching[:MOST_SHOWN])
+        more = f" and {len(touching) - MOST_SHOWN} more" if len(touching) > MOST_SHOWN else ""
+        yield f"The home pose is not feasible: {named}{more}."
+        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."

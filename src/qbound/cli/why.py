@@ -1,0 +1,80 @@
+"""``qbound why``: tell whether the arm can get from start to goal, and why or why not."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from typing import Any
+
+from qbound.arms.answers import why_document, why_lines
+from qbound.arms.why import Why, why
+from qbound.cli.chosen import add_robot
+from qbound.cli.files import Output, check_targets, deliver
+from qbound.cli.progress import working
+from qbound.cli.values import configuration
+from qbound.export.formats import json_text
+from qbound.figures.why import why_picture
+from qbound.model.robotfile import load_robot
+
+STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "why",
+        help="why does my plan fail? a path, proved, or what separates start and goal",
+        description="Can the arm get from START to GOAL? First: does either violate a boundary?"
+        " Then: can one joint not pass a range, whatever the others do? Then a path is searched"
+        " and proved. Else up to three joints are paved, the others held.",
+        epilog="example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "values", nargs="+", metavar="VALUE", help="start and goal, one after the other: 20deg, 0.3"
+    )
+    parser.add_argument(
+        "--hold",
+        action="store_true",
+        help="ask only about paths on which joints with one value at both ends stay there",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="S", help="of the search, 0 or above (default 0)"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="write the certificate; - for output"
+    )
+    parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    parser.add_argument("--svg", metavar="FILE", help="draw the ranges, or margins along the path")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Answer; 0 connected, 1 separated or infeasible, 3 undecided."""
+    robot = load_robot(options.robot)
+    n = len(robot.joints)
+    if len(options.values) != 2 * n:
+        raise ValueError(f"{len(options.values)} values; two configurations have {2 * n}")
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
+    if options.svg is not None:
+        check_targets([options.svg], kinds=("svg",))
+    start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
+    found = why(options.robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    outputs: list[Output] = [
+        (options.json, lambda: json_text(why_document(found))),
+        (options.svg, lambda: why_picture(found)),
+    ]
+    if found.certificate is not None:
+        text = found.certificate.text
+        outputs.append((options.output, lambda: text))
+    deliver(outputs, [*why_lines(found), *_of_certificate(options.output, found)])
+    return STATUS[found.answer]
+
+
+def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
+    """Say what the certificate is, or that there is none."""
+    if file is not None and found.certificate is None:
+        yield f"{file}: not written: of this answer there is no certificate"
+    elif file is not None:
+        yield f"{file}: the certificate; check it with qbound check"

@@ -1,0 +1,224 @@
+"""Which length, width or clearance is best? Numbers of a robot varied, and what it is worth then.
+
+A number is called by where it stands in the robot's file, such as ``joint.elbow.origin.0``; every
+measure is exact. Not in the paper.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.model.robot import Held, Robot, refuse_no_robot
+from qbound.model.robotfile import parse_robot, robot_table
+from qbound.printable import printable
+from qbound.region import Region, find_region
+from qbound.workspace.areas import find_workspace
+from qbound.workspace.planar import planar_arm
+
+Floats = NDArray[np.float64]
+Path = str | Sequence[str]
+"""``joint.elbow.origin.0``; as a sequence where a name has dots in it."""
+
+Measure = Literal["area", "home area", "workspace"]
+
+
+def region_area(region: Region) -> float:
+    """Return the area of all components of a region; products of joint units."""
+    return region.area
+
+
+def home_area(region: Region) -> float:
+    """Return the area of the component with the home pose; 0 where the home pose is in none."""
+    return 0.0 if region.home is None else region.home.area
+
+
+def workspace_area(region: Region) -> float:
+    """Return the area that the tool reaches from the home pose, length squared; 0 without home.
+
+    Raises
+    ------
+    qbound.workspace.planar.NoPlanarWorkspaceError
+        If the tool does not keep to a plane.
+    """
+    robot, problem = region.robot, region.problem
+    arm = planar_arm(robot, problem.held)
+    if region.home is None:
+        return 0.0
+    return find_workspace(arm, problem, robot.home[list(problem.joints)]).area
+
+
+MEASURES: Final[dict[Measure, Callable[[Region], float]]] = {
+    "area": region_area,
+    "home area": home_area,
+    "workspace": workspace_area,
+}
+
+
+TABLES: Final[dict[str, Callable[[Robot], Sequence[Any]]]] = {
+    "joint": lambda robot: robot.joints,
+    "point": lambda robot: robot.points,
+    "boundary": lambda robot: robot.boundaries,
+    "body": lambda robot: robot.bodies,
+    "obstacle": lambda robot: robot.obstacles,
+}
+"""Tables of a file whose rows have names, in the order in which it has them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A measure of a robot for each value of what was varied.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+        In the units of the robot's file.
+    measures : ndarray, shape (k,)
+        Exact at each value; of what lies between two of them nothing is said.
+    unit : str
+        Of the measures.
+    """
+
+    values: Floats
+    measures: Floats
+    unit: str
+
+    @property
+    def best(self) -> float:
+        """The first of the values with the largest measure."""
+        return float(self.values[self.measures.argmax()])
+
+
+def varied(robot: Robot, numbers: Mapping[Path, float]) -> Robot:
+    """Return a robot with some numbers of its file changed, checked as a file is.
+
+    Parameters
+    ----------
+    numbers : mapping of str, or of sequence of str, to float
+        By their place in the file, in its units: entries of a list by index, rows of the tables
+        ``joint``, ``point``, ``body``, ``boundary`` and ``obstacle`` by name, such as
+        ``joint.elbow.origin.0``, ``body.forearm.capsule.radius``, ``boundary.B1.clearance``. What
+        the file leaves out, such as a clearance of 0, may be set.
+
+    Raises
+    ------
+    ValueError
+        If there is no such place, it holds no number, or a value is no finite number.
+    qbound.model.robotcheck.RobotFileError
+        If the changed robot is none; the message names the place.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> robot = load_robot("two-links-on-a-table")
+    >>> robot.joints[1].origin.tolist()
+    [0.4, 0.0, 0.0]
+    >>> varied(robot, {"joint.elbow.origin.0": 0.5}).joints[1].origin.tolist()
+    [0.5, 0.0, 0.0]
+    >>> varied(robot, {"joint.wrist.origin.0": 0.5})  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: joint.wrist.origin.0: no joint 'wrist'; there are ...
+    """
+    refuse_no_robot("varied", robot)
+    table = dict(robot_table(robot))
+    for path, value in numbers.items():
+        _set(robot, table, path.split(".") if isinstance(path, str) else list(path), float(value))
+    return parse_robot(table)
+
+
+def vary(
+    robot: Robot,
+    numbers: Path | Sequence[Path],
+    values: ArrayLike,
+    measure: Measure | Callable[[Region], float] = "area",
+    held: Held | None = None,
+) -> Design:
+    """Measure a robot at each value of one of its numbers, or of several that change together.
+
+    Parameters
+    ----------
+    numbers : str, or sequence of str
+        As in `varied`. Several take the same value: a link's length is the origin of the next joint
+        and the end of the link's body.
+    values : array_like, shape (k,)
+        In the units of the robot's file.
+    measure : {"area", "home area", "workspace"} or callable
+        Of the region: its area, that of the component with the home pose, the area that the tool
+        of a planar arm reaches from home; or any function of a region.
+    held : mapping of int or str to float, optional
+        Values of all joints but two, rad or length.
+
+    Raises
+    ------
+    ValueError
+        If there are no values, the measure is unknown, or as `varied` and `find_region` do.
+
+    Examples
+    --------
+    The farther the second joint is from the first, the more the tool reaches, and the fewer joint
+    values are safe:
+
+    >>> from qbound import load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> reached = vary(robot, "joint.q2.origin.0", [10, 20, 30], "workspace")
+    >>> reached.measures.round(1).tolist(), reached.unit, reached.best
+    ([5497.9, 6276.9, 7330.8], 'cm^2', 30.0)
+    >>> vary(robot, "joint.q2.origin.0", [10, 20, 30]).best
+    10.0
+    """
+    chosen = np.asarray(values, dtype=float)
+    if chosen.ndim != 1 or not len(chosen):
+        raise ValueError(f"values in a row are wanted, found shape {chosen.shape}")
+    paths = [numbers] if isinstance(numbers, str) else list(numbers)
+    if isinstance(measure, str) and measure not in MEASURES:
+        raise ValueError(f"no measure {measure!r}; there are {', '.join(MEASURES)}")
+    found = MEASURES[measure] if isinstance(measure, str) else measure
+    regions = (find_region(varied(robot, dict.fromkeys(paths, q)), held) for q in chosen.tolist())
+    first = next(regions)
+    measures = [found(first), *(found(region) for region in regions)]
+    unit = f"{robot.length_unit}^2" if measure == "workspace" else first.area_unit
+    return Design(chosen, np.array(measures, dtype=float), unit if isinstance(measure, str) else "")
+
+
+def _set(robot: Robot, table: dict[str, Any], keys: list[str], value: float) -> None:
+    """Put a number in its place."""
+    label = printable(".".join(keys))
+    if not math.isfinite(value):
+        raise ValueError(f"{label}: {value} is no finite number")
+    here: Any = table
+    for k, key in enumerate(keys[:-1]):
+        here = here[_place(robot, here, keys[:k], key, label)]
+    last = keys[-1]
+    optional = isinstance(here, dict) and last not in here  # a default; or the parser refuses it
+    place = last if optional else _place(robot, here, keys[:-1], last, label)
+    old = 0.0 if optional else here[place]
+    if isinstance(old, bool) or not isinstance(old, int | float):
+        raise ValueError(f"{label}: no number stands there")
+    here[place] = value
+
+
+def _place(robot: Robot, here: Any, before: Sequence[str], key: str, label: str) -> str | int:
+    """Return the key or the index that a part of a path means."""
+    if isinstance(here, list) and len(before) == 1 and before[0] in TABLES:
+        return _index(robot, before[0], key, label)
+    if isinstance(here, list):
+        if not (key.isascii() and key.isdecimal() and int(key) < len(here)):
+            raise ValueError(f"{label}: {key!r} is none of the {len(here)} entries, counted from 0")
+        return int(key)
+    if not isinstance(here, dict) or key not in here:
+        raise ValueError(f"{label}: nothing is called {printable(key)!r} there")
+    return key
+
+
+def _index(robot: Robot, kind: str, name: str, label: str) -> int:
+    """Return which table of a kind has a name, whether the file spells the name or not."""
+    names = [each.name for each in TABLES[kind](robot)]
+    if name not in names:
+        known = printable(", ".join(names))
+        raise ValueError(f"{label}: no {kind} {printable(name)!r}; there are {known}")
+    return names.index(name)

@@ -1,0 +1,7 @@
+/* The page of a surface. */
+
+{
+  const [main, data] = ["main", "#surface-data"].map((name) => document.querySelector(name));
+  if (!(main instanceof HTMLElement && data)) throw new Error("The page has no place or no data.");
+  window.surface = showSurface(main, JSON.parse(data.textContent));
+}

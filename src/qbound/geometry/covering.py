@@ -1,0 +1,166 @@
+"""Do balls cover it? Proved by halving; and few of many balls chosen so that they do.
+
+A simplex whose corners lie in one ball lies in it, since a ball is convex. One that lies in no
+single ball is halved. Every comparison leaves room for rounding, so that what is called covered is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.geometry.simplices import edges, halved
+from qbound.tolerances import OUTWARD
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+HALVINGS = 60
+"""Rounds of halving after which a simplex is given up."""
+
+MOST_CELLS = 2_000_000
+"""Simplices at once at which the proof is given up."""
+
+AT_ONCE = 4_000_000
+"""Distances of a chunk."""
+
+
+class Cover(NamedTuple):
+    """Balls that cover a shape.
+
+    Attributes
+    ----------
+    centres : ndarray, shape (n, 3)
+    radii : ndarray, shape (n,)
+    excess : float
+        No point of a ball is farther from the shape than this; length.
+    """
+
+    centres: Floats
+    radii: Floats
+    excess: float
+
+
+def joined(covers: Iterable[Cover]) -> Cover:
+    """Put covers together, of several shapes."""
+    found = [*covers]
+    if not found:
+        return Cover(np.zeros((0, 3)), np.zeros(0), 0.0)
+    centres, radii = (np.concatenate(parts) for parts in zip(*(c[:2] for c in found), strict=True))
+    return Cover(centres, radii, max(cover.excess for cover in found))
+
+
+def uncovered(simplices: Floats, centres: Floats, radii: Floats) -> Floats:
+    """Return the simplices that are not proved to lie in the union of balls; none: all are.
+
+    Parameters
+    ----------
+    simplices : ndarray, shape (N, k, n)
+    centres : ndarray, shape (m, n)
+    radii : ndarray, shape (m,)
+
+    Returns
+    -------
+    ndarray, shape (M, k, n)
+        Parts of the simplices given: those with a corner outside of every ball, which refute the
+        cover, and those that were given up.
+
+    Notes
+    -----
+    Each radius is first made smaller by `OUTWARD` of the largest coordinate: more than what the
+    halvings and the distances can lose to rounding, some 70 units in the last place of it.
+
+    Examples
+    --------
+    Two balls cover a segment, and a third of a radius less leaves its middle out:
+
+    >>> import numpy as np
+    >>> segment, centres = np.array([[[-1.0], [1.0]]]), np.array([[-0.6], [0.6]])
+    >>> len(uncovered(segment, centres, np.array([0.7, 0.7])))
+    0
+    >>> len(uncovered(segment, centres, np.array([0.5, 0.5]))) > 0
+    True
+    """
+    size = max((float(np.abs(x).max()) for x in (simplices, centres) if x.size), default=0.0)
+    shrunk = radii - OUTWARD * size
+    left: list[Floats] = []
+    cells = np.asarray(simplices, dtype=float)
+    for _ in range(HALVINGS):
+        if not len(cells) or len(cells) > MOST_CELLS:
+            break
+        inside, outside = _judged(cells, centres, shrunk)
+        left.append(cells[outside])
+        cells = cells[~inside & ~outside]
+        longest = np.linalg.norm(edges(cells), axis=-1).argmax(axis=1)
+        cells = halved(cells, longest)
+    return np.concatenate([*left, cells])
+
+
+def _judged(cells: Floats, centres: Floats, radii: Floats) -> tuple[Bools, Bools]:
+    """Tell which simplices lie in one ball, and which have a corner in none."""
+    inside, outside = np.zeros(len(cells), dtype=bool), np.ones(len(cells), dtype=bool)
+    step = max(1, AT_ONCE // max(1, len(centres) * cells.shape[1]))
+    for k in range(0, len(cells) if len(centres) else 0, step):
+        corners = cells[k : k + step]
+        one_by_one = within(corners.reshape(-1, corners.shape[-1]), centres, radii)
+        held: Bools = one_by_one.reshape(len(corners), corners.shape[1], len(centres))
+        inside[k : k + step] = np.any(np.all(held, axis=1), axis=1)
+        outside[k : k + step] = ~np.all(np.any(held, axis=2), axis=1)
+    return inside, outside
+
+
+def within(points: Floats, centres: Floats, radii: Floats) -> Bools:
+    """Tell which points lie in which balls, shape (points, balls)."""
+    found = np.zeros((len(points), len(centres)), dtype=bool)
+    limits = np.where(radii > 0, radii, -1.0)  # none is within less than nothing
+    step = max(1, AT_ONCE // max(1, len(centres)))
+    for k in range(0, len(points), step):
+        squared = np.zeros((len(points[k : k + step]), len(centres)))
+        for i in range(points.shape[1]):
+            squared += np.subtract.outer(points[k : k + step, i], centres[:, i]) ** 2
+        found[k : k + step] = squared <= limits * np.abs(limits)
+    return found
+
+
+def few(covers: Bools, costs: Floats | None = None) -> NDArray[Any]:
+    """Choose few of many sets that together have every element that any of them has.
+
+    Greedy: the most new elements for its cost first; then what became needless is left out.
+
+    Parameters
+    ----------
+    covers : ndarray of bool, shape (sets, elements)
+    costs : ndarray, shape (sets,), optional
+        Above 0; default: 1 each.
+
+    Returns
+    -------
+    ndarray of int
+        Indices of the sets.
+    """
+    price = np.ones(len(covers)) if costs is None else costs
+    open_elements = covers.any(axis=0)
+    counts = np.count_nonzero(covers, axis=1)
+    chosen: list[int] = []
+    while open_elements.any():
+        best = int((counts / price).argmax())
+        new = covers[best] & open_elements
+        counts = counts - np.count_nonzero(covers.T[new], axis=0)
+        open_elements &= ~new
+        chosen.append(best)
+    return np.array(_needed(covers, chosen), dtype=int)
+
+
+def _needed(covers: Bools, chosen: list[int]) -> list[int]:
+    """Leave out, the last first, each set whose elements the others have."""
+    times = covers[chosen].sum(axis=0)
+    kept = []
+    for each in reversed(chosen):
+        if (times[covers[each]] > 1).all():
+            times = times - covers[each]
+        else:
+            kept.append(each)
+    return kept[::-1]

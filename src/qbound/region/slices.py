@@ -1,0 +1,136 @@
+"""A row of slices: regions of two joints, a third at value after value, the others held."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qbound.model.robot import Held, Robot, refuse_no_robot
+from qbound.region.region import Region, find_region
+from qbound.tolerances import SAME_POINT
+
+Floats = NDArray[np.float64]
+
+MOST_SLICES = 1000
+"""Slices that are made at once: a slip of the keyboard is no work without end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Slices:
+    """Regions of the same two joints, one for each value of a third.
+
+    Attributes
+    ----------
+    robot : Robot
+    along : int
+        Which joint differs from slice to slice, by index.
+    values : ndarray, shape (k,)
+        Its values, rad or length, in the order that was asked for.
+    regions : tuple of Region
+    """
+
+    robot: Robot
+    along: int
+    values: Floats
+    regions: tuple[Region, ...]
+
+    def __repr__(self) -> str:
+        """Say in a line what was cut along what."""
+        joint, unit = self.robot.joints[self.along].name, self.regions[0].area_unit
+        low, high = self.areas.min(), self.areas.max()
+        count = len(self.regions)
+        return f"<{count} slices along {joint!r}: areas {low:.6g} to {high:.6g} {unit}>"
+
+    @property
+    def areas(self) -> Floats:
+        """Feasible area of each slice, all components, shape (k,); products of joint units."""
+        return np.array([region.area for region in self.regions])
+
+    @property
+    def home_areas(self) -> Floats:
+        """Area of each slice's component with home's values of the two joints; 0 without one."""
+        homes = [region.home for region in self.regions]
+        return np.array([0.0 if home is None else home.area for home in homes])
+
+    def holds_home(self, k: int) -> bool:
+        """Tell whether the home pose lies in slice `k`: all held joints are at home."""
+        held = self.regions[k].problem.held
+        return all(abs(value - self.robot.home[j]) <= SAME_POINT for j, value in held.items())
+
+
+def find_slices(
+    robot: Robot,
+    along: int | str,
+    values: ArrayLike,
+    held: Held | None = None,
+    tell: Callable[[int], None] | None = None,
+) -> Slices:
+    """Find the regions of two joints for each value of a third one (eqs. 9-12).
+
+    The paper holds no joint; it names slices as an outlook. Every region is exact, of what lies
+    between two values nothing is said.
+
+    Parameters
+    ----------
+    along : int or str
+        The third joint, by index or name.
+    values : array_like, shape (k,)
+        Rad or length; one beyond the joint's limits has an empty region that names the limit.
+    held : mapping of int or str to float, optional
+        Values of all other joints but two.
+    tell : callable, optional
+        Is told how many slices there are after each.
+
+    Raises
+    ------
+    ValueError
+        If not two joints are left free, `along` is held or unknown, or a value is no finite number,
+        or there are none, or more than a thousand.
+    TypeError
+        If the robot is none, such as the name of one.
+
+    Examples
+    --------
+    The floor bounds the hand of an arm, for a wrist that is bent down, straight, and bent up:
+
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> from qbound import find_slices, load_robot
+    >>> from qbound.model.robot import HalfSpace, Point
+    >>> arm = load_robot("minervabot-v2")
+    >>> shoulder, elbow = arm.joints
+    >>> wrist = replace(elbow, name="q3", parent=elbow.frame, frame="hand")
+    >>> floor = HalfSpace("floor", "tip", np.array([0.0, 0.0, 1.0]), 0.0)
+    >>> tip = Point("tip", "hand", np.array([10.0, 0.0, 0.0]))
+    >>> robot = replace(
+    ...     arm,
+    ...     joints=(shoulder, elbow, wrist),
+    ...     points=(*arm.points, tip),
+    ...     boundaries=(*arm.boundaries, floor),
+    ...     home=np.zeros(3),
+    ... )
+    >>> slices = find_slices(robot, "q3", [-0.5, 0.0, 0.5])
+    >>> slices.areas.round(3).tolist()
+    [23.459, 24.157, 24.786]
+    >>> [slices.holds_home(k) for k in range(3)]
+    [False, True, False]
+    """
+    refuse_no_robot("find_slices", robot)
+    joint = robot.joint_index(along)
+    name, fixed = robot.joints[joint].name, robot.held_indices(held or {})
+    if joint in fixed:
+        raise ValueError(f"joint {name!r} is held, and slices go along it: leave it out of `held`")
+    chosen = np.asarray(values, dtype=float)
+    if chosen.ndim != 1 or not 0 < len(chosen) <= MOST_SLICES:
+        raise ValueError(
+            f"1 to {MOST_SLICES} values of {name!r} in a row are wanted, found shape {chosen.shape}"
+        )
+    regions = []
+    for value in chosen.tolist():
+        regions.append(find_region(robot, {**fixed, joint: value}))
+        if tell is not None:
+            tell(len(regions))
+    return Slices(robot, joint, chosen, tuple(regions))

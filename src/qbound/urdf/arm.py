@@ -1,0 +1,290 @@
+"""From a URDF to a robot: one chain, its joints, and balls that cover its links."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib import resources
+from itertools import combinations
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.model.joints import JOINT_TYPES, Joint
+from qbound.model.robot import Pair, Point, Robot
+from qbound.model.robotcheck import RobotFileError
+from qbound.model.robotfile import parse_robot, robot_table
+from qbound.model.rows import unit_vector
+from qbound.model.schema import shown
+from qbound.tolerances import ROUNDING
+from qbound.urdf.covers import link_cover
+from qbound.urdf.document import Urdf, UrdfJoint, read_urdf
+from qbound.urdf.meshes import read_mesh
+from qbound.urdf.poses import Pose
+from qbound.urdf.shapes import Collision, Mesh, Triangles
+from qbound.urdf.srdf import Srdf, read_srdf
+from qbound.urdf.tree import Chain, find_chain, listed
+from qbound.urdf.xml import Source
+
+Floats = NDArray[np.float64]
+Limits = Mapping[str, tuple[float, float]]
+
+EXCESS = 0.02
+"""How far, in metres, a ball may stick out of what it covers unless something else is asked for."""
+
+MOST_PAIRS = 20_000
+"""Pairs of balls of a robot at most."""
+
+
+class Ball(NamedTuple):
+    """A ball of a cover."""
+
+    point: Point
+    link: str
+    group: int
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A robot from a URDF, and what it was made from.
+
+    Attributes
+    ----------
+    robot : Robot
+    chain : Chain
+    excess : float
+        No ball sticks out of the shape that it covers by more; m.
+    sources : tuple of Source
+        The files: URDF, SRDF, meshes.
+    notes : tuple of str
+        What is covered how, and what was left out, a sentence each.
+    """
+
+    robot: Robot
+    chain: Chain
+    excess: float
+    sources: tuple[Source, ...]
+    notes: tuple[str, ...]
+
+
+def import_urdf(
+    source: str | Path,
+    *,
+    chain: tuple[str | None, str | None] | None = None,
+    srdf: str | Path | None = None,
+    limits: Limits | None = None,
+    excess: float | None = None,
+    packages: Sequence[str | Path] = (),
+    clearance: float = 0.0,
+    home: str | None = None,
+) -> Imported:
+    """Read a URDF, and an SRDF if there is one, as a robot; m and rad.
+
+    Parameters
+    ----------
+    source : str or Path
+        A path, or the name of a packaged file such as ``ur5.urdf``.
+    chain : pair of str, optional
+        First and last link; None for the root, and for the only leaf that it carries.
+    srdf : str or Path, optional
+        Its disabled pairs are not kept apart; its state "home" or "ready" is the home pose.
+    limits : mapping of str to pair of float, optional
+        Limits of joints in place of the file's, rad or m.
+    excess : float, optional
+        How far a ball may stick out of the shape that it covers, at most; default `EXCESS`.
+    packages : sequence of str or Path
+        Folders of packages, in which meshes may lie; those below the URDF's own folder may anyway.
+    clearance : float
+        That every pair of balls keeps.
+    home : str, optional
+        Name of a state of the SRDF.
+
+    Raises
+    ------
+    qbound.model.robotcheck.RobotFileError
+        If a file is wrong, or says what no robot here can be, with its line.
+    ModuleNotFoundError
+        If a library is missing that comes with ``qbound[arms]``.
+    """
+    urdf = read_urdf(packaged_or_path(source))
+    links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
+    found = find_chain(urdf, *(chain or (None, None)))
+    allowed = EXCESS if excess is None else excess
+    if not 0 < allowed < np.inf:
+        raise ValueError(f"excess {allowed}: a length above 0 is wanted")
+    joints = _joints(urdf, found, limits or {})
+    shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
+    balls, reached = _balls(shapes, found, allowed)
+    robot = Robot(
+        name=urdf.name,
+        joints=joints,
+        points=(_tool(found), *(ball.point for ball in balls)),
+        boundaries=tuple(_pairs(urdf, balls, links, clearance)),
+        home=_home(joints, links.home(home)),
+        tool=_tool(found).name,
+        length_unit="m",
+        angle_unit="deg",  # in which quarter turns are exact
+    )
+    try:
+        robot = parse_robot(robot_table(robot))
+    except RobotFileError as error:
+        raise RobotFileError(f"{urdf.file}: {error}") from None
+    solids = [shape.solid for each in shapes.values() for shape in each]
+    meshes = [solid for solid in solids if isinstance(solid, Triangles)]
+    sources = [urdf.source, links.source, *(mesh.source for mesh in meshes)]
+    notes = (*_covered(reached, meshes), *_left_out(urdf, found, links))
+    return Imported(robot, found, reached, tuple(filter(None, dict.fromkeys(sources))), notes)
+
+
+def packaged_or_path(source: str | Path) -> Path:
+    """Return the place of a file, or of a packaged one by its name, such as ``ur5.urdf``."""
+    folder = resources.files("qbound") / "robots"
+    packaged = {f.name for f in folder.iterdir() if f.name.endswith((".urdf", ".srdf"))}
+    return Path(str(folder / str(source))) if str(source) in packaged else Path(source)
+
+
+# --- joints ---------------------------------------------------------------------------------------
+
+TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
+"""From a type of URDF to ours."""
+
+
+def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
+    names = [joint.name for joint in chain.joints]
+    for name in limits:
+        if name not in names:
+            known = listed(names)
+            raise RobotFileError(f"{urdf.file}: limits of {shown(name)}: the chain has {known}")
+    return tuple(
+        _joint(joint, mount, chain.frames[k], limits.get(joint.name))
+        for k, (joint, mount) in enumerate(zip(chain.joints, chain.mounts, strict=True))
+    )
+
+
+def _joint(joint: UrdfJoint, mount: Pose, parent: str, limits: tuple[float, float] | None) -> Joint:
+    if joint.mimic is not None:
+        text = f"follows joint {shown(joint.mimic.joint)} (mimic), which is not supported"
+        joint.element.fault(text)
+    chosen = joint.limits if limits is None else limits
+    if chosen is None and joint.type != "continuous":
+        text = f"a {joint.type} joint without limits; give them: --limits {joint.name}=LOW..HIGH"
+        joint.element.fault(text)
+    if chosen is not None and not chosen[0] < chosen[1]:
+        text = f"limits {chosen[0]:g} to {chosen[1]:g} do not rise"
+        joint.element.fault(f"{text}; give others: --limits {joint.name}=LOW..HIGH")
+    return JOINT_TYPES[TYPES[joint.type]](
+        name=joint.name,
+        parent=parent,
+        frame=joint.child,
+        origin=mount.origin,
+        mount=_plain_turn(mount.rotation),
+        axis=unit_vector(joint.axis.tolist()),
+        limits=chosen,
+        velocity=joint.velocity,
+    )
+
+
+def _plain_turn(rotation: Floats) -> Floats:
+    """Replace entries that are 0, 1 or -1 but for the rounding of a sine or a product by these."""
+    whole = np.rint(rotation)
+    return np.asarray(np.where(np.abs(rotation - whole) <= ROUNDING, whole, rotation))
+
+
+def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
+    """Return the values of a state, or 0, as near to it as the limits allow."""
+    values = [state.get(joint.name, 0.0) for joint in joints]
+    ends = [joint.limits or (-np.inf, np.inf) for joint in joints]
+    return np.array([min(max(x, low), high) for x, (low, high) in zip(values, ends, strict=True)])
+
+
+# --- points and pairs -----------------------------------------------------------------------------
+
+
+def _tool(chain: Chain) -> Point:
+    """Return the origin of the last link; no point may have the name of a frame."""
+    name = chain.tip if chain.tip not in chain.frames else f"{chain.tip}/tool"
+    return Point(name, chain.frames[-1], chain.groups[-1][chain.tip].origin)
+
+
+def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
+    """Return the shapes of every link of the chain, meshes read; each file once."""
+    read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
+    found: dict[str, list[Collision]] = {}
+    for link in (link for group in chain.groups for link in group):
+        found[link] = []
+        for shape in urdf.links[link].collisions:
+            solid = shape.solid
+            if isinstance(solid, Mesh):
+                key = (solid.filename, tuple(solid.scale.tolist()))
+                if key not in read:
+                    read[key] = read_mesh(solid, shape.element, roots)
+                solid = read[key]
+            found[link].append(replace(shape, solid=solid))
+    return found
+
+
+def _balls(
+    shapes: Mapping[str, Sequence[Collision]], chain: Chain, excess: float
+) -> tuple[list[Ball], float]:
+    """Cover every link of the chain; return the balls, and the most that one sticks out."""
+    balls: list[Ball] = []
+    reached = 0.0
+    for group, (frame, poses) in enumerate(zip(chain.frames, chain.groups, strict=True)):
+        for link, pose in poses.items():
+            centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
+            reached = max(reached, sticks_out)
+            for i, (at, radius) in enumerate(zip(centres, radii, strict=True), start=1):
+                point = Point(f"{link}/{i}", frame, at, float(radius))
+                balls.append(Ball(point, link, group))
+    return balls, reached
+
+
+def _pairs(urdf: Urdf, balls: list[Ball], links: Srdf, clearance: float) -> Iterator[Pair]:
+    """Yield each two balls of links that are no neighbours and are to be kept apart."""
+    found = [
+        (one.point.name, other.point.name)
+        for one, other in combinations(balls, 2)
+        if abs(one.group - other.group) > 1 and links.checks(one.link, other.link)
+    ]
+    if len(found) > MOST_PAIRS:
+        text = f"{len(found)} pairs of balls; at most {MOST_PAIRS} are possible"
+        cure = "allow a larger excess (--excess), or disable pairs of links in an SRDF (--srdf)"
+        raise RobotFileError(f"{urdf.file}: {text}: {cure}")
+    return (Pair(", ".join(names), names, clearance) for names in found)
+
+
+def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
+    """Yield what is proved of the balls."""
+    most = f"none sticks out of its shape by more than {_rounded_up(excess)} m"
+    yield f"every collision shape is covered by balls (proved), and {most}"
+    if meshes:
+        yield "of a mesh all triangles are covered, and what they enclose may not be"
+    if opened := [mesh.source.name for mesh in meshes if not mesh.closed]:
+        what = "meshes that do not close up, whose excess is that beyond their hull"
+        yield f"{what}: {', '.join(opened)}"
+
+
+def _rounded_up(length: float) -> str:
+    """Write a length in whole micrometres, none too small."""
+    return f"{math.ceil(length * 1e6) / 1e6:.6f}"
+
+
+def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
+    """Yield what the robot leaves out."""
+    carried = {link for group in chain.groups for link in group}
+    others = [n for n, link in urdf.links.items() if n not in carried and link.collisions]
+    if others:
+        yield f"not in the chain, and not kept clear of: {', '.join(others)}"
+    bare = [n for n in chain.frames if not any(urdf.links[x].collisions for x in _of(chain, n))]
+    if bare:
+        yield f"without a collision shape: {', '.join(bare)}"
+    disabled = sorted(", ".join(sorted(p)) for p in links.disabled if p <= carried)
+    if disabled:
+        yield f"pairs that the SRDF disables: {'; '.join(disabled)}"
+
+
+def _of(chain: Chain, frame: str) -> list[str]:
+    return [*chain.groups[chain.frames.index(frame)]]

@@ -1,0 +1,129 @@
+"""Which triangles does a mesh have? A file beside the URDF, and never one elsewhere.
+
+A name such as ``package://NAME/meshes/arm.stl`` leads below a folder of that name; any other leads
+below the URDF's own folder. Links are followed first, then it is checked where the file lies.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.extras import require
+from qbound.model.schema import one_line, shown
+from qbound.urdf.shapes import Mesh, Triangles
+from qbound.urdf.xml import Element, Source
+
+Floats = NDArray[np.float64]
+
+KINDS = ("stl", "obj", "ply", "dae")
+"""Endings of meshes that are read."""
+
+LARGEST_MESH = 200_000_000
+"""Bytes of a mesh at most."""
+
+MOST_TRIANGLES = 500_000
+"""Triangles of a mesh at most."""
+
+
+def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
+    """Read the mesh of an element.
+
+    Parameters
+    ----------
+    roots : sequence of Path
+        Folders below which it may lie: that of the URDF, then those of packages.
+
+    Raises
+    ------
+    qbound.model.robotcheck.RobotFileError
+        If there is none, it lies elsewhere, is none that is read, or has numbers that are not
+        finite.
+    ModuleNotFoundError
+        If there is no trimesh; it comes with ``qbound[arms]``.
+    """
+    require("trimesh")
+    path = find_mesh(mesh.filename, element, roots)
+    kind = path.suffix.removeprefix(".").lower()
+    if kind not in KINDS:
+        known = ", ".join(f".{each}" for each in KINDS)
+        element.fault(f"{shown(mesh.filename)}: unknown ending; wanted: one of {known}")
+    if path.stat().st_size > LARGEST_MESH:
+        element.fault(f"{shown(mesh.filename)}: more than {LARGEST_MESH // 10**6} MB")
+    content = path.read_bytes()
+    scale = mesh.scale * (_collada_unit(content, mesh, element) if kind == "dae" else 1.0)
+    try:
+        corners, closed = _loaded(content, kind, scale)
+    except Exception as error:  # what a parser of strangers' files makes of them
+        element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
+    if not 0 < len(corners) <= MOST_TRIANGLES:
+        text = f"{len(corners)} triangles; wanted: 1 to {MOST_TRIANGLES}"
+        element.fault(f"{shown(mesh.filename)}: {text}")
+    if not np.isfinite(corners).all():
+        element.fault(f"{shown(mesh.filename)}: a corner is not a finite number")
+    return Triangles(corners, closed, Source.of(path, content))
+
+
+def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
+    """Return the file that a name of a mesh leads to; raises as `read_mesh`."""
+    scheme, _, rest = name.rpartition("://")
+    if scheme not in ("", "file", "package"):
+        element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
+    if scheme == "package":
+        package, _, inner = rest.partition("/")
+        tried = [root / rest for root in roots]
+        tried += [root / inner for root in roots if root.resolve().name == package]
+    else:
+        tried = [roots[0] / rest]
+    allowed = [root.resolve() for root in roots]
+    for path in (path.resolve() for path in tried):
+        if not any(path.is_relative_to(root) for root in allowed):
+            text = "leads outside of the URDF's folder and of the packages' folders"
+            element.fault(f"filename: {shown(name)} {text}")
+        if path.is_file():
+            return path
+    cure = "; say where its package is: --package FOLDER" if scheme == "package" else ""
+    return element.fault(f"filename: no file {shown(name)}{cure}")
+
+
+def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
+    """Return the triangles, and whether they close up; nothing but this file is opened."""
+    import trimesh
+
+    options: dict[str, Any] = {"dae": {"ignore_broken": False}, "obj": {"skip_materials": True}}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = trimesh.load_mesh(
+            io.BytesIO(content), file_type=kind, process=False, **options.get(kind, {})
+        )
+    vertices = np.asarray(found.vertices, dtype=float) * scale
+    faces = np.asarray(found.faces, dtype=int)
+    merged = trimesh.Trimesh(vertices, faces, process=False)
+    if np.isfinite(vertices).all():
+        merged.merge_vertices(merge_tex=True, merge_norm=True)
+    closed = bool(merged.is_watertight and merged.is_winding_consistent)
+    return np.asarray(vertices[faces]), closed
+
+
+def _collada_unit(content: bytes, mesh: Mesh, element: Element) -> float:
+    """Return the metres of a Collada file's unit; refuse what no mesh needs or is not handled."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return element.fault(f"{shown(mesh.filename)}: not UTF-8 text")
+    if re.search(r"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
+        element.fault(f"{shown(mesh.filename)}: has a document type; a mesh needs none")
+    up = re.search(r"<up_axis>\s*(\w+)\s*</up_axis>", text)
+    if up is None or up[1] != "Z_UP":
+        found = "no up_axis" if up is None else up[1]
+        element.fault(f"{shown(mesh.filename)}: {found}; wanted: a Collada file with Z_UP")
+    unit = re.search(r"<unit\b[^>]*\bmeter\s*=\s*[\"']([-+.\deE]+)[\"']", text)
+    scale = float(unit[1]) if unit else 1.0
+    return scale if 0 < scale < np.inf else element.fault(f"{shown(mesh.filename)}: unit {scale}")

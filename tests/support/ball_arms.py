@@ -1,0 +1,67 @@
+"""Random arms of balls in space: any joints, pairs and walls, as an imported arm is made."""
+
+from itertools import combinations
+from math import pi
+
+import numpy as np
+
+from qbound.model.frames import roll_pitch_yaw
+from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
+
+REVOLUTE, PRISMATIC = "revolute", "prismatic"
+LIMITS = {REVOLUTE: (None, (-2.0, 2.5), (-2 * pi, 2 * pi), (0.3, 9.0)), PRISMATIC: ((-0.4, 0.5),)}
+
+
+def arm_of_balls(seed: int, joints: int | None = None) -> Robot:
+    """One to six joints of either kind, two balls a link, a pair of every two links, two walls."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 7)) if joints is None else joints
+    kinds = rng.choice([REVOLUTE, PRISMATIC], count, p=[0.7, 0.3])
+    chain = tuple(random_joint(rng, j, kind) for j, kind in enumerate(kinds))
+    points = [
+        Point(f"{k}/{i}", str(k), rng.normal(0, 0.3, 3), rng.uniform(0.02, 0.12))
+        for k in range(count + 1)
+        for i in (1, 2)
+    ]
+    pairs = [
+        Pair(f"{one.name}, {other.name}", (one.name, other.name), rng.choice([0.0, 0.03]))
+        for one, other in combinations(rng.permutation(points), 2)
+        if one.frame != other.frame
+    ]
+    walls = [random_wall(rng, i, points[int(rng.integers(0, len(points)))]) for i in range(2)]
+    home = np.array([0.3 if joint.turns else 0.1 for joint in chain])
+    return Robot(
+        f"arm {seed}",
+        chain,
+        tuple(points),
+        (*pairs[::2], *walls, *pairs[1::2]),
+        home,
+        f"{count}/1",
+        "m",
+        "rad",
+    )
+
+
+def random_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
+    axis = rng.normal(size=3) if rng.random() < 0.5 else rng.permutation([0.0, 0.0, 1.0])
+    choice = LIMITS[kind]
+    return JOINT_TYPES[kind](
+        name=f"q{j + 1}",
+        parent=str(j),
+        frame=str(j + 1),
+        origin=rng.normal(0, 0.4, 3),
+        mount=roll_pitch_yaw(*rng.uniform(-pi, pi, 3)),
+        axis=axis / np.linalg.norm(axis),
+        limits=choice[int(rng.integers(0, len(choice)))],
+    )
+
+
+def random_wall(rng: np.random.Generator, i: int, point: Point) -> HalfSpace:
+    normal = rng.normal(size=3)
+    return HalfSpace(f"wall {i}", point.name, normal / np.linalg.norm(normal), -1.5)
+
+
+def drawn(robot: Robot, n: int, seed: int = 3) -> np.ndarray:
+    """Configurations within the limits, or within a turn."""
+    ends = np.array([joint.limits or (-pi, pi) for joint in robot.joints])
+    return np.random.default_rng(seed).uniform(*ends.T, size=(n, len(ends)))

@@ -1,0 +1,360 @@
+"""URDFs: what they say is what the robot does, and what is wrong with one is said with its line."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from qbound import RobotFileError, load_robot
+from qbound.cli import main
+from qbound.region import violated
+from qbound.urdf.arm import import_urdf, packaged_or_path
+from qbound.urdf.robot_text import robot_text
+
+OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}
+BALL = "<collision><geometry><sphere radius='0.05'/></geometry></collision>"
+
+
+def link(name: str, inside: str = "") -> str:
+    return f"<link name='{name}'>{inside}</link>"
+
+
+def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:
+    limit = "<limit lower='-1' upper='2' velocity='3'/>" if "<limit" not in more else ""
+    ends = f"<parent link='{parent}'/><child link='{child}'/>"
+    return f"<joint name='{name}' type='{kind}'>{ends}{limit}{more}</joint>"
+
+
+def written(folder: Path, *parts: str, name: str = "arm.urdf") -> Path:
+    file = folder / name
+    file.write_text("<robot name='arm'>\n" + "\n".join(parts) + "\n</robot>\n", encoding="utf-8")
+    return file
+
+
+def three_links(folder: Path, more: str = "", kind: str = "revolute", balls: str = BALL) -> Path:
+    links = [link(name, balls) for name in "abc"]
+    return written(folder, *links, joint("j", "a", "b"), joint("k", "b", "c", kind, more))
+
+
+# --- kinematics -----------------------------------------------------------------------------------
+
+
+def rotation(axis: np.ndarray, angle: float) -> np.ndarray:
+    """By the exponential of a matrix: a series, and no formula of the package."""
+    x, y, z = axis / np.linalg.norm(axis)
+    generator = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) * angle
+    term, total = np.eye(3), np.eye(3)
+    for n in range(1, 60):
+        term = term @ generator / n
+        total = total + term
+    return total
+
+
+def transform(turn: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = turn, shift
+    return matrix
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_places_are_those_of_a_chain_of_matrices(tmp_path, seed) -> None:
+    rng = np.random.default_rng([520, seed])
+    kinds = ["revolute", "fixed", "prismatic", "continuous", "fixed", "revolute"]
+    rng.shuffle(kinds)
+    parts, steps = [link("l0", BALL)], []
+    for i, kind in enumerate(kinds, start=1):
+        xyz, rpy, axis = rng.uniform(-0.4, 0.4, (3, 3)) * [[1], [5], [1]]
+        texts = [" ".join(map(repr, v.tolist())) for v in (xyz, rpy, axis)]
+        more = f"<origin xyz='{texts[0]}' rpy='{texts[1]}'/><axis xyz='{texts[2]}'/>"
+        parts += [link(f"l{i}", BALL), joint(f"q{i}", f"l{i - 1}", f"l{i}", kind, more)]
+        x, y, z = np.eye(3)
+        mount = rotation(z, rpy[2]) @ rotation(y, rpy[1]) @ rotation(x, rpy[0])
+        steps.append((kind, transform(mount, xyz), axis))
+    robot = load_robot(written(tmp_path, *parts))
+    assert [j.name for j in robot.joints] == [
+        f"q{i}" for i, kind in enumerate(kinds, start=1) if kind != "fixed"
+    ]
+    assert [j.limits for j in robot.joints if j.turns].count(None) == 1
+    q = rng.uniform(-1, 2, len(robot.joints))
+    frames, values, pose = robot.frames(q), iter(q), np.eye(4)
+    for i, (kind, mount, axis) in enumerate(steps, start=1):
+        pose = pose @ mount
+        if kind == "prismatic":
+            pose = pose @ transform(np.eye(3), next(values) * axis / np.linalg.norm(axis))
+        elif kind != "fixed":
+            pose = pose @ transform(rotation(axis, next(values)), np.zeros(3))
+        found = frames.position("l0", f"l{i}/1", "l0")
+        assert np.abs(found - pose[:3, 3]).max() < 1e-5  # centres are short decimals
+        if i == len(steps):
+            tool = frames.position("l0", robot.tool, "l0")
+            assert np.abs(tool - pose[:3, 3]).max() < 1e-13
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_our_arms_are_feasible_at_home_and_survive_their_file(name, tmp_path) -> None:
+    srdf, excess = OWN[name]
+    imported = import_urdf(f"{name}.urdf", srdf=srdf, excess=excess)
+    robot = imported.robot
+    assert violated(robot, robot.home) == []
+    assert imported.excess <= (excess or 0.02)
+    file = tmp_path / "arm.toml"
+    file.write_text(robot_text(imported), encoding="utf-8")
+    again = load_robot(file)
+    assert repr(again) == repr(robot)
+    assert all(
+        a.name == b.name and (a.at == b.at).all()
+        for a, b in zip(again.points, robot.points, strict=True)
+    )
+    assert [b.name for b in again.boundaries] == [b.name for b in robot.boundaries]
+    q = np.random.default_rng(1).uniform(-1, 1, len(robot.joints))
+    one, other = (
+        each.frames(q).position(robot.base, robot.tool, robot.base) for each in (robot, again)
+    )
+    assert np.abs(one - other).max() < 1e-14
+
+
+def test_the_packaged_ur5_is_what_the_import_makes() -> None:
+    made = robot_text(import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01))
+    kept = resources.files("qbound") / "robots" / "ur5.toml"
+    assert kept.read_text(encoding="utf-8") == made
+    assert len(made.splitlines()) < 300
+
+
+def test_the_ur5_reaches_where_its_published_parameters_say() -> None:
+    d1, a2, a3, d4, d5, d6 = 0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823
+    robot = load_robot("ur5")
+    rng = np.random.default_rng(2)
+    for q in rng.uniform(-np.pi, np.pi, (20, 6)):
+        pose = np.eye(4)
+        table = [(d1, 0, np.pi / 2), (0, a2, 0), (0, a3, 0), (d4, 0, np.pi / 2)]
+        table += [(d5, 0, -np.pi / 2), (d6, 0, 0)]
+        for theta, (d, a, alpha) in zip(q, table, strict=True):
+            pose = pose @ transform(rotation(np.array([0, 0, 1.0]), theta), np.array([0, 0, d]))
+            pose = pose @ transform(rotation(np.array([1.0, 0, 0]), alpha), np.array([a, 0, 0]))
+        found = robot.frames(q).position("base_link", "tool0", "base_link")
+        # The URDF's base is turned by half a turn against that of the published table.
+        assert np.abs(found - pose[:3, 3] * [-1, -1, 1]).max() < 1e-12
+
+
+# --- links, pairs, chains -------------------------------------------------------------------------
+
+
+def test_pairs_are_those_of_links_that_are_no_neighbours(tmp_path) -> None:
+    parts = [link(n, BALL) for n in ("a", "b", "c", "d", "hand", "lamp")]
+    parts += [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("j3", "c", "d")]
+    parts += [joint("h", "d", "hand", "fixed"), joint("l", "a", "lamp", "fixed")]
+    robot = load_robot(written(tmp_path, *parts), chain=("a", "hand"))
+    pairs = {frozenset(name.rpartition("/")[0] for name in b.points) for b in robot.boundaries}
+    far = [("a", "c"), ("a", "d"), ("a", "hand"), ("b", "d"), ("b", "hand")]
+    assert pairs == set(map(frozenset, [*far, ("lamp", "c"), ("lamp", "d"), ("lamp", "hand")]))
+    assert {p.name: p.frame for p in robot.points}["hand/1"] == "d"
+    assert robot.tool == "hand"
+    srdf = written(
+        tmp_path,
+        "<disable_collisions link1='d' link2='a'/><disable_default_collisions link='lamp'/>",
+        "<enable_collisions link1='lamp' link2='c'/>",
+        "<group_state name='home' group='g'><joint name='j2' value='0.5'/></group_state>",
+        name="arm.srdf",
+    )
+    fewer = load_robot(tmp_path / "arm.urdf", chain=("a", "hand"), srdf=srdf)
+    left = {frozenset(name.rpartition("/")[0] for name in b.points) for b in fewer.boundaries}
+    assert left == set(map(frozenset, [*far, ("lamp", "c")])) - {frozenset("ad")}
+    assert fewer.home.tolist() == [0, 0.5, 0]
+
+
+def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
+    file = three_links(tmp_path)
+    assert load_robot(file).joints[1].limits == (-1, 2)
+    turned = load_robot(file, limits={"k": (-7.0, 7.0)})
+    assert turned.joints[1].limits == pytest.approx((-7, 7), rel=1e-15)
+    assert turned.joints[1].velocity == pytest.approx(3, rel=1e-15)
+    high = "<limit lower='0.5' upper='2'/>"
+    assert load_robot(three_links(tmp_path, high)).home.tolist() == [0, 0.5]
+
+
+def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
+    parts = [link(n, BALL) for n in "abcx"]
+    parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]
+    file = written(tmp_path, *parts)
+    with pytest.raises(RobotFileError, match="2 links could be the last one: c, x; name it"):
+        load_robot(file)
+    assert main(["import", str(file), "--to", "c", "-o", str(tmp_path / "arm.toml")]) == 0
+    assert "Not in the chain, and not kept clear of: x." in capsys.readouterr().out
+    text = (tmp_path / "arm.toml").read_text()
+    assert "# Not in the chain, and not kept clear of: x." in text
+    assert "SHA-256" in text
+
+
+# --- what is refused ------------------------------------------------------------------------------
+
+BOMB = """<?xml version="1.0"?>
+<!DOCTYPE lolz [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
+<robot name="&b;"/>"""
+ELSEWHERE = """<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/hostname">]><robot name="&x;"/>"""
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (BOMB.encode(), "line 2: <!DOCTYPE> found"),
+        (ELSEWHERE.encode(), "line 1: <!DOCTYPE> found"),
+        (BOMB.encode("utf-16"), "not UTF-8 text"),
+        (b'<?xml version="1.0" encoding="utf-7"?>\n<robot name="+ADw-"></robot>', "no <link>"),
+        (b"", "not XML"),
+        (b"<robot name='x'><link name='a'></robot>", "not XML"),
+        (b"<sdf/>", "<sdf> found; wanted: <robot>"),
+        (b"<robot name='x' xmlns:xacro='http://ros.org/xacro'><xacro:a/></robot>", "a xacro macro"),
+        (b"\xff\xfe\x00", "not UTF-8 text"),
+    ],
+)
+def test_a_file_that_is_no_urdf_is_refused_unread(tmp_path, content, says) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_bytes(content)
+    with pytest.raises(RobotFileError) as error:
+        load_robot(file)
+    assert says in str(error.value)
+    assert "arm.urdf" in str(error.value)
+
+
+TWO = [link("a", BALL), link("b", BALL)]
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ([*TWO, link("a"), joint("j", "a", "b")], "line 4: link 'a': the name 'a' is used twice"),
+        ([*TWO, joint("j", "a", "b"), joint("j", "a", "b")], "the name 'j' is used twice"),
+        ([*TWO, joint("j", "a", "b"), joint("k", "a", "b")], "a tree, without closed loops"),
+        ([*TWO, joint("j", "a", "b"), joint("k", "b", "a")], "joints run in a circle"),
+        ([*TWO, joint("j", "b", "b")], "closes a circle"),
+        ([*TWO, link("c"), joint("j", "a", "b")], "2 links hang on no joint: a, c"),
+        ([*TWO, joint("j", "a", "z")], "line 4: joint 'j': no link 'z'; there are a, b"),
+        ([*TWO, joint("j", "a", "b", "helical")], "type 'helical' is unknown"),
+        ([*TWO, joint("j", "a", "b", "floating")], "a floating joint has more than one degree"),
+        ([*TWO, joint("j", "a", "b", "planar")], "a planar joint has more than one degree"),
+        ([*TWO, joint("j", "a", "b", "fixed")], "no joint moves between 'a' and 'b'"),
+        ([*TWO, joint("j", "a", "b", more="<axis xyz='0 0 0'/>")], "0 0 0 has no direction"),
+        ([*TWO, joint("j", "a", "b", more="<axis xyz='0 nan 1'/>")], "wanted: 3 finite numbers"),
+        ([*TWO, joint("j", "a", "b", more="<origin xyz='0 1'/>")], "wanted: 3 finite numbers"),
+        ([*TWO, joint("j", "a", "b", more="<origin xyz='0 1_0 0'/>")], "wanted: 3 finite numbers"),
+        ([*TWO, joint("j", "a", "b", more="<limit effort='1'/>")], "without limits; give them"),
+        (
+            [*TWO, joint("j", "a", "b", "prismatic", "<limit velocity='1'/>")],
+            "a prismatic joint without limits; give them: --limits j=LOW..HIGH",
+        ),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='inf' upper='1'/>")], "finite number"),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "do not rise"),
+        ([*TWO, joint("j", "a", "b", more="<mimic joint='z'/>")], "joint 'z' (mimic)"),
+        ([link("a", BALL.replace("0.05", "-1")), link("b"), joint("j", "a", "b")], "is no size"),
+        ([link("a", BALL.replace("sphere", "cone")), link("b")], "<cone> found; wanted: one of"),
+        (
+            [link(f"l{i}") for i in range(12)]
+            + [joint(f"j{i}", f"l{i}", f"l{i + 1}") for i in range(11)],
+            "11 joints move between 'l0' and 'l11'; at most 9 are possible",
+        ),
+    ],
+)
+def test_what_no_arm_can_be_is_refused_with_its_place(tmp_path, capsys, parts, says) -> None:
+    file = written(tmp_path, *parts)
+    with pytest.raises(RobotFileError) as error:
+        load_robot(file)
+    assert says in str(error.value)
+    assert main(["import", str(file), "-o", str(tmp_path / "out.toml")]) == 2
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "out.toml").exists()
+
+
+def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
+    file = three_links(tmp_path)
+    for asked, says in [
+        ({"chain": ("c", "a")}, "'a' is not carried by 'c'; a chain runs outward"),
+        ({"chain": ("a", "z")}, "no link 'z'; there are a, b, c"),
+        ({"limits": {"z": (0, 1)}}, "limits of 'z': the chain has j, k"),
+        ({"limits": {"k": (1, 0)}}, "do not rise"),
+        ({"limits": {"k": (-4000, 4000)}}, "turns wide"),
+        ({"excess": float("nan")}, "a length above 0 is wanted"),
+        ({"srdf": tmp_path / "no.srdf"}, "no.srdf: No such file"),
+    ]:
+        with pytest.raises(ValueError, match=says):
+            load_robot(file, **asked)
+    with pytest.raises(ValueError, match="srdf: for a URDF only"):
+        load_robot("ur5", srdf="ur5.srdf")
+    assert main(["import", str(file), "--limits", "k=0..nan", "-o", "-"]) == 2
+    assert main(["region", str(file), "--json", "-"]) in (0, 1)
+
+
+# --- meshes ---------------------------------------------------------------------------------------
+
+CORNERS = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]])
+TETRAHEDRON = CORNERS[[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]]
+
+
+def stl(triangles: np.ndarray) -> str:
+    lines = ["solid x"]
+    for triangle in triangles.tolist():
+        corners = "".join(f"vertex {x} {y} {z}\n" for x, y, z in triangle)
+        lines.append(f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet")
+    return "\n".join([*lines, "endsolid x"])
+
+
+def with_mesh(folder: Path, name: str, more: str = "") -> Path:
+    folder.mkdir(exist_ok=True)
+    mesh = f"<collision><geometry><mesh filename='{name}' {more}/></geometry></collision>"
+    return written(folder, link("a", mesh), link("b"), joint("j", "a", "b"))
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../out.stl", "package://../out.stl", "file:///etc/hostname", "/etc/hostname", "sub/out.stl"],
+)
+def test_a_mesh_elsewhere_is_not_opened(tmp_path, name) -> None:
+    (tmp_path / "out.stl").write_text(stl(TETRAHEDRON))
+    file = with_mesh(tmp_path / "arm", name)
+    (tmp_path / "arm" / "sub").mkdir()
+    (tmp_path / "arm" / "sub" / "out.stl").symlink_to(tmp_path / "out.stl")
+    with pytest.raises(RobotFileError, match="leads outside of the URDF's folder"):
+        load_robot(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("missing.stl", "no file 'missing.stl'"),
+        ("package://p/missing.stl", "say where its package is"),
+        ("https://example.org/a.stl", "nothing is fetched"),
+        ("bad.stl", "not read|triangles|finite"),
+        ("nan.stl", "a corner is not a finite number"),
+        ("a.step", "unknown ending"),
+        ("entity.dae", "has a document type"),
+    ],
+)
+def test_a_mesh_that_cannot_be_used_is_named(tmp_path, name, says) -> None:
+    (tmp_path / "bad.stl").write_bytes(b"\x00" * 90)
+    (tmp_path / "nan.stl").write_text(stl(TETRAHEDRON).replace("0.1", "nan", 1))
+    (tmp_path / "a.step").write_text("x")
+    (tmp_path / "entity.dae").write_text("<!DOCTYPE x [<!ENTITY a 'b'>]><COLLADA/>")
+    with pytest.raises(RobotFileError, match=says):
+        load_robot(with_mesh(tmp_path, name))
+
+
+def test_a_mesh_of_a_package_is_covered_and_scaled(tmp_path) -> None:
+    (tmp_path / "p" / "meshes").mkdir(parents=True)
+    (tmp_path / "p" / "meshes" / "a.stl").write_text(stl(TETRAHEDRON))
+    file = with_mesh(tmp_path / "arm", "package://p/meshes/a.stl", "scale='1 2 -1'")
+    for folder in (tmp_path, tmp_path / "p"):
+        imported = import_urdf(file, packages=[folder])
+        balls = [point for point in imported.robot.points if point.radius]
+        weights = np.random.default_rng(3).dirichlet(np.ones(3), 3000)
+        places = (weights @ TETRAHEDRON).reshape(-1, 3) * [1, 2, -1]
+        gaps = [np.linalg.norm(places - ball.at, axis=1) - ball.radius for ball in balls]
+        assert np.min(gaps, axis=0).max() <= 0
+        assert "of a mesh all triangles are covered" in imported.notes[1]
+        assert [source.name for source in imported.sources] == ["arm.urdf", "a.stl"]
+
+
+def test_a_packaged_file_is_found_by_its_name() -> None:
+    assert packaged_or_path("ur5.urdf").is_file()
+    assert packaged_or_path("./ur5.urdf") == Path("ur5.urdf")

@@ -1,0 +1,261 @@
+"""Why a plan fails: a path that a judge of its own follows, or what separates both ends."""
+
+import json
+import math
+import tomllib
+from importlib import resources
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from jsonschema import validate
+
+from qbound import check, load_robot
+from qbound.arms.answers import why_document, why_lines
+from qbound.arms.search import find_path
+from qbound.arms.why import least_margins, why
+from qbound.cli import main
+from qbound.figures.why import why_picture
+from qbound.model.robotfile import parse_robot, robot_text
+from qbound.proofs import check_arb
+from support import brute_force
+from support.elbow import arm
+
+BODIES = "two-links-on-a-table"
+START, GOAL = [0.0, 1.0, 0.0], [0.3, 4.0, 0.0]
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "arm.toml"
+    path.write_text(arm())
+    return path
+
+
+def valid(found):
+    document = why_document(found)
+    schema = resources.files("qbound") / "schemas" / "why.schema.json"
+    validate(json.loads(json.dumps(document)), json.loads(schema.read_text()))
+    return document
+
+
+def is_kept(text, path):
+    """Follow a path densely, by an evaluator that shares no code."""
+    table = tomllib.loads(text)
+    q = np.concatenate([np.linspace(a, b, 500) for a, b in pairwise(path)])
+    q[:, [j["type"] == "revolute" for j in table["joint"]]] *= 180 / math.pi
+    return min(m.min() for m in brute_force.margins(table, {"margin": "0"}, q).values())
+
+
+# --- answers --------------------------------------------------------------------------------------
+
+
+def test_an_elbow_that_cannot_pass_is_named_with_its_links_and_its_range(file):
+    found = why(file, START, GOAL)
+    assert found.answer == "separated"
+    assert found.separation.travel.name == "elbow"
+    (said, ranges, again) = why_lines(found)
+    assert "156.93 to 203.07 deg, where upper arm and forearm meet" in said
+    assert "3 ranges: -360 to -203.07 deg, -156.93 to 156.93 deg (start)" in ranges
+    assert "-130.817 deg" in again  # the goal a turn back
+    assert not check.check(found.certificate.text).refuted
+    assert valid(found)["separation"]["blocked"][0]["links"] == ["upper arm, forearm"]
+
+
+def test_a_straight_line_that_is_free_is_the_path(file):
+    found = why(file, START, [2.0, -1.0, 1.0])
+    assert found.answer == "connected"
+    assert np.allclose(found.path, [START, [2.0, -1.0, 1.0]])
+    assert 0 < float(found.margin) <= found.least
+    assert is_kept(arm(), found.path) > 0
+    assert check_arb.verify(found.certificate.text) == "proved"
+    assert valid(found)["path"]["proved_margin"] == float(found.margin)
+
+
+ROUND = """[[point]]
+name = "post/1"
+frame = "base"
+at = [1.5, 0, 0.5]
+radius = 0.45
+
+[[boundary]]
+name = "post"
+type = "pair"
+points = ["post/1", "tool/1"]
+"""
+"""A ball in the way of the stretched arm as its shoulder turns: one has to fold the elbow."""
+
+
+def test_a_path_round_something_is_found_and_proved(tmp_path):
+    text = arm() + ROUND
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+    assert found.answer == "connected"
+    assert len(found.path) > 2
+    assert is_kept(text, found.path) > 0
+    assert check.check(found.certificate.text).refuted is False
+    lines = list(why_lines(found))
+    assert len(lines) == 1 + len(found.path)
+
+
+def test_held_joints_separate_what_others_do_not(tmp_path):
+    """With elbow and wrist held straight the shoulder meets the post; it cannot go round either."""
+    text = (arm() + ROUND).replace("limits = [-360, 360]", "limits = [-120, 120]", 1)
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], hold=True)
+    assert found.answer == "separated"
+    assert found.separation is None
+    assert found.certificate is None
+    (said,) = why_lines(found)
+    assert "while elbow, wrist are held" in said
+    assert valid(found)["held"] == ["elbow", "wrist"]
+    assert why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).answer == "connected"
+
+
+def test_a_component_of_two_joints_that_no_joint_parts_is_separated_by_a_paving():
+    """The five components of the paper's robot: joints part four, the floor the fifth."""
+    from qbound import find_region
+
+    centres = [c.centroid for c in find_region(load_robot("minervabot-v2")).components]
+    found = [why("minervabot-v2", centres[0], centre) for centre in centres[1:]]
+    assert {each.answer for each in found} == {"separated"}
+    for each in found:
+        valid(each)
+        assert (each.separation is None) == (each.certificate is None)
+
+
+def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file):
+    found = why(file, [0, math.pi, 0], [0, 0, 4.0])
+    assert found.answer == "infeasible"
+    assert [row[:2] for row in found.violated] == [(1, "wrist.upper"), (0, "folded")]
+    first, second = why_lines(found)
+    assert "the start violates upper arm, forearm, by 0.2 m (boundary folded)" in first
+    assert "the goal violates wrist.upper, by 49.1831 deg" in second
+    assert check.check(found.certificate.text).refuted
+    assert valid(found)["answer"] == "infeasible"
+
+
+def test_boundaries_about_bodies_are_left_to_the_search(monkeypatch):
+    from qbound.arms import why as module
+
+    robot = load_robot(BODIES)
+    goal = robot.home + 0.05
+    found = why(BODIES, robot.home, goal)
+    assert found.answer == "connected"
+    assert check_arb.verify(found.certificate.text) == "proved"
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    found = why(BODIES, robot.home, goal)
+    assert found.answer == "undecided"
+    assert "pavings know no boundaries about bodies" in found.tried
+    assert "bodies were not looked at" in found.tried[0]
+
+
+def test_what_nothing_decides_is_not_decided(file, monkeypatch):
+    from qbound.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "MOST_PAVED", 1)
+    found = why(file, START, [2.0, -1.0, 1.0])
+    assert found.answer == "undecided"
+    lines = list(why_lines(found))
+    assert lines[0].startswith("not decided")
+    assert any("a paving takes 1 joints; the ends differ in 3" in line for line in lines)
+    valid(found)
+
+
+def test_a_path_that_cannot_be_proved_is_no_answer(file, monkeypatch):
+    from qbound.arms import why as module
+
+    through = np.array([START, [0.2, math.pi, 0], [0.2, 1.2, 0]])
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: through)
+    monkeypatch.setattr(module, "MOST_PAVED", 0)
+    assert why(file, START, [0.2, 1.2, 0]).answer == "undecided"
+
+
+# --- the search -----------------------------------------------------------------------------------
+
+
+def test_the_same_seed_finds_the_same_path(tmp_path):
+    robot = parse_robot(tomllib.loads(arm() + ROUND))
+    ends = [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+    paths = [find_path(robot, *ends, seed) for seed in (1, 1, 2)]
+    assert np.array_equal(paths[0], paths[1])
+    assert not np.array_equal(paths[0], paths[2])
+
+
+def test_a_joint_without_limits_goes_the_short_way_round():
+    robot = parse_robot(tomllib.loads(arm("")))
+    path = find_path(robot, [0, 2.5, 0], [0, 2.5 - math.tau, 0])
+    assert path.tolist() == [[0, 2.5, 0], [0, 2.5, 0]]
+
+
+def test_a_search_that_cannot_succeed_ends(file):
+    robot = parse_robot(tomllib.loads(arm()))
+    assert find_path(robot, START, GOAL, tries=60) is None
+
+
+def test_margins_along_a_path_are_those_of_the_robot(file):
+    robot = load_robot(file)
+    s, margins = least_margins(robot, np.array([START, [0, 2.0, 0]]), 10)
+    assert s[-1] == pytest.approx(1.0)
+    assert margins[-1] == pytest.approx(math.sqrt(0.5 + 0.5 * math.cos(2)) - 0.2)
+
+
+# --- picture and command --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("goal", [GOAL, [2.0, -1.0, 1.0], [0.0, 3.1, 0.0]])
+def test_there_is_a_picture_of_every_answer_and_always_the_same(file, goal):
+    found = why(file, START, goal)
+    picture = why_picture(found)
+    assert picture.startswith(b"<?xml")
+    assert picture == why_picture(found)
+
+
+ARGUMENTS = [
+    (["1rad", "0", "0", "4rad"], 1, "elbow cannot get"),
+    (["1rad", "0", "0", "-1rad"], 0, "connected: a straight line"),
+    (["1rad", "0", "0", "180"], 1, "infeasible: the goal"),
+    (["1rad", "0", "0"], 2, "5 values; two configurations have 6"),
+    (["1rad", "0", "0", "nan"], 2, "no value"),
+]
+
+
+@pytest.mark.parametrize(("values", "status", "said"), ARGUMENTS)
+def test_the_command_says_it_and_its_status_too(file, capsys, values, status, said):
+    assert main(["why", str(file), "0", *values, "0"]) == status
+    found = capsys.readouterr()
+    assert said in found.out + found.err
+
+
+def test_the_command_writes_certificate_document_and_picture(file, tmp_path, capsys):
+    files = [tmp_path / name for name in ("c.json", "w.json", "w.svg")]
+    values = ["0", "1rad", "0", "0", "4rad", "0"]
+    named = zip(("-o", "--json", "--svg"), map(str, files), strict=True)
+    options = [word for pair in named for word in pair]
+    assert main(["why", str(file), *values, *options]) == 1
+    capsys.readouterr()
+    assert main(["check", str(files[0]), str(file), "--arb"]) == 0
+    said = capsys.readouterr().out
+    assert "no path from" in said
+    assert "python-flint: proved" in said
+    assert json.loads(files[1].read_text())["answer"] == "separated"
+    assert files[2].read_bytes().startswith(b"<?xml")
+
+
+def test_the_command_refuses_what_it_cannot_write(file, tmp_path, capsys):
+    values = ["0", "1rad", "0", "0", "4rad", "0"]
+    assert main(["why", str(file), *values, "--svg", str(tmp_path / "picture.jpeg")]) == 2
+    assert main(["why", str(file), *values, "--seed=-1"]) == 2
+    assert main(["why", str(file), *values, "--json", str(tmp_path / "no" / "w.json")]) == 2
+    assert not list(tmp_path.glob("*.jpeg"))
+    capsys.readouterr()
+
+
+def test_the_paper_robot_is_as_its_text(capsys):
+    text, _ = robot_text("minervabot-v2")
+    assert main(["why", "minervabot-v2", "0", "0", "20", "30", "--json", "-"]) == 0
+    path = np.array(json.loads(capsys.readouterr().out)["path"]["corners"])
+    assert is_kept(text, path) > 0
