@@ -1,4 +1,4 @@
-"""Measures over one or two numbers of a design: a curve, or a map, for each of them."""
+"""Measures over one or two numbers of a design: dots, or a map, for each of them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def sweep_picture(found: Swept, kind: str = "svg") -> bytes:
         for ax, (name, values) in zip(panels, found.values.items(), strict=True):
             shown = values.reshape([len(found.axes[k]) for k in moving])
             if len(moving) == 1:
-                _draw_curve(ax, found.axes[moving[0]], shown)
+                _draw_dots(ax, found.axes[moving[0]], shown)
                 ax.set_ylabel(_label(name, found.measure_unit(name)))
             else:
                 _draw_map(ax, [found.axes[k] for k in moving], shown)
@@ -52,9 +52,12 @@ def sweep_picture(found: Swept, kind: str = "svg") -> bytes:
     return picture(len(found.values), draw, kind)
 
 
-def _draw_curve(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
-    """Draw a measure over one number; where it has no value there is a gap and a cross below."""
-    ax.plot(x, y, "-", marker=".", color=INK)
+def _draw_dots(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
+    """Draw a measure over one number, a dot an arm; where it has no value there is a cross below.
+
+    No line joins the dots: between two arms a measure may jump, and nothing was computed.
+    """
+    ax.plot(x, y, ".", color=INK)
     if np.isfinite(y).any():
         ax.plot(x[np.nanargmax(y)], np.nanmax(y), "P", color=INK, ms=9, mec="white", zorder=7)
     gone = x[np.isnan(y)]
@@ -79,4 +82,4 @@ def _axis_label(found: Swept, k: int) -> str:
 def _label(name: str, unit: str) -> str:
     half = MOST_LETTERS // 2
     short = name if len(name) <= MOST_LETTERS else f"{name[:half]}...{name[-half:]}"
-    return as_text(short if unit == "1" else f"{short} / {unit}")
+    return as_text(short if unit == "1" else f"{short} / {unit.replace('^2', '²')}")
