@@ -16,13 +16,17 @@ from scipy.spatial.transform import Rotation
 
 from qbound.arms.allowed import Contact, allowed_collisions
 from qbound.arms.allowed_report import allowed_document, disabling_reason, srdf_text
+from qbound.arms.everywhere import apart_everywhere, touching_everywhere
 from qbound.arms.links import link_of, link_pair, links
+from qbound.arms.pair_forms import pair_forms
 from qbound.cli import main
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import save_robot
 from qbound.proofs.balls import precision
 from qbound.proofs.dyadic import magnitude
+from qbound.proofs.exact import exact_robot
+from qbound.proofs.verdict import Verdict
 
 Z = (0.0, 0.0, 1.0)
 
@@ -197,6 +201,24 @@ def test_a_slit_of_a_millionth_is_not_always() -> None:
         rim = ball("rim/1", "1", (1, 0, 0), 0.1)
         found = only(arm([joint(Revolute, 0, limits=(-0.7, 0.7))], [*posts, rim]))
         assert found.contact is contact
+
+
+def test_the_provers_alone_prove_nothing_that_is_false() -> None:
+    """Without the search for witnesses, which would find these places first."""
+    robot = exact_robot(wheel(0.1, -1e-6, (-3.0, 2.0)))  # in contact off every centre
+    pair = pair_forms(robot, *links(robot))
+    assert apart_everywhere(pair, 0.0, 100_000).verdict is not Verdict.PROVED
+    robot = exact_robot(wheel(0.1, 1e-6))
+    pair = pair_forms(robot, *links(robot))
+    assert apart_everywhere(pair, 0.0, 100_000).verdict is Verdict.PROVED
+    assert apart_everywhere(pair, 2e-6, 100_000).verdict is not Verdict.PROVED
+    narrow = exact_robot(wheel(0.6, -1.2, (-1.2, 1.2871)))  # apart from 1.287 rad on
+    pair = pair_forms(narrow, *links(narrow))
+    assert touching_everywhere(pair, 100_000).verdict is not Verdict.PROVED
+    narrow = exact_robot(wheel(0.6, -1.2, (-1.2, 1.2869)))
+    assert touching_everywhere(pair_forms(narrow, *links(narrow)), 100_000).verdict is (
+        Verdict.PROVED
+    )
 
 
 def test_what_touches_in_one_place_is_neither_never_nor_always() -> None:

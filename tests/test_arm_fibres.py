@@ -14,7 +14,7 @@ from qbound.boundary.evaluator import evaluator
 from qbound.region import find_region
 from support.ball_arms import arm_of_balls, drawn
 
-SEEDS = range(10)
+SEEDS = range(8)
 ROWS, STEPS = 8, 400
 
 

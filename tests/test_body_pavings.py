@@ -21,16 +21,16 @@ def table():
     return exact_problem(exact_robot(TABLE))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_brackets_hold_areas_and_cells_are_what_shapely_says(seed):
     make = scenes.drawn_scene if seed % 2 else scenes.random_scene
-    robot = make(seed if seed % 2 else seed + 8)
-    paving = pave(exact_problem(exact_robot(robot)), 0.1, most=4000)
+    robot = make(seed if seed % 2 else seed + 20)
+    paving = pave(exact_problem(exact_robot(robot)), 0.15, most=1000)
     inner, outer = (float(x) for x in paving.bracket)
     assert inner - 1e-9 <= find_region(robot).area <= outer + 1e-9
     for cells, hit in ((paving.feasible, False), (paving.infeasible, True)):
-        places = np.concatenate([np.zeros((0, 2)), *(within(paving, own, seed) for own in cells)])
-        assert (scenes.hits(robot, places) == hit).all()
+        for own in cells:
+            assert (scenes.hits(robot, within(paving, own, seed)) == hit).all()
 
 
 def within(paving: Paving, cells, seed: int) -> np.ndarray:

@@ -130,6 +130,27 @@ function brokenWords() {
     .filter(Boolean);
 }
 
+// An id of the ledger, a number and its unit, and a link that is a name and a number: on one line.
+const ON_ONE_LINE =
+  /(?<![\w.])(?:[A-Z]{1,2}-\d[\d.]*(?<!\.)|(?:Table|Figure|Theorem) N?\d+|\d[\d.]* (?:cm|rad)²?)(?!\w)/g;
+
+function brokenNames() {
+  return [...document.querySelectorAll(".bd-article :is(p, li, td, figcaption)")]
+    .filter((block) => block.checkVisibility() && !block.closest(".play"))
+    .flatMap((block) => [...textsOf(block)])
+    .filter(({ text }) => !text.parentElement?.closest("pre"))
+    .flatMap(({ text }) =>
+      [...text.data.matchAll(ON_ONE_LINE)].map((name) => {
+        const range = document.createRange();
+        range.setStart(text, name.index);
+        range.setEnd(text, name.index + name[0].length);
+        const lines = new Set([...range.getClientRects()].map(({ bottom }) => Math.round(bottom)));
+        return lines.size > 1 ? name[0] : "";
+      }),
+    )
+    .filter(Boolean);
+}
+
 // A picture of panels side by side is whole where there is room; on a phone each panel has the page, as a picture of one column has.
 function smallPanels() {
   const page = document.querySelector(".bd-article")?.clientWidth ?? 0;

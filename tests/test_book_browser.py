@@ -36,6 +36,7 @@ LAYOUT = [
     "tornPunctuation",
     "cutFormulas",
     "brokenWords",
+    "brokenNames",
     "smallPanels",
 ]
 QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
@@ -141,6 +142,11 @@ def test_a_wide_screen_cuts_no_formula_of_a_line(seen):
 @pytest.mark.parametrize("width", WIDTHS)
 def test_titles_of_the_neighbouring_pages_break_between_words(seen, width):
     assert seen.layout["brokenWords", width] == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_an_id_a_numbered_name_and_a_number_with_its_unit_stay_on_one_line(seen, width):
+    assert seen.layout["brokenNames", width] == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)

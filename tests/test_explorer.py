@@ -17,7 +17,8 @@ import shapely
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
-from qbound import find_region, load_robot
+from qbound import find_region, load_robot, packaged_robots
+from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
 from qbound.explorer.data import explorer_data
@@ -27,8 +28,8 @@ from qbound.model.robotfile import parse_robot
 from qbound.paths.traversal import traverse
 from qbound.region import paper_rule, violated
 from qbound.workspace.planar import planar_arm, postures
+from support import scenes
 from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
-from support.robots import OF_POINTS
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"
 POSES = 3000
@@ -83,6 +84,77 @@ def test_margins_are_the_librarys(name):
     for b in [robot.boundary(n) for n in names]:
         values = [next(r["value"] for r in rows if r["name"] == b.name) for rows in found]
         assert np.array_equal(np.array(values) > 0, clearance(robot, b)(q) > 0)
+
+
+@cache
+def among_obstacles(seed):
+    """A scene of capsules, polygons and discs, every fourth of the same two kinds of joints."""
+    robot = scenes.random_scene(seed, 3)
+    region = find_region(robot)
+    return robot, region, Script(explorer_data(region))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_margins_of_bodies_are_the_librarys_and_the_nearest_places_show_them(seed):
+    robot, _, script = among_obstacles(seed)
+    q = poses(script.data, 60)
+    compiled = evaluator(robot, limits=False)
+    found = script("all.map((q) => margins(robot, q))", all=q.tolist())
+    own = {row["name"]: [] for row in found[0]}
+    for rows in found:
+        for row in rows:
+            own[row["name"]].append(row["value"])
+    expected = dict(zip(compiled.names, compiled.margins(q).T, strict=True))
+    for name, values in expected.items():
+        assert_allclose(own[name], values, atol=1e-12)
+    places = """all.map((q) => { const placed = placedParts(robot, framesOf(robot, q));
+        return robot.boundaries.filter((wall) => wall.kind === "bodies")
+            .map((wall) => [wall.name, bodiesEncounter(wall, placed).places]); })"""
+    for k, row in enumerate(script(places, all=q.tolist())):
+        for name, (one, other) in row:
+            asked = robot.boundary(name).clearance
+            gap = np.hypot(*np.subtract(one, other)) - asked
+            if expected[name][k] + asked > 0:
+                assert gap == pytest.approx(expected[name][k], abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_fibres_of_a_scene_are_free_where_the_library_says(seed):
+    _, region, script = among_obstacles(seed)
+    pairs = poses(script.data, 50)[:, script.data["free"]]
+    script.context.eval("const problem = sliceProblem(robot, robot.q);")
+    found = script(
+        """all.map(([first, second]) => fibre(problem, first)
+            .some(({ low, high }) => low.at < second && second < high.at))""",
+        all=pairs.tolist(),
+    )
+    margin = region.margins(pairs).min(axis=-1)
+    clear = np.abs(margin) > 1e-9
+    assert np.array_equal(np.array(found)[clear], (margin > 0)[clear])
+    assert 2 < np.sum(found) < 48
+
+
+def test_a_free_interval_ends_where_two_bodies_touch():
+    robot, _, script = among_obstacles(0)
+    script.context.eval("const asked = sliceProblem(robot, robot.q);")
+    compiled, count = evaluator(robot), 0
+    for first in np.linspace(-3, 3, 9):
+        for interval in script("fibre(asked, first)", first=first):
+            for end in (interval["low"], interval["high"]):
+                if end["by"] >= 0:
+                    name = script("asked.names[by]", by=end["by"])
+                    margin = compiled.margins([first, end["at"]])[compiled.names.index(name)]
+                    assert abs(margin) < 1e-8
+                    count += 1
+    assert count > 4
+
+
+def test_arcs_of_bodies_say_which_features_touch():
+    _, region, script = among_obstacles(0)
+    arcs = [arc for c in script.data["components"] for loop in c["loops"] for arc in loop]
+    exact = [arc for c in region.components for loop in c.loops for arc in loop]
+    assert [arc["feature"] for arc in arcs] == [arc.feature for arc in exact]
+    assert any(" on " in arc["feature"] for arc in arcs)
 
 
 @pytest.mark.parametrize("name", ROBOTS | SPATIAL)
@@ -363,7 +435,7 @@ def parts(page):
     return parser
 
 
-@pytest.mark.parametrize("name", OF_POINTS)
+@pytest.mark.parametrize("name", packaged_robots())
 def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
     file = tmp_path / "arm.html"
     assert main(["explore", name, "-o", str(file)]) in (0, 1)

@@ -58,6 +58,7 @@ function holdPunctuation() {
 const WHOLE =
   /(?<![\w.])(?:[A-Z]{1,2}-\d[\d.]*\d|[A-Z]{1,2}-\d|(?:[Cc]hapter|Tables?|Figures?|Theorem) N?\d+|\d[\d.]* (?:cm²?|mm²?|m²?|rad²?|deg²|%))(?!\w)/g;
 const PROSE = ".bd-article :is(p, li, dd, td, figcaption)";
+const WHOLE_ALREADY = ".unbroken, .math, pre, svg, .play";
 
 function holdNames() {
   for (const block of document.querySelectorAll(PROSE)) {
@@ -65,8 +66,7 @@ function holdNames() {
     const texts = [];
     while (walk.nextNode()) texts.push(walk.currentNode);
     for (const text of texts) {
-      if (!(text instanceof Text) || text.parentElement?.closest(".unbroken, .math, pre, svg, .play"))
-        continue;
+      if (!(text instanceof Text) || text.parentElement?.closest(WHOLE_ALREADY)) continue;
       const parts = text.data.split(WHOLE);
       const names = text.data.match(WHOLE);
       if (!names) continue;
@@ -153,7 +153,8 @@ function repairNames() {
 
 // A module's name is long for a phone and for a side bar: it may break after a dot or a low line.
 const NAMES =
-  ".prev-next-title, .bd-article :is(h1, cite), .bd-sidebar-primary nav a, #traceability td .pre";
+  ".prev-next-title, .bd-article :is(h1, cite), .bd-sidebar-primary nav a, " +
+  "#traceability td:last-child .pre, .results-table :is(th a, summary)";
 
 function breakNames() {
   for (const name of document.querySelectorAll(NAMES)) {

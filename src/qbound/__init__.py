@@ -4,10 +4,10 @@ A robot file becomes a robot, the robot gives boundary functions, and these are 
 `find_region` solves them for every component of the safe region. The method is that of
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
-The mathematics: `geometry`, `forms`, `model`, `boundary`, `region`, and `tolerances`.
+The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
-`sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Before it: `urdf`. Beside all: `units`,
-`symbols`, `files`, `printable`, `extras`, `version`.
+`sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
+`printable`, `extras`, `version`.
 """
 
 from qbound.boundary.functions import clearance, components, pair_vector
@@ -15,14 +15,13 @@ from qbound.forms.circle import circle_arc, circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-from qbound.region import Region, Slices, find_region, find_slices, margins, violated
+from qbound.region import Region, find_region, find_slices, margins, violated
 
 __all__ = [
     "HarmonicForm",
     "Region",
     "Robot",
     "RobotFileError",
-    "Slices",
     "circle_arc",
     "circle_roots",
     "clearance",

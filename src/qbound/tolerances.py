@@ -142,3 +142,8 @@ OUTWARD: Final = 2.0**-44
 
 A distance, and a corner halved sixty times, are each right to some 70 units in the last place of
 the largest coordinate, 2**-46 of it; what covers by this much more covers in exact numbers."""
+
+PARALLEL: Final = 1e-9
+"""Cosine of the angle of two axes, beside 1, under which a file means them to be parallel.
+
+Quarter turns are written with six digits or more: a cosine beside 1 is then right to 1e-12."""

@@ -131,6 +131,7 @@ interface ScalePictures {
   joints: Picture;
   inside: SVGPathElement;
   lines: SVGPathElement[];
+  arrows: SVGPathElement[];
   numbers: SVGTextElement[];
   dot: SVGCircleElement;
   plane: PlanePicture;

@@ -258,6 +258,8 @@ def hits(robot: Robot, q: Floats) -> NDArray[np.bool_]:
     Every pair is asked of shapely only where boxes round both bodies come that near. What stands
     still is placed once.
     """
+    if not len(q):
+        return np.zeros(0, dtype=np.bool_)
     placed = {
         body.name: _placed(robot, body, q[:1] if body.frame == robot.base else q)
         for body in (*robot.bodies, *robot.obstacles)

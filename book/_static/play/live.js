@@ -472,7 +472,8 @@
         shadow: layer(square, "shadow").appendChild(make("path", { class: "shadow" })),
         names: layer(square, "names"),
       };
-      const home = joints.svg.appendChild(make("path", { class: "home-mark", d: "M-6 0H6M0-6V6" }));
+      const cross = "M-8-2H-2V-8H2V-2H8V2H2V8H-2V2H-8Z"; // with a rim, to be seen on an edge, too
+      const home = joints.svg.appendChild(make("path", { class: "home-mark", d: cross }));
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
       const view = [-VIEW, VIEW];
       const fitted = picture(

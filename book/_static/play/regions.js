@@ -109,7 +109,8 @@
   function reasonOf(robot, wall) {
     const names = wall.points.map((i) => robot.points[i].name);
     if (wall.kind === "half-space") return `point ${names[0]} would pass the wall`;
-    const least = `${qboundEngine.number(wall.required, 2)} ${robot.length_unit}`;
+    const required = wall.kind === "pair" ? wall.required : wall.clearance;
+    const least = `${qboundEngine.number(required, 2)} ${robot.length_unit}`;
     return `points ${names[0]} and ${names[1]} would be nearer than ${least}`;
   }
 

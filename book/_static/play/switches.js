@@ -65,7 +65,7 @@
    * @type {(robot: Robot) => CurvedWall[]} */
   function curvedWalls(robot) {
     return robot.boundaries.flatMap((wall) => {
-      if (wall.kind === "pair") return [];
+      if (wall.kind !== "half-space") return [];
       const sizes = wall.normal.map(Math.abs);
       const component = sizes.indexOf(Math.max(...sizes)) + 1;
       const matrix = qboundEngine.restrict(wall.form, robot, robot.q);

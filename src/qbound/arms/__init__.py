@@ -11,5 +11,7 @@
   it get from here to there (separations, a path, proved, a paving), `search` (a path, looked for
   in doubles), `answers` (what was found, in sentences and as JSON);
 - `reach`: where the tool gets to; `paths` (its ways along fibres), `voxels`;
+- `reach`: the voxels that the tool goes through, and their volume; `paths`: the circle or line
+  along which a joint carries the tool; `voxels`: which ones a path goes through;
 - `reports`: what was found, as JSON and in words.
 """

@@ -150,9 +150,9 @@ def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
     >>> robot = load_robot("minervabot-v2")
     >>> found = fibres(robot, "q2", [[0.2, 0.0], [1.5, 0.0]])
     >>> [(round(i.low, 4), round(i.high, 4), i.below, i.above) for i in found[0]]
-    [(-1.2965, 0.4987, 'B1', 'B7'), (2.1962, 3.2839, 'B7', 'B3')]
+    [(-2.859, 0.7655, 'B4', 'B3'), (0.7846, 3.4127, 'B3', 'B4')]
     >>> found.length.round(4).tolist(), found.contains([-0.5, 0.0]).tolist()
-    ([2.8829, 0.0], [True, False])
+    ([6.2527, 2.9744], [True, False])
     """
     refuse_no_robot("fibres", robot)
     balls, j, q = Balls.of(robot), robot.joint_index(joint), robot.configuration(q)

@@ -57,9 +57,8 @@ def links(robot: Robot) -> tuple[Link, ...]:
     Examples
     --------
     >>> from qbound import load_robot
-    >>> links(load_robot("pp-portal"))
-    Traceback (most recent call last):
-    ValueError: Parallel-plane portal: no link has a ball, that is, a point with a radius
+    >>> [link.name for link in links(load_robot("ur5"))][:3]
+    ['base_link', 'shoulder_link', 'upper_arm_link']
     """
     if robot.bodies:
         names = ", ".join(body.name for body in robot.bodies)

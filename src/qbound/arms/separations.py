@@ -122,9 +122,11 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
 
     Examples
     --------
-    >>> travel = separations("two-joint-arm-with-walls")
-    >>> [(t.name, len(t.blocks), len(t.free)) for t in travel]
-    [('q1', 1, 1), ('q2', 1, 1)]
+    >>> shoulder, elbow = separations("two-joint-arm-with-walls")
+    >>> [(each.boundary, round(each.high, 3)) for each in shoulder.blocks[0].ranges]
+    [('elbow, floor', -2.419)]
+    >>> len(elbow.blocks)
+    0
     """
     robot = source if isinstance(source, Robot) else load_robot(source)
     named = {b.name: link_pair(robot, b) for b in robot.used}

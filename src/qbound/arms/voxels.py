@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from math import tau
@@ -56,17 +57,17 @@ def enclosed_volume(touched: Bools, edge: float) -> float:
     It is that of the voxels less their surplus, which is in proportion to the edge but for terms of
     second order: :math:`2 V_h - V_{2h}`, where the coarse voxels lie in each of eight ways.
     """
-    shifts = product((0, 1), repeat=3)
-    coarse = np.mean([coarsened(touched, shift).sum() for shift in shifts])
+    coarse = np.mean([each.sum() for each in coarsened(touched)])
     return float((2 * touched.sum() - 8 * coarse) * edge**3)
 
 
-def coarsened(touched: Bools, shift: tuple[int, ...] = (0, 0, 0)) -> Bools:
-    """Return which voxels of twice the edge are touched, set off by so many of the small ones."""
-    ends = [(s, (n + s) % 2) for n, s in zip(touched.shape, shift, strict=True)]
-    padded = np.pad(touched, ends)
-    pairs = padded.reshape([part for size in padded.shape for part in (size // 2, 2)])
-    return np.asarray(pairs.any(axis=(1, 3, 5)))
+def coarsened(touched: Bools) -> Iterator[Bools]:
+    """Yield which voxels of twice the edge are touched, as they lie in each of eight ways."""
+    for shift in product((0, 1), repeat=3):
+        ends = [(s, (n + s) % 2) for n, s in zip(touched.shape, shift, strict=True)]
+        padded = np.pad(touched, ends)
+        pairs = padded.reshape([part for size in padded.shape for part in (size // 2, 2)])
+        yield np.asarray(pairs.any(axis=(1, 3, 5)))
 
 
 class Crossed(NamedTuple):

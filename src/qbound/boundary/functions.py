@@ -7,6 +7,7 @@ symbols: the formulas of the paper are derived here, never typed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import reduce, singledispatch
 from typing import Any
 
@@ -21,6 +22,7 @@ from qbound.model.robot import (
     HalfSpace,
     Joint,
     Pair,
+    Parallelogram,
     Point,
     Robot,
     refuse_no_robot,
@@ -274,7 +276,7 @@ def _outer(left: Array, right: Array) -> Array:
 def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     """Return the sign of "first to second" and the two points, the one nearer to the base first."""
     first, second = (robot.point(name) for name in pair.points)
-    if robot.depth(first.frame) <= robot.depth(second.frame):
+    if _order(robot, first) <= _order(robot, second):
         return 1, first, second
     return -1, second, first
 
@@ -285,34 +287,66 @@ def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicF
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
     u = add_constant(u, point.at)
     squared = add_constant(np.zeros_like(u[0]), point.at @ point.at)
-    last = robot.depth(point.frame)
-    first = 0 if observer is None else robot.depth(observer)
-    if first > last:
-        raise ValueError(f"frame {observer!r} does not carry the point {name!r}")
-    for j in reversed(range(first, last)):
-        u, squared = _pass_joint(robot.joints[j], j, u, squared)
+    for j, joint in _steps(robot, point, robot.base if observer is None else observer):
+        u, squared = _pass_joint(joint, j, u, squared)
     return HarmonicForm(u, robot.kinds), HarmonicForm(squared, robot.kinds)
+
+
+def _order(robot: Robot, point: Point) -> tuple[int, int]:
+    """Say how far out a point is: by joints, and of one joint's frames the bar before the other."""
+    depth = robot.depth(point.frame)
+    labels = robot.joints[depth - 1].labels if depth else (robot.base,)
+    return depth, labels.index(point.frame)
+
+
+def _steps(robot: Robot, point: Point, observer: str) -> list[tuple[int, Joint]]:
+    """Return the joints between a point and its observer, by index, the point's first."""
+    first, last = robot.depth(observer), robot.depth(point.frame)
+    if first and observer != robot.joints[first - 1].frame:
+        first -= 1  # a bar sees what its own joint carries move
+    found = []
+    for j in reversed(range(first, last)):
+        frame = point.frame if j == last - 1 else robot.joints[j].frame
+        found += [(j, step) for step in robot.joints[j].steps(observer, frame)]
+    if robot.depth(observer) > last or (not found and observer != point.frame):
+        raise ValueError(f"frame {observer!r} does not carry the point {point.name!r}")
+    return found
 
 
 def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
-    moved, squared = MOTIONS[joint.kind](joint.axis, j, u, squared)
+    moved, squared = MOTIONS[joint.type_name](joint, j, u, squared)
     moved = np.tensordot(joint.mount, moved, axes=1)
     squared = squared + 2 * np.tensordot(joint.origin, moved, axes=1)
     squared = add_constant(squared, joint.origin @ joint.origin)
     return add_constant(moved, joint.origin), squared
 
 
-def _turn(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+def _turn(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Turn u about a unit axis by Rodrigues' formula: constant, cosine and sine part."""
-    u = np.take(u, 0, axis=j + 1)
+    axis, u = joint.axis, np.take(u, 0, axis=j + 1)
     along = np.multiply.outer(axis, np.tensordot(axis, u, axes=1))
     across = np.cross(axis, u, axisb=0, axisc=0)
     return np.stack([along, u - along, across], axis=j + 1), squared
 
 
-def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+def _circle(joint: Parallelogram, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+    """Add the turned crank c to u; |u|^2 gains 2 c . u + |c|^2."""
+    axis, crank = joint.axis, joint.crank
+    along = axis * (axis @ crank)
+    parts = [along, crank - along, np.cross(axis, crank)]
+    still = np.take(u, 0, axis=j + 1)
+    gains = [2 * np.tensordot(part, still, axes=1) for part in parts]
+    gains[0] = add_constant(np.take(squared, 0, axis=j) + gains[0], crank @ crank)
+    moved = [
+        add_constant(x, part) for x, part in zip((still, 0 * still, 0 * still), parts, strict=True)
+    ]
+    return np.stack(moved, axis=j + 1), np.stack(gains, axis=j)
+
+
+def _slide(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Add q times a unit axis to u; |u|^2 gains 2 q axis . u + q^2."""
+    axis = joint.axis
     along = np.take(np.tensordot(axis, u, axes=1), 0, axis=j)
     constant = np.take(squared, 0, axis=j)
     square = add_constant(np.zeros_like(along), 1)
@@ -322,5 +356,9 @@ def _slide(axis: Array, j: int, u: Array, squared: Array) -> tuple[Array, Array]
     return np.stack([still, slope, np.zeros_like(still)], axis=j + 1), squared
 
 
-MOTIONS = {"revolute": _turn, "prismatic": _slide}
-"""How a joint of each kind moves what it carries."""
+MOTIONS: dict[str, Callable[..., tuple[Array, Array]]] = {
+    "revolute": _turn,
+    "prismatic": _slide,
+    "parallelogram": _circle,
+}
+"""How a joint of each type moves what it carries."""

@@ -28,8 +28,7 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "region",
         help="all regions of two joints",
-        epilog="examples: qbound region minervabot-v2 --json -\n"
-        "          qbound region arm.toml --slice q4=0 --strip q3=-90deg..90deg:9 --svg strip.svg",
+        epilog="example: qbound region minervabot-v2 --json -",
     )
     add_robot(parser)
     add_rule(parser)
@@ -48,9 +47,10 @@ def add_to(commands: Any) -> None:
     add_slice(parser)
     parser.add_argument(
         "--strip",
-        metavar="q3=LOW..HIGH:COUNT",
-        help="a region for each of so many values of a third joint, --slice holding the others:"
-        " a strip of panels with --svg, all of them with --json",
+        metavar="q3[=LOW..HIGH:COUNT]",
+        help="a region for each of so many values of a third joint, as q3=-90deg..90deg:9 (q3"
+        " alone: 25 over its range), --slice holding the others; --svg draws a strip of panels,"
+        " --json has them all",
     )
     parser.set_defaults(run=run)
 

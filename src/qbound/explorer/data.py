@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.functions import clearance, position
+from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.export.document import vertex_content, workspace_content
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.measures.bodies import outline_in_frame
 from qbound.measures.scaling import largest_safe_scale
-from qbound.model.robot import Boundary, HalfSpace, Joint, Pair, Robot
+from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot
 from qbound.region import Component, Region, Slices
 from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
@@ -79,10 +80,8 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "q": q.tolist(),
         "joints": [_joint(joint) for joint in robot.joints],
         "points": [_point(robot, i) for i in range(len(robot.points))],
-        "bodies": [
-            {"frame": robot.depth(b.frame), "outline": outline_in_frame(robot, b).tolist()}
-            for b in (*robot.bodies, *robot.obstacles)
-        ],
+        "bodies": _bodies(robot),
+        "flat": _flat(robot),
         "boundaries": [_boundary(robot, b, problem.rule) for b in _listed(robot)],
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
@@ -119,19 +118,57 @@ def _point(robot: Robot, i: int) -> Data:
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
+def _bodies(robot: Robot) -> list[Data]:
+    """List every body; its convex parts where a boundary is about it."""
+    about = {body.name for boundary in _listed(robot) for body in bounded_bodies(robot, boundary)}
+    return [
+        {
+            "name": body.name,
+            "frame": robot.depth(body.frame),
+            "outline": outline_in_frame(robot, body).tolist(),
+            "parts": [
+                {"corners": part.corners.tolist(), "radius": float(part.radius)}
+                for part in (body.parts if body.name in about else ())
+            ],
+        }
+        for body in (*robot.bodies, *robot.obstacles)
+    ]
+
+
+def _flat(robot: Robot) -> list[list[float]] | None:
+    """Return the axes of the plane in which bodies keep apart, None where none do."""
+    about = any(map(bounds_bodies, _listed(robot)))
+    axes: list[list[float]] | None = robot.plane.across.tolist() if about else None
+    return axes
+
+
+def _body_boundary(robot: Robot, boundary: Boundary) -> Data:
+    """Return what the page is told of a boundary about bodies, which has no single form."""
+    order = [body.name for body in (*robot.bodies, *robot.obstacles)]
+    about = [order.index(body.name) for body in bounded_bodies(robot, boundary)]
+    data = {"name": boundary.name, "used": boundary.used, "points": [], "form": []}
+    if isinstance(boundary, BodyPair):
+        return data | {"kind": "bodies", "bodies": about, "clearance": boundary.clearance}
+    assert isinstance(boundary, HalfSpace)
+    wall = {"normal": boundary.normal.tolist(), "offset": boundary.offset, "body": about[0]}
+    return data | {"kind": "half-space"} | wall
+
+
 def _listed(robot: Robot) -> list[Boundary]:
     """Return the boundaries in the order in which the page has them."""
     return list(dict.fromkeys((*robot.boundaries, *robot.used)))
 
 
 def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
+    if bounds_bodies(boundary):
+        return _body_boundary(robot, boundary)
     names = [point.name for point in robot.points]
     data = {"name": boundary.name, "used": boundary.used}
     form = clearance(robot, boundary)
     if isinstance(boundary, HalfSpace):
         offset = boundary.offset + robot.point(boundary.point).radius
         data |= {"kind": "half-space", "points": [names.index(boundary.point)]}
-        data |= {"normal": boundary.normal.tolist(), "offset": offset}
+        data |= {"normal": boundary.normal.tolist(), "offset": offset, "body": None}
     elif isinstance(boundary, Pair):
         required = robot.required_distance(boundary)
         if rule == "paper":  # eq. (17): the points must not coincide
@@ -237,7 +274,8 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
     s, _ = flatten(arc.at, deviation, len(arc.pieces.roots))
     points = arc.at(s).round(6).tolist()
-    return {"boundary": arc.boundary, "branch": arc.branch, "points": points}
+    row = {"boundary": arc.boundary, "branch": arc.branch, "feature": arc.feature}
+    return row | {"points": points}
 
 
 def _walls(region: Region) -> list[int] | None:

@@ -22,7 +22,7 @@ from qbound.files import write_whole
 from qbound.printable import printable
 from qbound.region import Region, Slices
 
-ARITHMETIC: Final = ("kinematics.js", "postures.js", "slices.js", "polygons.js")
+ARITHMETIC: Final = ("kinematics.js", "bodies.js", "postures.js", "slices.js", "polygons.js")
 """What repeats the library's computations and knows no page."""
 
 PICTURES: Final = ("drawing.js", "hands.js", "joint_space.js", "arm.js", "parts.js")

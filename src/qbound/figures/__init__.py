@@ -6,8 +6,8 @@ readers, and no meaning rests on colour alone: lines differ in dash, points in m
 Here are the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images; `cells`: pavings; `surfaces`: those of three joints; `why`:
-  why a plan fails; `sweeps`: measures of many arms.
+- `workspace`: aspects and their images; `cells`: pavings; `reach`: sections of maps of reach;
+  `surfaces`: those of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations
@@ -497,7 +497,7 @@ def every(span: float, *, few: bool = False) -> Any:
 
     if few:
         return MultipleLocator(180 * np.ceil(span / 1200) if span > 400 else 90)
-    return MultipleLocator(60 * np.ceil(span / 1200) if span > 180 else 30)
+    return MultipleLocator(60 * np.ceil(span / 600) if span > 180 else 30)
 
 
 def _halo(text: Any) -> Any:

@@ -3,5 +3,6 @@
 - `polygon`: area, centroid, scaling; `convex`: simple polygons cut into convex parts, exactly;
 - `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `polylines`: curves in steps of a stated deviation;
+- `solid_covers`, `mesh_covers`: few balls that cover a shape; `covering`: proved that they do;
 - `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals.
 """

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
-from msgspec import UNSET, Meta, UnsetType
+from msgspec import UNSET, Meta, UnsetType, structs
 from numpy.typing import NDArray
 
 from qbound.model.frames import Frame, axis_rotation, roll_pitch_yaw
@@ -79,6 +79,28 @@ class Joint(ABC):
     @abstractmethod
     def frame_at(self, q: Any) -> Frame:
         """Return its frame at joint values of shape (...) or a symbol, seen from the parent."""
+
+    def frames_at(self, q: Any) -> tuple[Frame, ...]:
+        """Return all frames that it moves, seen from the parent, its own last."""
+        return (self.frame_at(q),)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of all frames that it moves, its own last."""
+        return (self.frame,)
+
+    def steps(self, observer: str, frame: str) -> tuple[Joint, ...]:
+        """Return the motion that brings what its parent, or `observer`, sees of one of its frames.
+
+        A single joint, or none: `observer` is the frame that sees it, if this joint moves that too,
+        and `frame` the one that is seen, or a frame that grows from it.
+        """
+        return () if observer == self.frame else (self,)
+
+    @classmethod
+    def further(cls, row: JointRow) -> dict[str, Any]:
+        """Return the attributes that only this type has, from its table."""
+        return {}
 
     @property
     def farthest(self) -> float:
@@ -168,7 +190,73 @@ class Prismatic(Joint):
         return Frame(self.frame, self.parent, self.mount, self.origin + slide)
 
 
-JOINT_TYPES: dict[str, type[Joint]] = {cls.type_name: cls for cls in (Revolute, Prismatic)}
+@dataclass(frozen=True, eq=False)
+class Parallelogram(Revolute):
+    """A joint that carries its frame round a circle and keeps the frame's orientation.
+
+    It stands for two joints on parallel axes that turn against each other by the same angle: of the
+    bar, and of what the bar carries. Places of both are of degree one in (1, cos q, sin q).
+
+    Attributes
+    ----------
+    crank : ndarray, shape (3,)
+        From the first axis to the frame at joint value 0, seen from the mount; length.
+    bar : str
+        Label of the frame that turns: that of the bar, about the first axis.
+    """
+
+    type_name = "parallelogram"
+
+    crank: Array = field(default_factory=lambda: np.zeros(3))
+    bar: str = ""
+
+    def frame_at(self, q: Any) -> Frame:
+        """Carry the frame's origin round."""
+        carried = self.mount @ axis_rotation(self.axis, q) @ self.crank
+        return Frame(self.frame, self.parent, self.mount, self.origin + carried)
+
+    def frames_at(self, q: Any) -> tuple[Frame, ...]:
+        """Return the bar's frame and its own."""
+        return (self._bar.frame_at(q), self.frame_at(q))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Name the bar first."""
+        return (self.bar, self.frame)
+
+    def steps(self, observer: str, frame: str) -> tuple[Joint, ...]:
+        """Turn what is fixed in the bar; the bar sees what it carries turn back."""
+        if observer in (self.frame, frame):
+            return ()
+        if frame == self.bar:
+            return (self._bar,)
+        if observer != self.bar:
+            return (self,)
+        back = {"parent": self.bar, "origin": self.crank, "axis": -self.axis}
+        return (self.as_type(Revolute, mount=np.eye(3, dtype=int), **back),)
+
+    @property
+    def _bar(self) -> Revolute:
+        return self.as_type(Revolute, frame=self.bar)
+
+    @property
+    def farthest(self) -> float:
+        """The length of the crank."""
+        return float(np.linalg.norm(np.asarray(self.crank, dtype=float)))
+
+    @classmethod
+    def further(cls, row: JointRow) -> dict[str, Any]:
+        """Read crank and bar, which `robotcheck` asks for."""
+        return {"crank": np.array(row.crank, dtype=float), "bar": row.bar}
+
+    def row(self, angle: float) -> JointRow:
+        """Write crank and bar too."""
+        return structs.replace(super().row(angle), crank=plain(self.crank), bar=self.bar)
+
+
+JOINT_TYPES: dict[str, type[Joint]] = {
+    cls.type_name: cls for cls in (Revolute, Prismatic, Parallelogram)
+}
 """From a file's spelling to the class."""
 
 Limits = Annotated[
@@ -182,7 +270,7 @@ class JointRow(Row, kw_only=True):
     """A table [[joint]]."""
 
     name: Label
-    type: Literal["revolute", "prismatic"]
+    type: Literal["revolute", "prismatic", "parallelogram"]
     parent: Label
     frame: Label
     origin: Vector
@@ -190,6 +278,8 @@ class JointRow(Row, kw_only=True):
     axis: Direction
     limits: Limits | UnsetType = UNSET
     velocity: Speed | UnsetType = UNSET
+    crank: Vector | UnsetType = UNSET
+    bar: Label | UnsetType = UNSET
 
     def joint(self, angle: float) -> Joint:
         """Return the joint: radians, a unit axis; the file's unit of angle is `angle` radians."""
@@ -206,6 +296,7 @@ class JointRow(Row, kw_only=True):
             axis=unit_vector(self.axis),
             limits=(low * scale, high * scale) if self.limits else None,
             velocity=None if self.velocity is UNSET else self.velocity * scale,
+            **joint_type.further(self),
         )
 
 

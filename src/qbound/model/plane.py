@@ -114,6 +114,10 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
     >>> plane.across.tolist(), plane.senses
     ([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], (-1, -1))
     """
+    for joint in robot.joints:
+        if len(joint.labels) > 1:
+            text = f"joint {one_line(repr(joint.name))} is a {joint.type_name}"
+            raise ValueError(f"{text}: no plane of motion is worked out for it")
     frames = robot.frames(np.zeros(len(robot.joints)))
     mounts = [frames.rotation(robot.base, j.parent) @ j.mount for j in robot.joints]
     axes = [np.asarray(m @ j.axis, dtype=float) for m, j in zip(mounts, robot.joints, strict=True)]

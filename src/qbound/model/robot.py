@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
-from qbound.model.joints import JOINT_TYPES, Joint, Kind, Prismatic, Revolute
+from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute
 from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
@@ -31,6 +31,7 @@ __all__ = [
     "Joint",
     "Kind",
     "Pair",
+    "Parallelogram",
     "Part",
     "PlaneOfMotion",
     "Point",
@@ -163,10 +164,11 @@ class Robot:
 
     def depth(self, frame: str) -> int:
         """Count the joints between the base and a frame; ValueError if there is no such frame."""
-        frames = [self.base, *(joint.frame for joint in self.joints)]
-        if frame not in frames:
-            raise ValueError(f"no frame {frame!r}; there are {', '.join(frames)}")
-        return frames.index(frame)
+        depths = {self.base: 0}
+        depths |= {name: j for j, joint in enumerate(self.joints, start=1) for name in joint.labels}
+        if frame not in depths:
+            raise ValueError(f"no frame {frame!r}; there are {', '.join(depths)}")
+        return depths[frame]
 
     def joint_index(self, joint: int | str) -> int:
         """Return the index of a joint that is given by its index or its name."""
@@ -252,7 +254,8 @@ class Robot:
         """
         names = [joint.name for joint in self.joints]
         columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
-        moved = [joint.frame_at(x) for joint, x in zip(self.joints, columns, strict=True)]
+        pairs = zip(self.joints, columns, strict=True)
+        moved = [frame for joint, x in pairs for frame in joint.frames_at(x)]
         fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
         return Frames(self.base, [*moved, *fixed])
 

@@ -104,6 +104,7 @@ def read_table(table: Table) -> RobotFile:
         raise fault(table, *explained(str(error), table, json_schema())) from None
     for check in (
         _check_names,
+        _check_parallelograms,
         _check_chain,
         _check_references,
         _check_pairs,
@@ -185,10 +186,23 @@ def _check_chain(table: Table) -> None:
             text = f"{found} found, {wanted} wanted; joints form one chain from the base"
             raise fault(table, ("joint", i, "parent"), text)
         frame = joint["frame"]
-        if frame in seen:
-            text = f"{shown(frame)} closes a cycle; every joint moves a frame of its own"
-            raise fault(table, ("joint", i, "frame"), text)
-        seen.add(frame)
+        for key in ("bar", "frame"):
+            if joint.get(key) in seen:
+                text = f"{shown(joint[key])} closes a cycle; every joint moves a frame of its own"
+                raise fault(table, ("joint", i, key), text)
+            seen |= {joint[key]} if key in joint else set()
+
+
+def _check_parallelograms(table: Table) -> None:
+    """Refuse crank and bar where they are missing, or of no use."""
+    for _, i, joint in _rows(table, "joint"):
+        wanted = joint["type"] == "parallelogram"
+        for key in ("crank", "bar"):
+            if wanted and key not in joint:
+                raise fault(table, ("joint", i), f"{key} is missing; a parallelogram needs one")
+            if key in joint and not wanted:
+                text = f"only a parallelogram has one; this joint is {joint['type']}"
+                raise fault(table, ("joint", i, key), text)
 
 
 def _check_references(table: Table) -> None:
@@ -300,7 +314,8 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _frames(table: Table) -> list[str]:
-    return [table["joint"][0]["parent"], *(j["frame"] for j in table["joint"])]
+    moved = [joint[key] for joint in table["joint"] for key in ("bar", "frame") if key in joint]
+    return [table["joint"][0]["parent"], *moved]
 
 
 def _bodies(table: Table) -> list[tuple[str, int, str, str]]:

@@ -80,6 +80,12 @@ def load_robot(
     >>> load_robot("pp-portal")
     <Robot Portal with a gripper: beam (prismatic), column (prismatic); 7 boundaries>
 
+    A URDF is read as a robot too, its links covered by balls:
+
+    >>> arm = load_robot("scara.urdf", srdf="scara.srdf", limits={"elbow": (-2.0, 2.0)})
+    >>> arm.joints[1].limits, arm.tool
+    ((-2.0, 2.0), 'tool')
+
     A file that is not there, or says what no robot file may, is one error that names the place:
 
     >>> load_robot("arm.tml")  # doctest: +ELLIPSIS

@@ -21,7 +21,17 @@ from numpy.typing import NDArray
 from qbound.boundary.evaluator import limit_names, stacked
 from qbound.boundary.parts import bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, Kind
-from qbound.model.robot import Body, Boundary, Capsule, Disc, Joint, Polygon, Robot, Shape
+from qbound.model.robot import (
+    Body,
+    Boundary,
+    Capsule,
+    Disc,
+    Joint,
+    Parallelogram,
+    Polygon,
+    Robot,
+    Shape,
+)
 from qbound.model.robotfile import load_robot, robot_text
 from qbound.proofs.balls import arb, ball, pi, precision
 from qbound.proofs.exact_bodies import ExactSeparation, exact_separations
@@ -203,6 +213,7 @@ def _from_doubles(robot: Robot) -> Robot:
             origin=_rationals(joint.origin),
             mount=_rationals(joint.mount),
             axis=_rationals(joint.axis),
+            **_crank(joint, getattr(joint, "crank", None)),
         )
         for joint in robot.joints
     )
@@ -303,7 +314,13 @@ def _joint(joint: Joint, row: Table, degrees: bool) -> Joint:
         mount=_mount(row.get("rpy", (0, 0, 0)), degrees),
         axis=_unit(row["axis"]),
         limits=limits,
+        **_crank(joint, row.get("crank")),
     )
+
+
+def _crank(joint: Joint, numbers: Any) -> dict[str, Any]:
+    """Return what a parallelogram has besides, in rationals."""
+    return {"crank": _rationals(numbers)} if isinstance(joint, Parallelogram) else {}
 
 
 def _unit(vector: Sequence[Any]) -> Array:

@@ -250,6 +250,8 @@ def _joints(rows: Any, degrees: bool) -> tuple[list[str], tuple[Joint, ...]]:
 
 def _joint(row: Any, degrees: bool) -> Joint:
     wanted = ("name", "type", "parent", "frame", "origin", "axis")
+    if isinstance(row, dict) and row.get("type") == "parallelogram":
+        refuse("robot: a joint is a parallelogram; certificates know revolute and prismatic ones")
     keys(row, "robot: joint", wanted, ("rpy", "limits", "velocity"))
     name = _label(row["name"], "joint name")
     turns = _one_of(row["type"], f"type of {shown(name)}", ("revolute", "prismatic")) == "revolute"

@@ -248,8 +248,8 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
 
     Two convex bodies collide on intervals of the lift; where two features meet, and along parallel
     edges, one contact is found twice. A slab in which a pair comes in, or out, twice at places that
-    are apart is left as it is, and said to be doubtful: where bodies only touch, coming in and out
-    are at one place, in no order.
+    are apart is left as it is, and said to be doubtful; so is one in which a pair comes in and out
+    at one place, as where bodies only touch: these are in no order.
     """
     touching = _counted(plane, fibres, pieces)
     piece = fibres.piece[touching]
@@ -265,11 +265,14 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     before[first] = last  # on a circle the first comes after the last
     gap = np.abs(values - values[before])
     again = (enters == enters[before]) & (before != np.arange(len(rows)))
+    back = (enters != enters[before]) & (gap <= THIN * plane.lift_unit)
     if fibres.circle:
         gap[first] = TURN - gap[first]
     else:
         again[first] = False
+    back[first] = False
     doubtful = np.zeros(len(fibres.t), dtype=np.bool_)
+    doubtful[fibres.slab[rows[back]]] = True
     doubtful[fibres.slab[rows[again & (gap > THIN * plane.lift_unit)]]] = True
     dropped = rows[again & ~doubtful[fibres.slab[rows]]]
     return fibres.only(np.setdiff1d(np.arange(len(fibres.slab)), dropped)), doubtful

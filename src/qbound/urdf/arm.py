@@ -21,9 +21,8 @@ from qbound.model.rows import unit_vector
 from qbound.model.schema import shown
 from qbound.tolerances import ROUNDING
 from qbound.urdf.covers import link_cover
-from qbound.urdf.document import Urdf, UrdfJoint, read_urdf
+from qbound.urdf.document import Urdf, read_urdf
 from qbound.urdf.meshes import read_mesh
-from qbound.urdf.poses import Pose
 from qbound.urdf.shapes import Collision, Mesh, Triangles
 from qbound.urdf.srdf import Srdf, read_srdf
 from qbound.urdf.tree import Chain, find_chain, listed
@@ -108,6 +107,19 @@ def import_urdf(
         If a file is wrong, or says what no robot here can be, with its line.
     ModuleNotFoundError
         If a library is missing that comes with ``qbound[arms]``.
+
+    Notes
+    -----
+    None of this is in the paper. Two links that a joint connects, or that are fixed to such links,
+    are never a pair.
+
+    Examples
+    --------
+    >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
+    >>> len(imported.robot.points) - 1, len(imported.robot.boundaries), imported.excess <= 0.01
+    (29, 193, True)
+    >>> imported.robot.home.round(3).tolist()
+    [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
     """
     urdf = read_urdf(packaged_or_path(source))
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
@@ -158,16 +170,11 @@ def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
         if name not in names:
             known = listed(names)
             raise RobotFileError(f"{urdf.file}: limits of {shown(name)}: the chain has {known}")
-    return tuple(
-        _joint(joint, mount, chain.frames[k], limits.get(joint.name))
-        for k, (joint, mount) in enumerate(zip(chain.joints, chain.mounts, strict=True))
-    )
+    return tuple(_joint(chain, k, limits.get(joint.name)) for k, joint in enumerate(chain.joints))
 
 
-def _joint(joint: UrdfJoint, mount: Pose, parent: str, limits: tuple[float, float] | None) -> Joint:
-    if joint.mimic is not None:
-        text = f"follows joint {shown(joint.mimic.joint)} (mimic), which is not supported"
-        joint.element.fault(text)
+def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
+    joint, mount, bar = chain.joints[k], chain.mounts[k], chain.bars[k]
     chosen = joint.limits if limits is None else limits
     if chosen is None and joint.type != "continuous":
         text = f"a {joint.type} joint without limits; give them: --limits {joint.name}=LOW..HIGH"
@@ -175,15 +182,17 @@ def _joint(joint: UrdfJoint, mount: Pose, parent: str, limits: tuple[float, floa
     if chosen is not None and not chosen[0] < chosen[1]:
         text = f"limits {chosen[0]:g} to {chosen[1]:g} do not rise"
         joint.element.fault(f"{text}; give others: --limits {joint.name}=LOW..HIGH")
-    return JOINT_TYPES[TYPES[joint.type]](
+    more = {} if bar is None else {"crank": bar.crank, "bar": bar.frame}
+    return JOINT_TYPES[TYPES[joint.type] if bar is None else "parallelogram"](
         name=joint.name,
-        parent=parent,
-        frame=joint.child,
+        parent=chain.frames[k],
+        frame=chain.frames[k + 1],
         origin=mount.origin,
         mount=_plain_turn(mount.rotation),
         axis=unit_vector(joint.axis.tolist()),
         limits=chosen,
         velocity=joint.velocity,
+        **more,
     )
 
 
@@ -205,7 +214,8 @@ def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
 
 def _tool(chain: Chain) -> Point:
     """Return the origin of the last link; no point may have the name of a frame."""
-    name = chain.tip if chain.tip not in chain.frames else f"{chain.tip}/tool"
+    frames = [frame for _, frame, _ in chain.rigid()]
+    name = chain.tip if chain.tip not in frames else f"{chain.tip}/tool"
     return Point(name, chain.frames[-1], chain.groups[-1][chain.tip].origin)
 
 
@@ -213,7 +223,7 @@ def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[C
     """Return the shapes of every link of the chain, meshes read; each file once."""
     read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
     found: dict[str, list[Collision]] = {}
-    for link in (link for group in chain.groups for link in group):
+    for link in (link for *_, group in chain.rigid() for link in group):
         found[link] = []
         for shape in urdf.links[link].collisions:
             solid = shape.solid
@@ -232,7 +242,7 @@ def _balls(
     """Cover every link of the chain; return the balls, and the most that one sticks out."""
     balls: list[Ball] = []
     reached = 0.0
-    for group, (frame, poses) in enumerate(zip(chain.frames, chain.groups, strict=True)):
+    for group, frame, poses in chain.rigid():
         for link, pose in poses.items():
             centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
             reached = max(reached, sticks_out)
@@ -274,17 +284,13 @@ def _rounded_up(length: float) -> str:
 
 def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
     """Yield what the robot leaves out."""
-    carried = {link for group in chain.groups for link in group}
+    carried = {link for *_, group in chain.rigid() for link in group}
     others = [n for n, link in urdf.links.items() if n not in carried and link.collisions]
     if others:
         yield f"not in the chain, and not kept clear of: {', '.join(others)}"
-    bare = [n for n in chain.frames if not any(urdf.links[x].collisions for x in _of(chain, n))]
+    bare = [n for _, n, g in chain.rigid() if not any(urdf.links[x].collisions for x in g)]
     if bare:
         yield f"without a collision shape: {', '.join(bare)}"
     disabled = sorted(", ".join(sorted(p)) for p in links.disabled if p <= carried)
     if disabled:
         yield f"pairs that the SRDF disables: {'; '.join(disabled)}"
-
-
-def _of(chain: Chain, frame: str) -> list[str]:
-    return [*chain.groups[chain.frames.index(frame)]]

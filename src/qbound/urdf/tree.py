@@ -6,19 +6,48 @@ the groups of the chain are 0 (the base), 1 (behind the first joint that moves),
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import count
+from typing import NoReturn
 
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.model.frames import axis_rotation
 from qbound.model.robotcheck import RobotFileError
+from qbound.model.rows import unit_vector
 from qbound.model.schema import one_line, shown
-from qbound.urdf.document import OTHERS, Urdf, UrdfJoint
+from qbound.tolerances import PARALLEL
+from qbound.urdf.document import OTHERS, Mimic, Urdf, UrdfJoint
 from qbound.urdf.poses import Pose
+
+Floats = NDArray[np.float64]
 
 MOST_JOINTS = 9
 """Joints of an arm at most: a form has three coefficients to the power of their number."""
 
 MOST_SHOWN = 8
 """Names that a message lists."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """What turns in a parallelogram: the link of its first joint, and what is fixed to that.
+
+    Attributes
+    ----------
+    frame : str
+        The link.
+    crank : ndarray, shape (3,)
+        From the first axis to the second, seen from the link.
+    group : dict of str to Pose
+    """
+
+    frame: str
+    crank: Floats
+    group: dict[str, Pose]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +63,8 @@ class Chain:
         Of each joint's axes, seen from the frame before it.
     groups : tuple of dict of str to Pose
         Of each frame: the links that are fixed in it, and where they stand in it.
+    bars : tuple of Bar or None
+        Of each joint that is a parallelogram.
     tip : str
         The last link.
     """
@@ -42,7 +73,17 @@ class Chain:
     frames: tuple[str, ...]
     mounts: tuple[Pose, ...]
     groups: tuple[dict[str, Pose], ...]
+    bars: tuple[Bar | None, ...]
     tip: str
+
+    def rigid(self) -> Iterator[tuple[int, str, dict[str, Pose]]]:
+        """Yield all groups outward, bars too: number, frame, links. Neighbours differ by 1."""
+        numbers = count()
+        yield next(numbers), self.frames[0], self.groups[0]
+        for frame, group, bar in zip(self.frames[1:], self.groups[1:], self.bars, strict=True):
+            if bar is not None:
+                yield next(numbers), bar.frame, bar.group
+            yield next(numbers), frame, group
 
 
 def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) -> Chain:
@@ -62,12 +103,65 @@ def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) ->
     moving = [joint for joint in path if joint.type != "fixed"]
     _check_count(urdf, moving, start, tip)
     _check_types(moving)
-    frames = (start, *(joint.child for joint in moving))
-    groups = tuple(_group(urdf, frame) for frame in frames)
-    mounts = tuple(
-        group[joint.parent].then(joint.pose) for group, joint in zip(groups, moving, strict=False)
-    )
-    return Chain(tuple(moving), frames, mounts, groups, tip)
+    joints: list[UrdfJoint] = []
+    mounts: list[Pose] = []
+    bars: list[Bar | None] = []
+    frames, groups = [start], [_group(urdf, start)]
+    for joint in moving:
+        if joint.mimic is None:
+            joints.append(joint)
+            mounts.append(groups[-1][joint.parent].then(joint.pose))
+            bars.append(None)
+            frames.append(joint.child)
+            groups.append(_group(urdf, joint.child))
+            continue
+        follows = bool(joints) and bars[-1] is None
+        joints[-1:], bars[-1:], turned = _parallelogram(joints[-1:] * follows, joint, groups[-1])
+        frames[-1], groups[-1] = joint.child, _group(urdf, joint.child, turned)
+    return Chain(tuple(joints), tuple(frames), tuple(mounts), tuple(groups), tuple(bars), tip)
+
+
+def _parallelogram(
+    before: list[UrdfJoint], joint: UrdfJoint, group: dict[str, Pose]
+) -> tuple[list[UrdfJoint], list[Bar | None], Pose]:
+    """Join a joint that turns back by the angle of the one before it with that one.
+
+    Returns
+    -------
+    list of one UrdfJoint
+        The first joint, within the limits of both.
+    list of one Bar
+    Pose
+        The link that is carried, seen from the first joint's axes moved along: a fixed rotation.
+    """
+    mimic = joint.mimic
+    turning = ("revolute", "continuous")
+    if mimic is None or not before or mimic.joint != before[0].name:
+        _refuse_mimic(joint)
+    first = before[0]
+    pose = group[joint.parent].then(joint.pose)
+    axis, own = (np.array(unit_vector(each.axis.tolist())) for each in (first, joint))
+    sense = float(axis @ (pose.rotation @ own))
+    parallel = abs(abs(sense) - 1) <= PARALLEL and joint.type in turning and first.type in turning
+    if not parallel or mimic.multiplier * round(sense) != -1:
+        _refuse_mimic(joint)
+    turned = Pose(pose.rotation @ axis_rotation(own, mimic.offset), np.zeros(3))
+    return [_within_both(first, joint, mimic)], [Bar(first.child, pose.origin, group)], turned
+
+
+def _within_both(first: UrdfJoint, joint: UrdfJoint, mimic: Mimic) -> UrdfJoint:
+    """Return the first joint with limits in which the one that follows keeps its own."""
+    if joint.limits is None:
+        return first
+    ends = [(end - mimic.offset) / mimic.multiplier for end in joint.limits]
+    low, high = first.limits or (-math.inf, math.inf)
+    return replace(first, limits=(max(low, min(ends)), min(high, max(ends))))
+
+
+def _refuse_mimic(joint: UrdfJoint) -> NoReturn:
+    name = shown(joint.mimic.joint if joint.mimic else "")
+    wanted = "the joint just before it, on a parallel axis, turned back by the same angle"
+    joint.element.fault(f"follows joint {name} (mimic); possible is a parallelogram only: {wanted}")
 
 
 def _parents(urdf: Urdf) -> dict[str, UrdfJoint]:
@@ -127,10 +221,13 @@ def _carries(parents: dict[str, UrdfJoint], start: str, link: str) -> bool:
     return link == start
 
 
-def _group(urdf: Urdf, frame: str) -> dict[str, Pose]:
-    """Return all links that fixed joints hold to a link, with their poses in it."""
+def _group(urdf: Urdf, frame: str, pose: Pose | None = None) -> dict[str, Pose]:
+    """Return all links that fixed joints hold to a link, with their poses in it.
+
+    With a pose, that of the link itself, they are seen from where the link is seen from.
+    """
     fixed = [joint for joint in urdf.joints.values() if joint.type == "fixed"]
-    group = {frame: Pose.still()}
+    group = {frame: Pose.still() if pose is None else pose}
     front = [frame]
     while front:
         link = front.pop()

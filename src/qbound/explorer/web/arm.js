@@ -47,15 +47,6 @@ function planePlaces(robot, q) {
   return [...corners, ...points, ...found.map((frame) => frame.place)].map((p) => project(axes, p));
 }
 
-/** @type {(robot: Robot, q: Pose, pair: Pair) => Pose} */
-function withPair(robot, q, pair) {
-  const pose = [...q];
-  robot.free.forEach((j, k) => {
-    pose[j] = pair[k];
-  });
-  return pose;
-}
-
 /** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
 function drawPlane(svg, robot, state, slice, box) {
   const fitted = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
@@ -164,9 +155,10 @@ function drawWalls(robot, drawn, state) {
   /** @type {Point[][]} */
   const hatched = [];
   const lines = robot.boundaries.flatMap((wall) => {
-    if (wall.kind === "pair" || robot.plane.oblique) return [];
+    if (wall.kind !== "half-space" || robot.plane.oblique) return [];
     const normal = project(axes, wall.normal);
-    const offset = wall.offset - dot(axes[2], wall.normal) * dot(axes[2], places[wall.points[0]]);
+    const depth = wall.body === null ? dot(axes[2], places[wall.points[0]]) : 0;
+    const offset = wall.offset - dot(axes[2], wall.normal) * depth;
     /** @type {Side} */
     const side = ([x, y]) => normal[0] * x + normal[1] * y - offset;
     const ends = lineThrough(corners, side).map(drawn.at);
@@ -224,8 +216,14 @@ function wallText(robot, walls) {
   const [first, ...others] = walls.map(({ name }) => name);
   const end = first.split(", ").at(-1) ?? first;
   if (others.length > 0) return others.every((name) => name.endsWith(end)) ? end : first;
-  const [i] = walls[0].points;
-  const point = i === robot.tool ? "tool" : `point ${robot.points[i].name}`;
+  const [wall] = walls;
+  const ofBody = wall.kind === "half-space" && wall.body !== null;
+  const [i] = wall.points;
+  const point = ofBody
+    ? robot.bodies[wall.body ?? 0].name
+    : i === robot.tool
+      ? "tool"
+      : `point ${robot.points[i].name}`;
   return end === first ? `${first} (${point})` : first;
 }
 
@@ -253,23 +251,42 @@ function crossing(a, b, side) {
   return [[a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]];
 }
 
+/** @type {(frame: number) => string} */
+function linkColour(frame) {
+  return `var(--links-${frame % 5})`;
+}
+
+/** Where the arm is seen obliquely, paint its balls from the farthest to the nearest.
+ * @type {(drawn: PlanePicture, axes: Place[], places: Place[]) => void} */
+function paintByDepth(drawn, axes, places) {
+  const depths = places.map((place) => dot(axes[2], place));
+  const order = drawn.points.map((_, i) => i).sort((a, b) => depths[a] - depths[b]);
+  for (const i of order) drawn.points[i].parentNode?.insertBefore(drawn.points[i], drawn.names[0]);
+}
+
 /** The elements that move with the pose; `placeArm` moves them.
  * @type {(robot: Robot, drawn: Picture) => ArmParts} */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
+  const ballClass = robot.plane.oblique ? "sphere solid" : "sphere";
   const parts = {
     shadow: robot.plane.oblique ? [make("path", { class: "shadow" })] : [],
     bodies: robot.bodies.map(({ frame }) =>
       make("polygon", {
         class: frame === 0 ? "body fixed" : "body",
-        fill: `var(--links-${frame % 5})`,
+        fill: linkColour(frame),
       }),
     ),
     spine: make("path", { class: "spine" }),
     axles: robot.joints.map(() => make("circle", { class: "axle", r: 5 })),
     gaps: robot.boundaries.map(() => make("line", { class: "gap", hidden: "" })),
-    points: robot.points.map(({ radius }) =>
-      make("circle", { class: radius > 0 ? "sphere" : "point", r: 3 }),
+    nearest: robot.boundaries.flatMap(({ kind }) =>
+      kind === "bodies"
+        ? [0, 1].map(() => make("circle", { class: "nearest", r: 3, hidden: "" }))
+        : [],
+    ),
+    points: robot.points.map(({ radius, frame }) =>
+      make("circle", { class: radius > 0 ? ballClass : "point", r: 3, fill: linkColour(frame) }),
     ),
     names: robot.points.map(({ name }) => make("text", { class: "point-name" }, name)),
   };
@@ -283,9 +300,13 @@ function placeArm(robot, drawn, state, lit) {
   const [found, axes] = [framesOf(robot, state.q), viewAxes(robot, state.q)];
   /** @type {(place: Place) => Point} */
   const at = (place) => drawn.at(project(axes, place));
+  const touching = new Set(
+    robot.boundaries.flatMap((wall) => (lit.bold.has(wall.name) ? bodiesOf(wall) : [])),
+  );
   for (const [i, { frame, outline }] of robot.bodies.entries()) {
     const corners = outline.map((p) => at(placeIn(found[frame], p)));
     drawn.bodies[i].setAttribute("points", corners.join(" "));
+    drawn.bodies[i].classList.toggle("lit", touching.has(i));
   }
   const places = robot.points.map((point) => at(placeIn(found[point.frame], point.at)));
   const spine = [...found.map((frame) => at(frame.place)), places[robot.tool]];
@@ -298,10 +319,13 @@ function placeArm(robot, drawn, state, lit) {
     const beside = away.get(i);
     if (beside) placeNameBeside(drawn.names[i], place, beside);
   }
-  const inSpace = pointPlaces(robot, state.q);
+  if (robot.plane.oblique) paintByDepth(drawn, axes, pointPlaces(robot, state.q));
+  const placed = placedParts(robot, found);
+  const marks = [...drawn.nearest];
   for (const [i, wall] of robot.boundaries.entries()) {
-    const ends = gapEnds(wall, inSpace).map(at);
+    const ends = gapEnds(robot, wall, found, placed).map(at);
     placeGap(drawn.gaps[i], wall, ends, lit);
+    if (wall.kind === "bodies") placeNearest(marks.splice(0, 2), wall, ends, lit);
   }
   drawn.group.setAttribute("transform", `translate(${places[robot.tool].join(" ")})`);
 }
@@ -348,13 +372,36 @@ function placeNameBeside(name, [x, y], [dx, dy]) {
   placeAt(name, [x + 9 * dx, y + 12 * dy + 4]);
 }
 
-/** Both points of a pair; of a wall its point, and the place of the wall that is nearest to it.
- * @type {(wall: Wall, places: Place[]) => Place[]} */
-function gapEnds(wall, places) {
-  if (wall.kind === "pair") return wall.points.map((i) => places[i]);
-  const at = places[wall.points[0]];
-  const margin = halfSpaceMargin(wall, places) / dot(wall.normal, wall.normal);
+/** Both points of a pair; of bodies the two nearest places; of a wall what is nearest to it, and the
+    place of the wall that it is nearest to.
+ * @type {(robot: Robot, wall: Wall, found: Frame[], placed: PlacedPart[][]) => Place[]} */
+function gapEnds(robot, wall, found, placed) {
+  if (wall.kind === "bodies") {
+    const [u, v] = robot.flat ?? IDENTITY;
+    const { places } = bodiesEncounter(wall, placed);
+    return places.map(([x, y]) => u.map((value, k) => x * value + y * v[k]));
+  }
+  const places = wall.points.map((i) => placeIn(found[robot.points[i].frame], robot.points[i].at));
+  if (wall.kind === "pair") return places;
+  const at = wall.body === null ? places[0] : lowestCorner(robot, wall, found).place;
+  const margin = (dot(wall.normal, at) - wall.offset) / dot(wall.normal, wall.normal);
   return [at, at.map((value, k) => value - margin * wall.normal[k])];
+}
+
+/** @type {(wall: Wall) => number[]} */
+function bodiesOf(wall) {
+  if (wall.kind === "bodies") return wall.bodies;
+  return wall.kind === "half-space" && wall.body !== null ? [wall.body] : [];
+}
+
+/** Dots at the two nearest places of bodies that stand out.
+ * @type {(marks: SVGCircleElement[], wall: Wall, ends: Point[], lit: Lit) => void} */
+function placeNearest(marks, wall, ends, lit) {
+  for (const [k, mark] of marks.entries()) {
+    mark.toggleAttribute("hidden", !lit.bold.has(wall.name) && lit.closest !== wall.name);
+    mark.classList.toggle("lit", lit.violated.has(wall.name));
+    placeAt(mark, ends[k], "c");
+  }
 }
 
 /** A dashed line from point to point, or from point to wall, of a boundary that stands out.

@@ -134,11 +134,6 @@ function thin(names, width) {
   }
 }
 
-/** @type {(value: number, low: number, high: number) => number} */
-function between(value, low, high) {
-  return Math.min(high, Math.max(low, value));
-}
-
 /** @type {(value: number, digits: number) => string} */
 function number(value, digits) {
   const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");

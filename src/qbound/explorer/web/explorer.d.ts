@@ -22,7 +22,8 @@ interface Robot {
   q: Pose;
   joints: Joint[];
   points: RobotPoint[];
-  bodies: { frame: number; outline: Place[] }[];
+  bodies: RobotBody[];
+  flat: Place[] | null; // two axes of the plane in which bodies move
   boundaries: Wall[];
   limits: Limit[];
   tool: number;
@@ -54,6 +55,13 @@ interface RobotPoint {
   radius: number;
 }
 
+interface RobotBody {
+  name: string;
+  frame: number;
+  outline: Place[];
+  parts: { corners: Place[]; radius: number }[]; // convex; none where nothing is asked of it
+}
+
 interface WallOfAnyKind {
   name: string;
   used: boolean;
@@ -70,9 +78,16 @@ interface HalfSpaceWall extends WallOfAnyKind {
   kind: "half-space";
   normal: Place;
   offset: number;
+  body: number | null; // instead of a point; the radius is not in the offset then
 }
 
-type Wall = PairWall | HalfSpaceWall;
+interface BodiesWall extends WallOfAnyKind {
+  kind: "bodies";
+  bodies: number[];
+  clearance: number;
+}
+
+type Wall = PairWall | HalfSpaceWall | BodiesWall;
 
 interface Limit {
   name: string;
@@ -93,7 +108,7 @@ interface Component {
   area: number;
   centroid: Pair | null;
   wraps: boolean[];
-  loops: { boundary: string; branch: -1 | 1 | null; points: Pair[] }[][];
+  loops: { boundary: string; branch: -1 | 1 | null; feature: string | null; points: Pair[] }[][];
   vertices: { q: Pair; boundaries: string[] }[];
 }
 
@@ -121,6 +136,29 @@ interface VertexPolygon {
 interface Frame {
   turn: Matrix;
   place: Place;
+}
+
+interface PlacedPart {
+  corners: Point[];
+  radius: number;
+}
+
+interface CoreEdge {
+  start: Point;
+  step: Point;
+  length: number;
+  normal: Point;
+}
+
+interface Encounter {
+  distance: number;
+  places: Point[];
+}
+
+interface Seen {
+  robot: Robot;
+  found: Frame[];
+  placed: PlacedPart[][];
 }
 
 interface Margin {
@@ -153,8 +191,11 @@ interface NamedView extends View {
 }
 
 interface SliceProblem {
+  robot: Robot;
+  q: Pose;
   kinds: Kind[];
   forms: Matrix[];
+  bodies: (BodiesWall | HalfSpaceWall)[];
   names: string[];
   ranges: NamedView[];
 }
@@ -288,6 +329,7 @@ interface ArmParts {
   spine: SVGPathElement;
   axles: SVGCircleElement[];
   gaps: SVGLineElement[];
+  nearest: SVGCircleElement[]; // two for each pair of bodies
   points: SVGCircleElement[];
   names: SVGTextElement[];
 }

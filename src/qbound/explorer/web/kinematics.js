@@ -133,15 +133,29 @@ function pointPlaces(robot, q) {
 /** One margin a wall, negative where it is violated; a length, or for a limit a joint value.
  * @type {(robot: Robot, q: Pose) => Margin[]} */
 function margins(robot, q) {
-  const places = pointPlaces(robot, q);
+  const found = framesOf(robot, q);
+  const places = robot.points.map((point) => placeIn(found[point.frame], point.at));
+  const placed = placedParts(robot, found);
+  /** @type {(wall: Wall) => number} */
+  const marginTo = (wall) => {
+    if (wall.kind === "bodies") return bodiesEncounter(wall, placed).distance;
+    if (wall.kind === "pair") return pairMargin(wall, places);
+    return isOfBody(wall) ? lowestCorner(robot, wall, found).value : halfSpaceMargin(wall, places);
+  };
   /** @type {(wall: Wall) => Margin} */
   const marginOf = (wall) => ({
     name: wall.name,
-    value: wall.kind === "pair" ? pairMargin(wall, places) : halfSpaceMargin(wall, places),
+    value: marginTo(wall),
     used: wall.used,
     unit: "length",
   });
   return [...robot.boundaries.map(marginOf), ...limitMargins(robot, q)];
+}
+
+/** Whether a half-space keeps a body, not a point.
+ * @type {(wall: HalfSpaceWall) => boolean} */
+function isOfBody(wall) {
+  return wall.body !== null;
 }
 
 /** @type {(wall: PairWall, places: Place[]) => number} */
@@ -172,6 +186,20 @@ function limitMargins(robot, q) {
  * @type {(joint: Joint, q: number, middle: number) => number} */
 function around(joint, q, middle) {
   return joint.wraps ? q - TURN * Math.round((q - middle) / TURN) : q;
+}
+
+/** @type {(value: number, low: number, high: number) => number} */
+function between(value, low, high) {
+  return Math.min(high, Math.max(low, value));
+}
+
+/** @type {(robot: Robot, q: Pose, pair: Pair) => Pose} */
+function withPair(robot, q, pair) {
+  const pose = [...q];
+  robot.free.forEach((j, k) => {
+    pose[j] = pair[k];
+  });
+  return pose;
 }
 
 /** The margin that is smallest for its size: lengths by the robot's reach, angles by a turn.

@@ -12,8 +12,10 @@ function scaledPolygon(vertices, factor, centre) {
  * @type {(robot: Robot, q: Pose, vertices: Pair[], factor: number, centre: Pair) => Least} */
 function smallestClearance(robot, q, vertices, factor, centre) {
   const [kindA, kindB] = freeKinds(robot);
-  const walls = robot.boundaries
-    .filter((wall) => wall.used)
+  const used = robot.boundaries.filter((wall) => wall.used);
+  const bodies = used.filter(isAboutBodies);
+  const walls = used
+    .filter((wall) => !isAboutBodies(wall))
     .map((wall) => ({ wall, form: restrict(wall.form, robot, q) }));
   /** @type {Least} */
   let best = { value: Infinity, name: null, q: centre };
@@ -26,6 +28,11 @@ function smallestClearance(robot, q, vertices, factor, centre) {
         const [x, y] = [basis(kindA, at[0]), basis(kindB, at[1])];
         for (const { wall, form } of walls) {
           const value = lengthOf(wall, evaluate(form, x, y));
+          if (value < best.value) best = { value, name: wall.name, q: at };
+        }
+        const found = bodies.length > 0 ? framesOf(robot, withPair(robot, q, at)) : [];
+        for (const wall of bodies) {
+          const value = wallMargin(robot, wall, found);
           if (value < best.value) best = { value, name: wall.name, q: at };
         }
       }

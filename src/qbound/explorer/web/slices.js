@@ -12,12 +12,22 @@ const SEAM = -3; // where a joint that turns all the way round is cut open for d
 function sliceProblem(robot, q, known = null) {
   const chosen = known?.map((i) => robot.boundaries[i]) ?? robot.boundaries;
   const walls = chosen.filter((wall) => wall.used);
+  const bodies = walls.filter(isAboutBodies);
+  const formed = walls.filter((wall) => !isAboutBodies(wall));
   return {
+    robot,
+    q,
     kinds: freeKinds(robot),
-    forms: walls.map((wall) => restrict(wall.form, robot, q)),
-    names: walls.map((wall) => wall.name),
+    forms: formed.map((wall) => restrict(wall.form, robot, q)),
+    bodies,
+    names: [...formed, ...bodies].map((wall) => wall.name),
     ranges: robot.free.map((joint, k) => rangeOf(robot, joint, robot.views[k])),
   };
+}
+
+/** @type {(wall: Wall) => wall is BodiesWall | HalfSpaceWall} */
+function isAboutBodies(wall) {
+  return wall.kind === "bodies" || (wall.kind === "half-space" && isOfBody(wall));
 }
 
 /** The limits of a joint with their names; without limits one turn, cut open where the view is.
@@ -60,6 +70,7 @@ function fibre(problem, first) {
   lines.forEach((line, by) => {
     for (const at of rootsWithin(kind, line, view)) cuts.push({ at, by });
   });
+  cuts.push(...bodyCuts(problem, first));
   cuts.sort((a, b) => a.at - b.at);
   cuts.push({ at: view.high, by: view.wraps ? SEAM : UPPER });
   return cuts
@@ -67,8 +78,24 @@ function fibre(problem, first) {
     .map((high, i) => ({ low: cuts[i], high }))
     .filter(({ low, high }) => {
       const y = basis(kind, (low.at + high.at) / 2);
-      return high.at > low.at && lines.every((line) => dot(line, y) > 0);
+      if (high.at <= low.at || !lines.every((line) => dot(line, y) > 0)) return false;
+      return areBodiesApart(problem, first, (low.at + high.at) / 2);
     });
+}
+
+/** @type {(problem: SliceProblem, first: number, second: number) => boolean} */
+function areBodiesApart(problem, first, second) {
+  const { robot, bodies } = problem;
+  if (bodies.length === 0) return true;
+  const { found, placed } = partsAt(problem, first, second);
+  return bodies.every((wall) => {
+    const { kind } = wall;
+    const value =
+      kind === "bodies"
+        ? bodiesEncounter(wall, placed).distance
+        : lowestCorner(robot, wall, found).value;
+    return value > 1e-12 * robot.reach;
+  });
 }
 
 /** @type {(intervals: Interval[]) => string} */
@@ -262,7 +289,11 @@ function wallName(problem, first, second, side) {
   if (!range.wraps && Math.abs(first - limit) < 1e-6 * (range.high - range.low))
     return range.names[side];
   const [x, y] = [basis(problem.kinds[0], first), basis(problem.kinds[1], second)];
-  const values = problem.forms.map((form) => Math.abs(evaluate(form, x, y)));
+  const found = problem.bodies.length > 0 ? framesAt(problem, first, second) : [];
+  const values = [
+    ...problem.forms.map((form) => Math.abs(evaluate(form, x, y))),
+    ...problem.bodies.map((wall) => Math.abs(wallMargin(problem.robot, wall, found))),
+  ];
   return problem.names[values.indexOf(Math.min(...values))];
 }
 

@@ -243,7 +243,7 @@ function showSurface(root, data) {
   };
   const [stage, labels, readout] = ["stage", "labels", "readout"].map(part);
   const canvas = root.querySelector("canvas");
-  const gl = canvas?.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  const gl = canvas?.getContext("webgl2", { antialias: true });
   if (!canvas || !gl) {
     part("no-webgl").hidden = false;
     return null;

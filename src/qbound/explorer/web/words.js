@@ -26,10 +26,18 @@ function betweenText(row) {
   if (limit)
     return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
   const wall = robot.boundaries[row];
-  const points = wall.points.map((i) => robot.points[i].name);
-  const words =
-    wall.kind === "pair" ? `points ${points[0]} and ${points[1]}` : `point ${points[0]} and a wall`;
+  const names = partners(wall);
+  const words = wall.kind === "half-space" ? `${names[0]} and a wall` : names.join(" and ");
   return wall.used ? words : `${words}, not used`;
+}
+
+/** What a boundary keeps apart, or on its side.
+ * @type {(wall: Wall) => string[]} */
+function partners(wall) {
+  if (wall.kind === "bodies") return wall.bodies.map((i) => robot.bodies[i].name);
+  if (wall.kind === "half-space" && wall.body !== null) return [robot.bodies[wall.body].name];
+  const names = wall.points.map((i) => robot.points[i].name);
+  return wall.kind === "pair" ? [`points ${names[0]}`, names[1]] : [`point ${names[0]}`];
 }
 
 /** What keeps a margin, and how far it is from its boundary, or beyond it.
@@ -42,12 +50,16 @@ function marginText({ name, value, unit }, row) {
     return `${joint} is ${size} ${value < 0 ? "beyond" : "from"} ${name}`;
   }
   const wall = robot.boundaries[row];
-  const [first, second] = wall.points.map((i) => robot.points[i].name);
+  const [first, second] = partners(wall);
   if (wall.kind === "half-space")
-    return `point ${first} is ${size} ${value < 0 ? "beyond" : "from"} ${name}`;
-  const both = `points ${first} and ${second} (${name})`;
+    return `${first} is ${size} ${value < 0 ? "beyond" : "from"} ${name}`;
+  const [both, least] =
+    wall.kind === "bodies"
+      ? [`${first} and ${second}`, wall.clearance]
+      : [`${first} and ${second} (${name})`, wall.required];
+  if (value < 0 && wall.kind === "bodies" && least === 0) return `${both} overlap by ${size}`;
   if (value < 0) return `${both} are ${size} too close`;
-  return `${both} are ${size} ${wall.required > 0 ? "farther apart than they must be" : "apart"}`;
+  return `${both} are ${size} ${least > 0 ? "farther apart than they must be" : "apart"}`;
 }
 
 /** Whether the pose is safe, and whether the home pose can be reached from it.

@@ -1,0 +1,202 @@
+"""Parallelograms: places, distances and files of a joint that carries without turning."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from qbound import RobotFileError, clearance, load_robot, save_robot
+from qbound.boundary.evaluator import evaluator
+from qbound.boundary.functions import position
+from qbound.cli import main
+from qbound.model.frames import roll_pitch_yaw
+from qbound.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
+from qbound.model.robotfile import parse_robot, robot_table
+from qbound.proofs.exact import exact_problem, exact_robot
+from test_urdf import BALL, joint, link, rotation, transform, written
+
+LABELS = ("0", "1", "bar", "2", "3")
+
+
+def arm(seed: int, last: type = Revolute) -> Robot:
+    """A turn, a parallelogram and another joint in space, a ball in every frame, all pairs."""
+    rng = np.random.default_rng([520, seed])
+
+    def unit():
+        vector = rng.normal(size=3)
+        return vector / np.linalg.norm(vector)
+
+    turns = [roll_pitch_yaw(*rng.uniform(-3, 3, 3)) for _ in range(3)]
+    joints = (
+        Revolute("a", "0", "1", unit(), turns[0], unit()),
+        Parallelogram("p", "1", "2", unit(), turns[1], unit(), (-2, 2), None, unit(), "bar"),
+        last("c", "2", "3", unit(), turns[2], unit(), (-1, 1)),
+    )
+    points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in LABELS)
+    pairs = tuple(
+        Pair(f"{one.name}, {other.name}", (one.name, other.name))
+        for i, one in enumerate(points)
+        for other in points[i + 1 :]
+    )
+    return Robot("r", joints, points, pairs, np.zeros(3), "p3", "m", "rad")
+
+
+@pytest.mark.parametrize("last", [Revolute, Prismatic])
+@pytest.mark.parametrize("seed", range(3))
+def test_forms_are_what_frames_say(seed, last) -> None:
+    robot = arm(seed, last)
+    rng = np.random.default_rng(seed)
+    compiled = evaluator(robot, limits=False)
+    for q in rng.uniform(-1, 1, (4, 3)):
+        frames = robot.frames(q)
+        gaps = []
+        for pair in robot.boundaries:
+            distance = np.linalg.norm(frames.position(*pair.points, "0"))
+            gaps.append(distance - 0.02)
+            assert clearance(robot, pair)(q) == pytest.approx(distance**2 - 0.02**2, abs=1e-12)
+        assert compiled.margins(q) == pytest.approx(gaps, abs=1e-12)
+        for point in robot.points:
+            seen = frames.position("0", point.name, "0")
+            assert position(robot, point.name)(q) == pytest.approx(seen, abs=1e-12)
+            assert np.linalg.norm(seen) <= robot.stretched(point.name) + 1e-12
+        for name in ("pbar", "p2", "p3"):
+            seen = frames.position("bar", name, "bar")
+            assert position(robot, name, "bar")(q) == pytest.approx(seen, abs=1e-12)
+    with pytest.raises(ValueError, match="'2' does not carry the point 'pbar'"):
+        position(robot, "pbar", "2")
+
+
+def test_its_frame_is_two_turns_against_each_other() -> None:
+    robot = arm(7)
+    p = robot.joints[1]
+    for q in (-1.5, 0.3, 2.0):
+        bar = transform(p.mount, p.origin) @ transform(rotation(p.axis, q), np.zeros(3))
+        carried = bar @ transform(np.eye(3), p.crank) @ transform(rotation(p.axis, -q), np.zeros(3))
+        for frame, matrix in zip(p.frames_at(q), (bar, carried), strict=True):
+            assert frame.rotation == pytest.approx(matrix[:3, :3], abs=1e-12)
+            assert frame.origin == pytest.approx(matrix[:3, 3], abs=1e-12)
+
+
+def test_it_survives_its_file_and_its_exact_forms_hold_the_floats(tmp_path) -> None:
+    robot = arm(3)
+    save_robot(robot, tmp_path / "arm.toml")
+    again = load_robot(tmp_path / "arm.toml")
+    assert again.joints[1].bar == "bar"
+    assert again.joints[1].crank == pytest.approx(robot.joints[1].crank, rel=1e-15)
+    for exact in (exact_robot(robot), exact_robot(tmp_path / "arm.toml")):
+        forms = exact_problem(exact).forms.coefficients
+        floats = [clearance(robot, pair).coefficients for pair in robot.boundaries]
+        wanted = np.stack(floats)
+        assert forms.shape == wanted.shape
+        assert np.abs(np.vectorize(middle)(forms) - wanted).max() < 1e-12
+
+
+def middle(number) -> float:
+    """The middle of a ball, or a rational as a float."""
+    return float(number.mid()) if hasattr(number, "mid") else int(number.p) / int(number.q)
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"crank": None}, "joint[1] (p): crank is missing; a parallelogram needs one"),
+        ({"bar": None}, "joint[1] (p): bar is missing; a parallelogram needs one"),
+        ({"bar": "1"}, "joint[1].bar (p): '1' closes a cycle"),
+        ({"bar": "2"}, "joint[1].frame (p): '2' closes a cycle"),
+        ({"type": "revolute"}, "only a parallelogram has one; this joint is revolute"),
+        ({"crank": [1, 2]}, "joint[1].crank (p)"),
+    ],
+)
+def test_a_file_that_describes_none_is_refused(changed, says) -> None:
+    table = robot_table(arm(1))
+    for key, value in changed.items():
+        table["joint"][1][key] = value
+        if value is None:
+            del table["joint"][1][key]
+    with pytest.raises(RobotFileError) as error:
+        parse_robot(table)
+    assert says in str(error.value)
+
+
+def test_what_does_not_know_it_says_so(tmp_path, capsys) -> None:
+    file = tmp_path / "arm.toml"
+    save_robot(replace(arm(2), boundaries=arm(2).boundaries[:3]), file)
+    with pytest.raises(ValueError, match="joint 'p' is a parallelogram: no plane of motion"):
+        load_robot(file).plane  # noqa: B018
+    box = ["--box", "a=0:0.1", "p=0:0.1", "c=0:0.1"]
+    for command in (
+        ["certify", str(file), *box, "-o", str(tmp_path / "proof.json")],
+        ["explore", str(file), "--slice", "c=0", "-o", str(tmp_path / "page.html")],
+    ):
+        assert main(command) == 2
+        assert "parallelogram" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["arm.toml"]
+
+
+# --- from a URDF ----------------------------------------------------------------------------------
+
+
+def palletizer(folder, mimic: str, axis: str = "0 1 0", kind: str = "revolute"):
+    parts = [link(name, BALL) for name in ("base", "turret", "bar", "head", "hand")]
+    parts += [
+        joint("turn", "base", "turret", more="<axis xyz='0 0 1'/><origin xyz='0 0 0.4'/>"),
+        joint("lift", "turret", "bar", more="<axis xyz='0 1 0'/><origin xyz='0.1 0 0'/>"),
+        joint(
+            "level", "bar", "head", kind,
+            f"<axis xyz='{axis}'/><origin xyz='0 0.05 0.6' rpy='0 0.3 0'/>{mimic}",
+        ),
+        joint("wrist", "head", "hand", more="<axis xyz='1 0 0'/><origin xyz='0.3 0 0'/>"),
+    ]  # fmt: skip
+    return written(folder, *parts)
+
+
+@pytest.mark.parametrize(("axis", "multiplier"), [("0 1 0", -1), ("0 -2 0", 1)])
+def test_a_mimic_joint_that_turns_back_is_a_parallelogram(tmp_path, axis, multiplier) -> None:
+    mimic = f"<mimic joint='lift' multiplier='{multiplier}' offset='0.2'/>"
+    robot = load_robot(palletizer(tmp_path, mimic, axis))
+    assert [j.type_name for j in robot.joints] == ["revolute", "parallelogram", "revolute"]
+    y = np.array([0, 1.0, 0])
+    for q in np.random.default_rng(5).uniform(-0.5, 0.5, (5, 3)):
+        turret = transform(rotation(np.array([0, 0, 1.0]), q[0]), np.zeros(3))
+        turret = transform(np.eye(3), np.array([0, 0, 0.4])) @ turret
+        bar = turret @ transform(np.eye(3), np.array([0.1, 0, 0]))
+        bar = bar @ transform(rotation(y, q[1]), np.zeros(3))
+        own = np.array([float(x) for x in axis.split()])
+        head = bar @ transform(rotation(y, 0.3), np.array([0, 0.05, 0.6]))
+        head = head @ transform(rotation(own, multiplier * q[1] + 0.2), np.zeros(3))
+        hand = head @ transform(np.eye(3), np.array([0.3, 0, 0]))
+        hand = hand @ transform(rotation(np.array([1.0, 0, 0]), q[2]), np.zeros(3))
+        frames = robot.frames(q)
+        places = {"turret/1": turret, "bar/1": bar, "head/1": head, "hand/1": hand}
+        for name, matrix in places.items():
+            found = frames.position("base", name, "base")
+            assert found == pytest.approx(matrix[:3, 3], abs=2e-5), name
+        tool = frames.position("base", robot.tool, "base")
+        assert tool == pytest.approx(hand[:3, 3], abs=1e-12)
+    # The bar is a neighbour of both its ends, which are no neighbours of each other.
+    pairs = {b.name for b in robot.boundaries}
+    assert pairs == {
+        "base/1, bar/1", "base/1, head/1", "base/1, hand/1",
+        "turret/1, head/1", "turret/1, hand/1", "bar/1, hand/1",
+    }  # fmt: skip
+    # Limits of both joints: lift in [-1, 2]; level, that is +-lift + 0.2, in [-1, 2].
+    low, high = sorted(((-1 - 0.2) / multiplier, (2 - 0.2) / multiplier))
+    assert robot.joints[1].limits == pytest.approx((max(-1, low), min(2, high)), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("mimic", "axis", "kind"),
+    [
+        ("<mimic joint='lift' multiplier='1'/>", "0 1 0", "revolute"),
+        ("<mimic joint='lift' multiplier='-0.5'/>", "0 1 0", "revolute"),
+        ("<mimic joint='lift' multiplier='-1'/>", "0 1 0.001", "revolute"),
+        ("<mimic joint='lift' multiplier='-1'/>", "0 1 0", "prismatic"),
+        ("<mimic joint='turn' multiplier='-1'/>", "0 1 0", "revolute"),
+        ("<mimic joint='wrist' multiplier='-1'/>", "0 1 0", "revolute"),
+    ],
+)
+def test_other_joints_that_follow_one_are_refused_by_name(tmp_path, mimic, axis, kind) -> None:
+    with pytest.raises(RobotFileError, match=r"joint 'level': follows joint '\w+' \(mimic\)"):
+        load_robot(palletizer(tmp_path, mimic, axis, kind))
