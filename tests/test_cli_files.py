@@ -120,12 +120,22 @@ def test_every_help_ends_with_an_example() -> None:
         assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: qbound {name}")
 
 
+SWEEP = """
+schema = 1
+robot = "minervabot-v2"
+measure = ["region.area"]
+vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]
+"""
+
+
 @pytest.mark.parametrize("line", EXAMPLES)
 def test_every_example_works(capsys, line) -> None:
     program, _, rest = line.partition(" ")
     assert program == "qbound"
     if rest.startswith("check "):
         run(capsys, "certify minervabot-v2 --scale 0.96 -o cert.json")  # its own example
+    if rest.startswith("sweep "):
+        Path("reach.toml").write_text(SWEEP)
     status, _, err = run(capsys, rest)
     assert status in (0, 1)
     assert err == ""

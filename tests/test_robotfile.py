@@ -544,9 +544,9 @@ KEYWORDS = {
     "minItems": r"Expected `\w+` of length",
     "maxItems": r"Expected `\w+` of length",
     "minProperties": r"Expected `\w+` of length",
-    "minimum": "Expected `float` >",
-    "exclusiveMinimum": "Expected `float` >",
-    "maximum": None,
+    "minimum": r"Expected `(float|int)` >",
+    "exclusiveMinimum": r"Expected `(float|int)` >",
+    "maximum": r"Expected `(float|int)` <",
     "uniqueItems": None,
 }
 

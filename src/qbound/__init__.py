@@ -6,8 +6,8 @@ J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
-`figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`, `printable`,
-`extras`, `version`.
+`sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
+`printable`, `extras`, `version`.
 """
 
 from qbound.boundary.functions import clearance, components, pair_vector

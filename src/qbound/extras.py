@@ -17,6 +17,7 @@ class Extra(NamedTuple):
 
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
+    "distributed": Extra("a sweep", "Dask", "cluster"),
     "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
@@ -28,6 +29,7 @@ EXTRAS: Final = {
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
     "trimesh": Extra("a mesh", "trimesh", "arms"),
+    "zarr": Extra("a sweep", "Zarr", "cluster"),
 }
 """By the name that is imported."""
 

@@ -1,7 +1,7 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
 - commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `reach`,
-  `sample`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
+  `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
   (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
@@ -36,6 +36,7 @@ from qbound.cli import (
     robots,
     sample,
     surface,
+    sweep,
     traverse,
     why,
     workspace,
@@ -55,6 +56,7 @@ COMMANDS = (
     fibre,
     reach,
     sample,
+    sweep,
     pave,
     allowed,
     surface,
@@ -71,7 +73,7 @@ GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
 WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
-READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf")
+READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf", "specification")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141

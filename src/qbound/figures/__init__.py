@@ -7,7 +7,7 @@ Here are the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
 - `workspace`: aspects and their images; `cells`: pavings; `reach`: sections of maps of reach;
-  `surfaces`: those of three joints; `why`: why a plan fails.
+  `surfaces`: those of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from msgspec import UNSET, Meta, UnsetType, field
 from qbound.model.boundaries import TWO_BODIES, TWO_POINTS, BoundaryRow
 from qbound.model.joints import JOINT_TYPES, JointRow
 from qbound.model.rows import LARGEST, Label, Number, Row, Size
-from qbound.model.schema import JsonPath, explained, one_line, place, shown
+from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.model.shapes import SHAPES, BodyRow, ObstacleRow, PointRow, default_names
 from qbound.printable import printable
 
@@ -142,7 +142,7 @@ def fault(table: Table, path: JsonPath, text: str) -> RobotFileError:
 
 
 def _check_finite(table: Table) -> None:
-    for path, value in _leaves(table):
+    for path, value in leaves(table):
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise fault(table, path, f"{shown(value)} is not a finite number")
         size = abs(value) if isinstance(value, int | float) else 0
@@ -329,13 +329,3 @@ def _bodies(table: Table) -> list[tuple[str, int, str, str]]:
 def _rows(table: Table, *kinds: str) -> Iterator[tuple[str, int, Table]]:
     """Yield every table of some lists, with its list's name and its place there."""
     return ((kind, i, row) for kind in kinds for i, row in enumerate(table.get(kind, [])))
-
-
-def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[JsonPath, Any]]:
-    """Yield every number and text of a file, with its place."""
-    if isinstance(value, Mapping | list):
-        items = value.items() if isinstance(value, Mapping) else enumerate(value)
-        for step, item in items:
-            yield from _leaves(item, (*path, step))
-    else:
-        yield path, value

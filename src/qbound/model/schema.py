@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from qbound.printable import printable
@@ -66,6 +66,16 @@ def shown(value: Any) -> str:
     if isinstance(value, list):
         return one_line(f"[{', '.join(shown(item) for item in value[:LONGEST])}]")
     return one_line(repr(value) if isinstance(value, str) else str(value))
+
+
+def leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[JsonPath, Any]]:
+    """Yield every number and text of a file, with its place."""
+    if isinstance(value, Mapping | list):
+        items = value.items() if isinstance(value, Mapping) else enumerate(value)
+        for step, item in items:
+            yield from leaves(item, (*path, step))
+    else:
+        yield path, value
 
 
 def one_line(text: str) -> str:
@@ -142,20 +152,32 @@ def _too_small(found: Any, node: Node) -> str:
     return f"{shown(found)} is too small; allowed: {least}"
 
 
+def _too_large(found: Any, node: Node) -> str:
+    less = "exclusiveMaximum" in node
+    most = f"less than {node['exclusiveMaximum']}" if less else f"at most {node['maximum']}"
+    return f"{shown(found)} is too large; allowed: {most}"
+
+
 SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {
     "Object contains unknown field": _unknown_key,
     "Object missing required field": _missing_key,
     "Invalid": _wrong_choice,
     r"Expected `\w+`, got": _wrong_type,
     r"Expected `\w+` of length": _wrong_length,
-    "Expected `float` >": _too_small,
+    r"Expected `(float|int)` >": _too_small,
+    r"Expected `(float|int)` <": _too_large,
 }
 """From the sort of a fault, as msgspec begins to say it, to the sentence that says all."""
 
 
 def _wanted(node: Node) -> str:
     """Return what the schema asks for, in its own words or by the name of the type."""
-    types = {"number": "a number", "string": "a text", "boolean": "true or false"}
+    types = {
+        "number": "a number",
+        "integer": "a whole number",
+        "string": "a text",
+        "boolean": "true or false",
+    }
     types |= {"object": "a table", "array": "a list"}
     in_words = "description" in node and "title" not in node  # a title: the class of a table
     return str(node["description"] if in_words else types[node["type"]])

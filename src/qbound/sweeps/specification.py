@@ -1,0 +1,282 @@
+"""What is to be swept? A TOML file, checked as a robot file is, and the robot that it names.
+
+    schema = 1
+    robot = "arm.toml"      # seen from this file's folder; or a packaged robot's name
+    measure = ["region.area", "workspace.area"]
+    vary = [{ number = "joint.elbow.origin.0", from = 0.2, to = 0.6, count = 41 }]
+
+Numbers are named as `qbound.design.varied` has them, measures by `measures`; ``held.wrist`` is the
+value of a joint that is held. Optional: `also` in a row of `vary`, numbers that take its values,
+too; `slice`, joints that are held at one value; `rule`; `tolerance`, of pavings; `chunk`, arms that
+are measured together. Every number is in the robot file's unit.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import Meta, field
+
+from qbound.design import Path as Place
+from qbound.design import varied
+from qbound.model.robot import Robot
+from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots
+from qbound.model.rows import Label, Number, Row
+from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
+from qbound.printable import printable
+from qbound.sweeps.cells import HELD
+from qbound.sweeps.measures import MEASURES
+
+MOST_VARIED = 6
+MOST_CELLS = 1_000_000
+"""Arms of a sweep at most."""
+
+MeasureName = Literal[
+    "region.area",
+    "region.home.area",
+    "region.components",
+    "workspace.area",
+    "paving.inner",
+    "paving.outer",
+]
+
+
+Faults = Iterator[tuple[JsonPath, str]]
+
+
+class SpecificationError(ValueError):
+    """A specification that is wrong: names the file, the key, what was found, what is allowed."""
+
+    def __init__(self, text: str) -> None:
+        """Keep to what prints: names of files and of keys are the writer's."""
+        super().__init__(printable(text))
+
+
+class VaryRow(Row, kw_only=True):
+    """A table of `vary`: a number, and the values that it takes, equally far apart."""
+
+    number: Label
+    also: Annotated[list[Label], Meta(description="a list of names of numbers")] = field(
+        default_factory=list
+    )
+    first: Number = field(name="from")
+    last: Number = field(name="to")
+    count: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
+
+    @property
+    def numbers(self) -> list[str]:
+        """All numbers that take these values together."""
+        return [self.number, *self.also]
+
+
+class Specification(Row, kw_only=True):
+    """A specification of a sweep, schema 1."""
+
+    schema: Literal[1]
+    robot: Label
+    rule: Literal["clearance", "paper"] = "clearance"
+    slice: Annotated[
+        dict[str, Number], Meta(description="a table with a number for each joint that is held")
+    ] = field(default_factory=dict)
+    vary: Annotated[
+        list[VaryRow],
+        Meta(min_length=1, max_length=MOST_VARIED, description="a list of 1 to 6 tables"),
+    ]
+    measure: Annotated[
+        list[MeasureName], Meta(min_length=1, description="a list of one or more measures")
+    ]
+    tolerance: Annotated[float, Meta(gt=0, lt=1)] = 0.01
+    chunk: Annotated[int, Meta(ge=1, le=10_000)] = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A specification, and the robot that it names."""
+
+    specification: Specification
+    robot: Robot
+
+
+@cache
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a specification; ``schemas/sweep.schema.json`` is this."""
+    (_,), rows = msgspec.json.schema_components([Specification], ref_template="#/$defs/{name}")
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    top = rows.pop("Specification") | {"title": "qbound specification of a sweep, schema 1"}
+    return {"$schema": draft, **top, "$defs": rows}
+
+
+def read_specification(path: str | Path) -> Study:
+    """Read a specification and the robot file that it names.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file; the robot's path in it is seen from the file's own folder.
+
+    Raises
+    ------
+    SpecificationError
+        With the first fault, its place, and what is allowed there.
+    qbound.model.robotcheck.RobotFileError
+        If the robot file is none.
+    """
+    table = _content(path)
+    try:
+        specification = msgspec.convert(table, Specification)
+    except ValueError as error:
+        for where, number in leaves(table):
+            if isinstance(number, float) and not math.isfinite(number):
+                raise fault(path, table, where, f"{shown(number)} is no finite number") from None
+        where, text = explained(str(error), table, json_schema())
+        raise fault(path, table, where, text) from None
+    source = _robot_source(specification.robot, Path(path).parent)
+    try:
+        robot = load_robot(source)
+    except RobotFileError as error:
+        raise SpecificationError(f"{path}: robot: {error}") from None
+    study = Study(specification, robot)
+    for where, text in _faults(study):
+        raise fault(path, table, where, text)
+    return study
+
+
+def fault(path: str | Path, table: Any, where: JsonPath, text: str) -> SpecificationError:
+    """Return the error of a fault at a place of a specification."""
+    key = place(table, where)
+    return SpecificationError(f"{path}: {key}: {text}" if key else f"{path}: {text}")
+
+
+def _content(path: str | Path) -> dict[str, Any]:
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text"
+        raise SpecificationError(f"{path}: {reason}") from None
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise SpecificationError(f"{path}: not TOML: {error}") from None
+
+
+def _robot_source(name: str, folder: Path) -> str | Path:
+    return name if name in packaged_robots() else folder / name
+
+
+# --- what types cannot say ------------------------------------------------------------------------
+
+
+def _faults(study: Study) -> Faults:
+    """Yield what is wrong with a specification, each with its place."""
+    yield from _number_faults(study)
+    yield from _joint_faults(study)
+    yield from _measure_faults(study)
+    cells = 1
+    for i, row in enumerate(study.specification.vary):
+        cells *= row.count
+        if cells > MOST_CELLS:
+            yield ("vary", i, "count"), f"makes {cells} arms; at most {MOST_CELLS}"
+
+
+def _number_faults(study: Study) -> Faults:
+    """Yield numbers that the robot has not, that are named twice, and values that do not rise."""
+    seen = set()
+    for i, row in enumerate(study.specification.vary):
+        for k, name in enumerate(row.numbers):
+            where = ("vary", i, "number") if k == 0 else ("vary", i, "also", k - 1)
+            if text := _place_fault(study.robot, name, row.first):
+                yield where, text
+            if (key := _key(name)) in seen:
+                yield where, f"{one_line(name)} is varied twice"
+            seen.add(key)
+        if row.last < row.first or (row.last == row.first and row.count > 1):
+            yield ("vary", i, "to"), f"{row.last:g} is not above {row.first:g}, the value of 'from'"
+        if row.count == 1 and row.first != row.last:
+            yield ("vary", i, "count"), "1 value cannot be both 'from' and 'to'; wanted: 2 or more"
+        ends = [_robot_fault(study.robot, row, value) for value in (row.first, row.last)]
+        if all(ends):
+            yield ("vary", i), f"neither end is a robot: {ends[0]}"
+
+
+def _key(name: str) -> tuple[str | int, ...]:
+    """Return what two names of one number have in common."""
+    return tuple(int(step) if step.isdecimal() else step for step in name.split("."))
+
+
+def _place_fault(robot: Robot, name: str, value: float) -> str | None:
+    """Say why a name is that of no number; what value it may have is another question."""
+    try:
+        if name.startswith(HELD):
+            robot.joint_index(name.removeprefix(HELD))
+        else:
+            _varied(robot, {name: value})
+    except RobotFileError:
+        return None
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def _robot_fault(robot: Robot, row: VaryRow, value: float) -> str | None:
+    """Say why a robot with this value in a row's numbers is none."""
+    placed: list[Place] = [name for name in row.numbers if not name.startswith(HELD)]
+    try:
+        _varied(robot, dict.fromkeys(placed, value))
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def _varied(robot: Robot, numbers: dict[Place, float]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        varied(robot, numbers)
+
+
+def _joint_faults(study: Study) -> Faults:
+    """Yield held joints that there are not or that are held twice."""
+    names = [joint.name for joint in study.robot.joints]
+    for joint in study.specification.slice:
+        if joint not in names:
+            known = ", ".join(map(one_line, names))
+            yield ("slice", joint), f"no joint {one_line(joint)!r}; there are {known}"
+    for i, row in enumerate(study.specification.vary):
+        for name in row.numbers:
+            if name.removeprefix(HELD) in study.specification.slice and name.startswith(HELD):
+                yield ("vary", i), f"{one_line(name)} is varied, and 'slice' holds it"
+    if len(held_names(study.specification)) == len(names):
+        yield ("slice",), "every joint is held; one or more must move"
+
+
+def _measure_faults(study: Study) -> Faults:
+    """Yield measures that this robot cannot have, whatever its numbers."""
+    held = held_names(study.specification)
+    free = [joint.name for joint in study.robot.joints if joint.name not in held]
+    seen = set()
+    for i, name in enumerate(study.specification.measure):
+        if name in seen:
+            yield ("measure", i), f"{name} is asked for twice"
+        seen.add(name)
+        if MEASURES[name].planar and len(free) != 2:
+            moving = f"{len(free)} of {len(study.robot.joints)} are not held"
+            text = f"{name} takes two joints; {moving} ({', '.join(map(one_line, free))})"
+            yield ("measure", i), text
+        if study.specification.rule == "paper" and not MEASURES[name].planar:
+            yield ("measure", i), f"{name} knows the clearance rule only"
+    if study.specification.rule == "paper" and held:
+        yield ("rule",), "the paper's rule knows two joints only: nothing can be held"
+
+
+def held_names(specification: Specification) -> set[str]:
+    """Return the joints that are held, at one value or at several."""
+    numbers = [name for row in specification.vary for name in row.numbers]
+    varied = {name.removeprefix(HELD) for name in numbers if name.startswith(HELD)}
+    return varied | set(specification.slice)
