@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
 
 from qbound import RobotFileError, clearance, load_robot, save_robot
+from qbound.arms.allowed import Contact, allowed_collisions
+from qbound.arms.fibres import fibres
+from qbound.arms.links import links
+from qbound.arms.pair_forms import pair_forms
+from qbound.arms.paths import ToolPaths
+from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
 from qbound.cli import main
@@ -133,6 +140,43 @@ def test_what_does_not_know_it_says_so(tmp_path, capsys) -> None:
         assert main(command) == 2
         assert "parallelogram" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["arm.toml"]
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_links_come_as_near_as_their_frames_say(seed) -> None:
+    """Those of the bar and of what it carries, too: neither is at rest for the other."""
+    robot = arm(seed)
+    rng = np.random.default_rng(seed)
+    exact = exact_robot(robot)
+    for one, other in combinations(links(exact), 2):
+        pair = pair_forms(exact, one, other)
+        for q in rng.uniform(-1, 1, (3, 3)):
+            places = [robot.frames(q).position("0", x.balls[0].name, "0") for x in (one, other)]
+            gap = np.linalg.norm(places[0] - places[1]) - 0.02
+            found = pair.gaps(q[None, list(pair.joints)])
+            assert found == pytest.approx(gap, abs=1e-12), (one.name, other.name)
+
+
+def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
+    """It was cut off in front of its own joint, and both took each other for at rest."""
+    crank, z = np.array([1.0, 0, 0]), np.array([0, 0, 1.0])
+    joint = Parallelogram("p", "0", "1", 0 * z, np.eye(3), z, None, None, crank, "bar")
+    nose = Point("nose/1", "1", np.array([-0.5, 0, 0]), 0.125)  # on the bar at q = 0
+    points = (Point("bar/1", "bar", np.array([0.5, 0, 0]), 0.125), nose)
+    robot = Robot("r", (joint,), points, (), np.zeros(1), "nose/1", "m", "rad")
+    (found,) = allowed_collisions(robot)
+    assert (found.contact, found.joints) == (Contact.SOMETIMES, (0,))
+
+
+def test_what_carries_places_along_a_chain_refuses_it_by_name() -> None:
+    robot = replace(arm(2), boundaries=arm(2).boundaries[:3])
+    for asked in (
+        lambda: fibres(robot, 0, robot.home),
+        lambda: ToolPaths(robot, 0),
+        lambda: Balls.of(robot),
+    ):
+        with pytest.raises(ValueError, match="joint 'p' is a parallelogram"):
+            asked()
 
 
 # --- from a URDF ----------------------------------------------------------------------------------

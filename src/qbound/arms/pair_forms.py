@@ -101,10 +101,12 @@ def pair_forms(robot: Robot, one: Link, other: Link) -> PairForms:
     """Return the forms of two links of an exact robot (`proofs.exact.exact_robot`).
 
     Between two frames only the joints from the one to the other are looked at: the chain is cut
-    there, and the form is that of a shorter arm.
+    there, and the form is that of a shorter arm. The bar of a parallelogram sees what its own joint
+    carries turn back, so that the cut is before that joint.
     """
-    near, far = sorted((one, other), key=lambda link: link.depth)
-    joints = robot.joints[near.depth : far.depth]
+    near, far = sorted((one, other), key=lambda link: (link.depth, not _is_bar(robot, link)))
+    first = near.depth - (near.frame != far.frame and _is_bar(robot, near))
+    joints = robot.joints[first : far.depth]
     pairs = [Pair("", (a.name, b.name), 0) for a in near.balls for b in far.balls]
     if not joints:
         return _at_rest(near, far)
@@ -112,12 +114,17 @@ def pair_forms(robot: Robot, one: Link, other: Link) -> PairForms:
     with precision(BITS):
         found = PairForms(
             forms=stacked(arm, pairs),
-            joints=tuple(range(near.depth, far.depth)),
+            joints=tuple(range(first, far.depth)),
             ends=tuple(_ends(joint) for joint in joints),
             names=tuple(pair.points for pair in pairs),
             distances=np.array([float(arm.required_distance(pair)) for pair in pairs]),
         )
     return _without_idle(found)
+
+
+def _is_bar(robot: Robot, link: Link) -> bool:
+    """Tell whether a link turns within a parallelogram, in place of being carried by it."""
+    return link.depth > 0 and link.frame != robot.joints[link.depth - 1].frame
 
 
 def _at_rest(one: Link, other: Link) -> PairForms:

@@ -2,7 +2,8 @@
 
 Every frame is turned here so that the axis of its joint is z: then a joint mixes two columns of a
 pose by its cosine and sine, or adds a multiple of the third. The other way along the chain is the
-same step undone, so that a joint may be the observer as well as the base.
+same step undone, so that a joint may be the observer as well as the base. A parallelogram is no
+such step: it is refused by name.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.model.robot import Point, Robot
+from qbound.model.robot import Parallelogram, Point, Robot
+from qbound.printable import printable
 
 Floats = NDArray[np.float64]
 Pose = tuple[Floats, Floats]
@@ -28,9 +30,15 @@ class Chain:
         By the depth of their frames, else in the order given.
     depths : ndarray of int, shape (m,)
         How many joints move each of them.
+
+    Raises
+    ------
+    ValueError
+        If a joint is a parallelogram.
     """
 
     def __init__(self, robot: Robot, points: Sequence[Point]) -> None:
+        refuse_parallelograms(robot, "places are carried along turning and sliding joints only")
         self.points = tuple(sorted(points, key=lambda point: robot.depth(point.frame)))
         self.depths = np.array([robot.depth(point.frame) for point in self.points], dtype=np.intp)
         self._sliding = [not joint.turns for joint in robot.joints]
@@ -97,6 +105,24 @@ class Chain:
             axes = _turned(axes, np.cos(q), -np.sin(q))
         axes = self._turns[j] @ axes
         return axes, origin - self._moves[j] @ axes
+
+
+def refuse_parallelograms(robot: Robot, why: str) -> None:
+    """Refuse, by name, a joint that moves two frames and turns only one of them.
+
+    Parameters
+    ----------
+    why : str
+        What cannot be done with it.
+
+    Raises
+    ------
+    ValueError
+        If there is one.
+    """
+    for joint in robot.joints:
+        if isinstance(joint, Parallelogram):
+            raise ValueError(f"joint {printable(joint.name)!r} is a parallelogram: {why}")
 
 
 def axis_last(axis: Floats) -> Floats:

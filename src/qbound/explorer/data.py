@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.chain import refuse_parallelograms
 from qbound.boundary.functions import clearance, position
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.export.document import vertex_content, workspace_content
@@ -62,10 +63,11 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot, or the row of slices is not of its joints, or
-        goes past the region.
+        If the region is of forms, not of a robot, or a joint is a parallelogram, or the row of
+        slices is not of its joints, or goes past the region.
     """
     robot, problem = region.robot, region.problem
+    refuse_parallelograms(robot, "the page draws turning and sliding joints only")
     free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
     views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]

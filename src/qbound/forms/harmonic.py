@@ -274,7 +274,7 @@ def _outer(left: Array, right: Array) -> Array:
 
 def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
     """Add to the constant coefficient of each stacked form; `constant` has the stack's shape."""
-    constant = np.asarray(constant)
+    coefficients, constant = np.asarray(coefficients), np.asarray(constant)  # one exact number, too
     result = coefficients.astype(np.result_type(coefficients, constant))
     constants: tuple[Any, ...] = (..., *(0,) * (coefficients.ndim - constant.ndim))
     result[constants] += constant
