@@ -37,6 +37,7 @@ CHAPTERS = (
     "your_own_robot",
     "prismatic_joints",
     "real_arm",
+    "many_robots",
 )
 """In the order of the book, which ``run.py renumber`` writes here."""
 
