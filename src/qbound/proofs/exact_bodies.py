@@ -1,4 +1,4 @@
-"""What separates two bodies of a planar arm, as exact forms: for pavings and connections.
+r"""What separates two bodies of a planar arm, as exact forms: for pavings and connections.
 
 Two convex cores are more than R apart exactly if one of their features separates them: an edge with
 all corners of the other core more than R beyond it, or two corners that are the nearest places of
@@ -7,8 +7,7 @@ throughout, and infeasible where every feature has a form that is negative throu
 
 All comes from places of the far body seen from the near one's frame, and from their squared
 distances from its origin: a step d of the far frame from a place c to c + d has, seen from here,
-
-    |c + d|^2 - |c|^2 = 2 c . d + |d|^2.
+:math:`|c + d|^2 - |c|^2 = 2 c \cdot d + |d|^2`.
 
 No edge is brought to length 1: that would cost the exact numbers.
 """

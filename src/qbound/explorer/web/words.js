@@ -71,7 +71,7 @@ function statusText(found) {
   if (bad.length > 0) {
     const first = bad.slice(0, 2).map(words).join("; ");
     const more = bad.length > 2 ? `; and ${bad.length - 2} more` : "";
-    return ["Not safe.", `${first[0].toUpperCase()}${first.slice(1)}${more}.`];
+    return ["Not safe:", `${first}${more}.`];
   }
   const close = tightest(robot, found);
   const nearby = close ? `Closest: ${words(close)}.` : "Nothing bounds this arm.";
