@@ -36,6 +36,7 @@ CHAPTERS = (
     "errata",
     "your_own_robot",
     "prismatic_joints",
+    "three_joints",
     "real_arm",
     "many_robots",
 )

@@ -13,6 +13,7 @@ from qbound.arms.surface_files import COLOURS, OTHERS, colour_of
 from qbound.arms.surfaces import Surface
 from qbound.extras import require
 from qbound.figures import INK, STYLE, as_text, symbol
+from qbound.units import counted
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -48,6 +49,8 @@ def draw_surface(ax: Any, surface: Surface) -> list[Artist]:
         ax.set(**{f"{letter}lim": (low, high), f"{letter}label": f"{symbol(joint.name)} / {unit}"})
         if joint.turns:
             ax.set(**{f"{letter}ticks": _ticks(low, high)})
+        else:
+            ax.locator_params(axis=letter, nbins=4)
     ax.set_box_aspect((1, 1, 1))
     return [drawn]
 
@@ -104,4 +107,4 @@ def _legend(surface: Surface) -> list[Any]:
     names = surface.pairs[: len(COLOURS)]
     patches = [Patch(color=colour_of(k), label=as_text(name)) for k, name in enumerate(names)]
     more = len(surface.pairs) - len(names)
-    return [*patches, *([Patch(color=OTHERS, label=f"{more} others")] if more else [])]
+    return [*patches, *([Patch(color=OTHERS, label=counted(more, "other"))] if more else [])]
