@@ -275,7 +275,9 @@ def test_the_page_of_the_command_is_its_own_help(tmp_path):
     html = build_trial(tmp_path, "", TRIAL_INDEX + "\n```{commands}\n```\n")
     page = BeautifulSoup((html / "index.html").read_text("utf-8"), "html.parser")
     blocks = [block.get_text() for block in page.select("section pre")]
-    with mock.patch.dict(os.environ, COLUMNS="88", NO_COLOR="1"):
+    with importable(BOOK / "_ext"):
+        from book_pages import HELP_WIDTH
+    with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
         expected = [parser.format_help() for parser in command_parsers().values()]
     assert [block.strip() for block in blocks] == [text.strip() for text in expected]
     titles = [title.next_element for title in page.select("section section h2")]

@@ -21,6 +21,7 @@ from qbound import find_region, load_robot, packaged_robots
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import clearance, position
 from qbound.cli import main
+from qbound.explorer import surface_page
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import ARITHMETIC, SCRIPTS, explore, explorer_page
 from qbound.measures.scaling import least_along_edges
@@ -486,7 +487,10 @@ def test_every_name_of_a_script_is_used():
 
 
 def test_every_script_stands_in_the_page():
-    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == set(SCRIPTS)
+    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == {
+        *SCRIPTS,
+        *surface_page.SCRIPTS,
+    }
 
 
 @pytest.mark.parametrize(

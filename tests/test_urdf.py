@@ -13,50 +13,12 @@ from qbound.cli import main
 from qbound.region import violated
 from qbound.urdf.arm import import_urdf, packaged_or_path
 from qbound.urdf.robot_text import robot_text
+from support.urdf import BALL, joint, link, rotation, three_links, transform, written
 
 OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}
-BALL = "<collision><geometry><sphere radius='0.05'/></geometry></collision>"
-
-
-def link(name: str, inside: str = "") -> str:
-    return f"<link name='{name}'>{inside}</link>"
-
-
-def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:
-    limit = "<limit lower='-1' upper='2' velocity='3'/>" if "<limit" not in more else ""
-    ends = f"<parent link='{parent}'/><child link='{child}'/>"
-    return f"<joint name='{name}' type='{kind}'>{ends}{limit}{more}</joint>"
-
-
-def written(folder: Path, *parts: str, name: str = "arm.urdf") -> Path:
-    file = folder / name
-    file.write_text("<robot name='arm'>\n" + "\n".join(parts) + "\n</robot>\n", encoding="utf-8")
-    return file
-
-
-def three_links(folder: Path, more: str = "", kind: str = "revolute", balls: str = BALL) -> Path:
-    links = [link(name, balls) for name in "abc"]
-    return written(folder, *links, joint("j", "a", "b"), joint("k", "b", "c", kind, more))
 
 
 # --- kinematics -----------------------------------------------------------------------------------
-
-
-def rotation(axis: np.ndarray, angle: float) -> np.ndarray:
-    """By the exponential of a matrix: a series, and no formula of the package."""
-    x, y, z = axis / np.linalg.norm(axis)
-    generator = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) * angle
-    term, total = np.eye(3), np.eye(3)
-    for n in range(1, 60):
-        term = term @ generator / n
-        total = total + term
-    return total
-
-
-def transform(turn: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = turn, shift
-    return matrix
 
 
 @pytest.mark.parametrize("seed", range(6))

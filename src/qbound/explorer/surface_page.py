@@ -25,7 +25,7 @@ SCRIPTS: Final = ("surface.js", "surface_start.js")
 def surface_page(surface: Surface) -> str:
     """Return the page of a surface as one self-contained HTML file (not in the paper).
 
-    Places are rounded to 2^-16 of their axes' ranges, which no eye can see.
+    Places are rounded to a 65536th part of their axes' ranges, which no eye can see.
 
     Raises
     ------

@@ -34,7 +34,7 @@ from qbound.proofs.exact import exact_robot
 
 Floats = NDArray[np.float64]
 Alone = tuple[arb, arb, arb]
-"""Coefficients of one joint's (1, cos q, sin q) or (1, q, q^2)."""
+"""Coefficients of one joint's (1, cos q, sin q) or (1, q, q²)."""
 
 BITS = 100
 """Precision of the balls: roots are rounded to doubles of 53."""
@@ -197,7 +197,7 @@ def _arc(c: arb, a: arb, b: arb, _: float) -> tuple[float, float] | None:
 
 
 def _span(c: arb, a: arb, b: arb, farthest: float) -> tuple[float, float] | None:
-    """Return where ``b q^2 + a q + c < 0`` on a line: a slide of a pair, or of a half-space."""
+    """Return where ``b q² + a q + c < 0`` on a line: a slide of a pair, or of a half-space."""
     if not b > 0:
         c = c + abs(b) * ball(farthest) ** 2
         if a > 0:

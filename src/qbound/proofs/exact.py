@@ -143,7 +143,7 @@ def exact_state(
 def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
     """Return a robot without some joints: what they carry stands still where they are held.
 
-    A form has 3^n numbers, and these are made one by one: of three joints 27, of six 729.
+    A form of n joints has :math:`3^n` numbers, made one by one: of three joints 27, of six 729.
 
     Parameters
     ----------
