@@ -32,9 +32,10 @@ from lizarraga2025.ledger.latex import escaped
 from lizarraga2025.results import grid_error
 from qbound import figures, load_robot
 from qbound.cli import main
-from qbound.model.robotfile import robot_text
+from qbound.model.robotfile import is_urdf, robot_text
 from qbound.paths.traversal import traverse
 from qbound.symbols import with_symbols
+from qbound.urdf.arm import packaged_or_path
 from support.scripts import importable
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -301,7 +302,9 @@ def test_a_chapter_names_the_robots_that_it_loads(chapter: Path) -> None:
     entry = next(entry for entry in ENTRIES if entry["chapter"] == own)
     assert loaded <= set(entry["robots"])
     for name in loaded:
-        assert entry["robots"][name] == hashlib.sha256(robot_text(name)[0].encode()).hexdigest()
+        urdf = packaged_or_path(name)
+        text = urdf.read_text("utf-8") if is_urdf(urdf) else robot_text(name)[0]
+        assert entry["robots"][name] == hashlib.sha256(text.encode()).hexdigest()
 
 
 # --- citations ------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from qbound.arms.surfaces import find_surface
 from qbound.explorer.surface_page import surface_page
 from support.browser import broken_rules, drag, in_every_family, refuse_remote, settle, wait_until
-from test_surfaces import NAMES, dice
+from support.portals import NAMES, dice
 
 VIEW = "surface.view"
 

@@ -21,37 +21,14 @@ from qbound.boundary.balls import Balls
 from qbound.cli import main
 from qbound.explorer.surface_page import surface_data, surface_page
 from qbound.figures.surfaces import surface_picture
-from qbound.model.robot import HalfSpace, Pair, Point, Prismatic, Revolute, Robot
+from qbound.model.robot import HalfSpace, Pair, Revolute, Robot
 from qbound.model.robotfile import save_robot
-
-AXES = np.eye(3)
-NAMES = ["q0", "q1", "q2"]
-
-
-def point(name, frame, at=(0, 0, 0), radius=0.0) -> Point:
-    return Point(name, frame, np.array(at, dtype=float), radius)
-
-
-def portal(points, boundaries, limits=(-1.0, 1.0)) -> Robot:
-    """Three slides along the axes: what is forbidden is the obstacle itself."""
-    joints = tuple(
-        Prismatic(f"q{k}", str(k), str(k + 1), np.zeros(3), np.eye(3), AXES[k], limits)
-        for k in range(3)
-    )
-    return Robot("portal", joints, points, boundaries, np.full(3, 0.9), "hand", "m", "rad")
+from support.portals import AXES, NAMES, dice, point, portal
 
 
 def round_hole(at=(0.1, 0.05, -0.02), radius=0.75) -> Robot:
     points = (point("hand", "3"), point("ball", "0", at, radius))
     return portal(points, (Pair("apart", ("hand", "ball")),))
-
-
-def dice() -> Robot:
-    """The hand stays within a cube of edge 1 that is turned."""
-    turn = Rotation.from_euler("xyz", [0.3, 0.5, 0.2]).as_matrix()
-    sides = [(k, sign) for k in range(3) for sign in (1, -1)]
-    walls = tuple(HalfSpace(f"side {s}{k}", "hand", s * turn[k], -0.5) for k, s in sides)
-    return portal((point("hand", "3"),), walls)
 
 
 def arm(limits=None) -> Robot:
