@@ -290,14 +290,16 @@ def test_a_mesh_elsewhere_is_not_opened(tmp_path, name) -> None:
         ("bad.stl", "not read|triangles|finite"),
         ("nan.stl", "a corner is not a finite number"),
         ("a.step", "unknown ending"),
-        ("entity.dae", "has a document type"),
+        ("arm.dae", "unknown ending; wanted: one of .stl, .obj"),
+        ("loop.stl", "no place that can be reached|no file"),
     ],
 )
 def test_a_mesh_that_cannot_be_used_is_named(tmp_path, name, says) -> None:
     (tmp_path / "bad.stl").write_bytes(b"\x00" * 90)
     (tmp_path / "nan.stl").write_text(stl(TETRAHEDRON).replace("0.1", "nan", 1))
     (tmp_path / "a.step").write_text("x")
-    (tmp_path / "entity.dae").write_text("<!DOCTYPE x [<!ENTITY a 'b'>]><COLLADA/>")
+    (tmp_path / "arm.dae").write_text("<COLLADA/>")
+    (tmp_path / "loop.stl").symlink_to(tmp_path / "loop.stl")
     with pytest.raises(RobotFileError, match=says):
         load_robot(with_mesh(tmp_path, name))
 

@@ -39,6 +39,9 @@ BANDS, SECTORS = 6, 12
 MOST_CELLS = 64_000_000
 """Voxels of a grid, times directions where these are told apart."""
 
+LONGEST_EDGE = 4
+"""Edge of a voxel at most, in lengths of the arm."""
+
 ROWS = 512
 """Fibres a block."""
 
@@ -277,6 +280,8 @@ def _grid(robot: Robot, voxel: float | None, bins: int) -> Grid:
     edge = _round_below(length / 20) if voxel is None else float(voxel)
     if not 0 < edge < np.inf:
         raise ValueError(f"voxel: {edge:g} is no length above 0")
+    if edge > LONGEST_EDGE * max(length, 1.0):
+        raise ValueError(f"voxel: an edge of {edge:g} is too long for an arm of {length:g}")
     half = float(np.ceil(length / edge)) + 1.0
     if (2 * half) ** 3 * bins > MOST_CELLS:
         count = f"{(2 * half) ** 3:.3g} voxels" + f" of {bins} directions" * (bins > 1)

@@ -81,7 +81,7 @@ def _samples(triangles: Floats, excess: float) -> tuple[Floats, float]:
     sides = edges(triangles)
     area = float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()) / 2
     longest = max(excess / 8, math.sqrt(2 * area / MOST_SAMPLES))
-    if longest > excess / 2:
+    if longest > excess / 2 or np.abs(sides).max() > MOST_SAMPLES * longest:
         raise ValueError(f"the mesh is too large for an excess of {excess:g}; allow more")
     cells, done = triangles, []
     while len(cells):

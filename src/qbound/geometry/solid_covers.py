@@ -128,7 +128,7 @@ def cylinder_cover(radius: float, length: float, excess: float) -> Cover:
     >>> len(cover.radii) < 40, cover.excess <= 0.02
     (True, True)
     """
-    _check_count(int(length * radius / excess**2), excess)
+    _check_count(int(max(length * radius / excess, length) / excess), excess)
     corners = np.array([(0, 1), (radius, 1), (0, -1), (radius, -1)]) * (1, length / 2)
     triangles = corners[[[0, 1, 2], [1, 2, 3]]]
     side = math.sqrt(length * radius)

@@ -34,6 +34,9 @@ Limits = Mapping[str, tuple[float, float]]
 EXCESS = 0.02
 """How far, in metres, a ball may stick out of what it covers unless something else is asked for."""
 
+LEAST_EXCESS, MOST_EXCESS = 1e-6, 1e3
+"""Excess that can be asked for, m."""
+
 MOST_PAIRS = 20_000
 """Pairs of balls of a robot at most."""
 
@@ -125,8 +128,8 @@ def import_urdf(
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
     found = find_chain(urdf, *(chain or (None, None)))
     allowed = EXCESS if excess is None else excess
-    if not 0 < allowed < np.inf:
-        raise ValueError(f"excess {allowed}: a length above 0 is wanted")
+    if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
+        raise ValueError(f"excess {allowed}: {LEAST_EXCESS} to {MOST_EXCESS} m is wanted")
     joints = _joints(urdf, found, limits or {})
     shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
     balls, reached = _balls(shapes, found, allowed)

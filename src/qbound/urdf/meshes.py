@@ -7,9 +7,8 @@ below the URDF's own folder. Links are followed first, then it is checked where 
 from __future__ import annotations
 
 import io
-import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +22,8 @@ from qbound.urdf.xml import Element, Source
 
 Floats = NDArray[np.float64]
 
-KINDS = ("stl", "obj", "ply", "dae")
-"""Endings of meshes that are read."""
+KINDS = ("stl", "obj")
+"""Endings of meshes that are read: others have parts, units or axes that could be missed."""
 
 LARGEST_MESH = 200_000_000
 """Bytes of a mesh at most."""
@@ -58,9 +57,8 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     if path.stat().st_size > LARGEST_MESH:
         element.fault(f"{shown(mesh.filename)}: more than {LARGEST_MESH // 10**6} MB")
     content = path.read_bytes()
-    scale = mesh.scale * (_collada_unit(content, mesh, element) if kind == "dae" else 1.0)
     try:
-        corners, closed = _loaded(content, kind, scale)
+        corners, closed = _loaded(content, kind, mesh.scale)
     except Exception as error:  # what a parser of strangers' files makes of them
         element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
     if not 0 < len(corners) <= MOST_TRIANGLES:
@@ -83,7 +81,7 @@ def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
     else:
         tried = [roots[0] / rest]
     allowed = [root.resolve() for root in roots]
-    for path in (path.resolve() for path in tried):
+    for path in _resolved(tried, element):
         if not any(path.is_relative_to(root) for root in allowed):
             text = "leads outside of the URDF's folder and of the packages' folders"
             element.fault(f"filename: {shown(name)} {text}")
@@ -93,16 +91,26 @@ def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
     return element.fault(f"filename: no file {shown(name)}{cure}")
 
 
+def _resolved(tried: Sequence[Path], element: Element) -> Iterator[Path]:
+    """Yield places with their links followed."""
+    for path in tried:
+        try:
+            yield path.resolve()
+        except (
+            OSError,
+            RuntimeError,
+        ):  # of Python 3.11 and 3.12, for links that lead to themselves
+            element.fault(f"filename: {shown(path.name)}: no place that can be reached")
+
+
 def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
     """Return the triangles, and whether they close up; nothing but this file is opened."""
     import trimesh
 
-    options: dict[str, Any] = {"dae": {"ignore_broken": False}, "obj": {"skip_materials": True}}
+    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = trimesh.load_mesh(
-            io.BytesIO(content), file_type=kind, process=False, **options.get(kind, {})
-        )
+        found = trimesh.load_mesh(io.BytesIO(content), file_type=kind, process=False, **options)
     vertices = np.asarray(found.vertices, dtype=float) * scale
     faces = np.asarray(found.faces, dtype=int)
     merged = trimesh.Trimesh(vertices, faces, process=False)
@@ -110,20 +118,3 @@ def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
         merged.merge_vertices(merge_tex=True, merge_norm=True)
     closed = bool(merged.is_watertight and merged.is_winding_consistent)
     return np.asarray(vertices[faces]), closed
-
-
-def _collada_unit(content: bytes, mesh: Mesh, element: Element) -> float:
-    """Return the metres of a Collada file's unit; refuse what no mesh needs or is not handled."""
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return element.fault(f"{shown(mesh.filename)}: not UTF-8 text")
-    if re.search(r"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
-        element.fault(f"{shown(mesh.filename)}: has a document type; a mesh needs none")
-    up = re.search(r"<up_axis>\s*(\w+)\s*</up_axis>", text)
-    if up is None or up[1] != "Z_UP":
-        found = "no up_axis" if up is None else up[1]
-        element.fault(f"{shown(mesh.filename)}: {found}; wanted: a Collada file with Z_UP")
-    unit = re.search(r"<unit\b[^>]*\bmeter\s*=\s*[\"']([-+.\deE]+)[\"']", text)
-    scale = float(unit[1]) if unit else 1.0
-    return scale if 0 < scale < np.inf else element.fault(f"{shown(mesh.filename)}: unit {scale}")
