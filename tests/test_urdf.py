@@ -237,7 +237,7 @@ def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
         ({"limits": {"z": (0, 1)}}, "limits of 'z': the chain has j, k"),
         ({"limits": {"k": (1, 0)}}, "do not rise"),
         ({"limits": {"k": (-4000, 4000)}}, "turns wide"),
-        ({"excess": float("nan")}, "a length above 0 is wanted"),
+        ({"excess": float("nan")}, "1e-06 to 1000 m is wanted"),
         ({"srdf": tmp_path / "no.srdf"}, "no.srdf: No such file"),
     ]:
         with pytest.raises(ValueError, match=says):

@@ -129,7 +129,7 @@ def import_urdf(
     found = find_chain(urdf, *(chain or (None, None)))
     allowed = EXCESS if excess is None else excess
     if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
-        raise ValueError(f"excess {allowed}: {LEAST_EXCESS} to {MOST_EXCESS} m is wanted")
+        raise ValueError(f"excess {allowed}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
     joints = _joints(urdf, found, limits or {})
     shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
     balls, reached = _balls(shapes, found, allowed)
