@@ -25,7 +25,7 @@ PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
 PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.html"]
 API = [page for page in PAGES if page.startswith("generated/")]
 # Pages of the API are all made in one way, of docstrings: the longest have whatever one can have.
-LONGEST = sorted(API, key=lambda page: (HTML / page).stat().st_size)[-16:]
+LONGEST = sorted(API, key=lambda page: (HTML / page).stat().st_size)[-6:]
 PAGES = [page for page in PAGES if page not in API or page in LONGEST]
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]

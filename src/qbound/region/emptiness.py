@@ -33,8 +33,15 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
         Whose region is empty, without forms that depend on neither joint.
     base : int
         Which joint is the base of the cells.
+
+    Returns
+    -------
+    tuple of str
+        Empty where no boundary is to blame: a range has no width.
     """
     names = _names(problem)
+    if not len(names):
+        return ()  # a range has no width
     rows = _violated(problem, _random_places(problem))
     rows = rows[rows.any(axis=1)]
     while True:

@@ -96,10 +96,7 @@ def _resolved(tried: Sequence[Path], element: Element) -> Iterator[Path]:
     for path in tried:
         try:
             yield path.resolve()
-        except (
-            OSError,
-            RuntimeError,
-        ):  # of Python 3.11 and 3.12, for links that lead to themselves
+        except (OSError, RuntimeError):  # the latter of old Pythons, for links in a circle
             element.fault(f"filename: {shown(path.name)}: no place that can be reached")
 
 
