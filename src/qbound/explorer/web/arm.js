@@ -308,7 +308,8 @@ function placeArm(robot, drawn, state, lit) {
     drawn.bodies[i].setAttribute("points", corners.join(" "));
     drawn.bodies[i].classList.toggle("lit", touching.has(i));
   }
-  const places = robot.points.map((point) => at(placeIn(found[point.frame], point.at)));
+  const inSpace = robot.points.map((point) => placeIn(found[point.frame], point.at));
+  const places = inSpace.map(at);
   const spine = [...found.map((frame) => at(frame.place)), places[robot.tool]];
   drawn.spine.setAttribute("d", pathText(spine));
   for (const path of drawn.shadow) path.setAttribute("d", shadowText(robot, state.q, at));
@@ -319,7 +320,7 @@ function placeArm(robot, drawn, state, lit) {
     const beside = away.get(i);
     if (beside) placeNameBeside(drawn.names[i], place, beside);
   }
-  if (robot.plane.oblique) paintByDepth(drawn, axes, pointPlaces(robot, state.q));
+  if (robot.plane.oblique) paintByDepth(drawn, axes, inSpace);
   const placed = placedParts(robot, found);
   const marks = [...drawn.nearest];
   for (const [i, wall] of robot.boundaries.entries()) {
