@@ -23,7 +23,7 @@ from qbound.model.robot import Robot
 from qbound.region.region import Region, clearance_problem, solve
 from support import scenes
 
-SAME_AREA = 1e-6
+SAME_AREA = 1e-9
 """Areas of both bases come apart by what a double root is uncertain, at touching edges."""
 
 
