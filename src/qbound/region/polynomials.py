@@ -78,7 +78,7 @@ def _multiple_roots(stack: Complexes, z: Complexes) -> tuple[Ints, Complexes, Bo
     found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex))]
     gaps = np.abs(z[:, :, None] - z[:, None, :])
     company = (gaps <= _spread(z.shape[1])).sum(axis=-1).max(axis=-1)
-    for m in range(z.shape[1], 1, -1):
+    for m in range(int(company.max(initial=0)), 1, -1):
         near = np.flatnonzero(company >= m)
         k, one = np.nonzero((gaps[near] <= _spread(m)).sum(axis=-1) >= m)
         if not len(k):
