@@ -24,7 +24,7 @@ from qbound.region.region import Region, clearance_problem, solve
 from support import scenes
 
 SAME_AREA = 1e-9
-"""Areas of both bases come apart by what a double root is uncertain, at touching edges."""
+"""Areas that two bases find may come apart by this."""
 
 
 def regions_of(robot: Robot, bases: Sequence[int | None]) -> list[Region]:
