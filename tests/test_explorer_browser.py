@@ -449,13 +449,12 @@ def test_the_letters_of_all_three_families_are_drawn(open_explorer):
     assert narrow < usual < wide
 
 
-def test_without_scripts_the_page_says_what_it_would_show(browser, files):
-    page = browser.new_page(java_script_enabled=False)
-    page.goto(files["paper"].as_uri())
-    words = page.inner_text("noscript")
+def test_without_scripts_the_page_says_what_it_would_show(tabs, files):
+    with tabs.lent(java_script_enabled=False) as tab:
+        tab.page.goto(files["paper"].as_uri())
+        words = tab.page.inner_text("noscript")
     assert "needs JavaScript" in words
     assert "5 pieces" in words
-    page.close()
 
 
 def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):

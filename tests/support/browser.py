@@ -8,6 +8,8 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -35,6 +37,13 @@ FLAGS = [
     "--disable-sync",
 ]
 PATIENCE = 180_000  # ms: a ceiling for a page that hangs, far above what a busy machine needs
+UNLESS_SAID = {
+    "viewport": {"width": 1280, "height": 720},
+    "color_scheme": "light",
+    "reduced_motion": "no-preference",
+}
+"""What a new page is like, of all that can be changed on an old one."""
+
 REMOTE = re.compile(r"^(?!(file|data|blob):)")
 
 
@@ -90,26 +99,88 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
+@dataclass
+class Tab:
+    """A page that goes from one address to the next: a new one would take longer than most tests.
+
+    It refuses whatever leaves the machine, and notes it, and what the page complains of.
+    """
+
+    page: Any
+    requests: list[str] = field(default_factory=list)
+    complaints: list[tuple[str, str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        refuse_remote(self.page, self.requests)
+        self.page.on("pageerror", lambda error: self.complaints.append(("error", str(error))))
+        self.page.on("console", lambda said: self.complaints.append((said.type, said.text)))
+
+    def said(self, *kinds: str) -> list[str]:
+        """Return what the page complained of."""
+        return [text for kind, text in self.complaints if kind in kinds]
+
+
+class Tabs:
+    """The tabs of a worker: who takes one has it alone, and finds nothing of who had it before."""
+
+    def __init__(self, browser: Any) -> None:
+        self.browser = browser
+        self.free: dict[frozenset[Any], list[Tab]] = {}
+
+    @contextmanager
+    def lent(self, **options: Any) -> Iterator[Tab]:
+        """Lend an empty tab; of the options of a new page, three can be changed on an old one."""
+        look: dict[str, Any] = {name: options.pop(name, UNLESS_SAID[name]) for name in UNLESS_SAID}
+        free = self.free.setdefault(frozenset(options.items()), [])
+        tab = free.pop() if free else Tab(self.browser.new_page(**options))
+        tab.page.set_viewport_size(look.pop("viewport"))
+        tab.page.emulate_media(media="null", **look)
+        yield tab
+        self.clear(tab)
+        free.append(tab)
+
+    @staticmethod
+    def clear(tab: Tab) -> None:
+        if tab.page.url.startswith("file:"):
+            tab.page.evaluate("localStorage.clear()")
+        tab.page.goto("about:blank")
+        tab.page.mouse.move(0, 0)
+        tab.requests.clear()
+        tab.complaints.clear()
+
+
+@pytest.fixture(scope="session")
+def tabs(browser: Any) -> Tabs:
+    return Tabs(browser)
+
+
+@contextmanager
+def opening(tabs: Tabs, *excused: str) -> Iterator[Callable[..., Any]]:
+    """Open pages by their address; at the end none has complained or asked for anything.
+
+    Excused are complaints with one of these words.
+    """
+    with ExitStack() as taken:
+        used: list[Tab] = []
+
+        def open_one(address: str, **options: Any) -> Any:
+            tab = taken.enter_context(tabs.lent(**options))
+            used.append(tab)
+            tab.page.goto(address)
+            settle(tab.page)
+            return tab.page
+
+        yield open_one
+        said = [text for tab in used for text in tab.said("error", "warning")]
+        assert [text for text in said if not any(words in text for words in excused)] == []
+        assert [address for tab in used for address in tab.requests] == []
+
+
 @pytest.fixture
-def open_quietly(browser: Any) -> Iterator[Callable[..., Any]]:
-    """Open pages by their address; at the end none has complained or asked for anything."""
-    pages, complaints, requests = [], [], []
-
-    def open_one(address: str, **options: Any) -> Any:
-        page = browser.new_page(**options)
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda m: m.type in ("error", "warning") and complaints.append(m.text))
-        page.goto(address)
-        settle(page)
-        pages.append(page)
-        return page
-
-    yield open_one
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert requests == []
+def open_quietly(tabs: Tabs) -> Iterator[Callable[..., Any]]:
+    """Open pages; at the end none has complained of anything, or asked for anything."""
+    with opening(tabs) as open_one:
+        yield open_one
 
 
 @cache
