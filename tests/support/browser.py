@@ -77,6 +77,10 @@ WEAR = """(family) => {
   for (const name of faces) style.setProperty(name, family);
   window.explorer?.redraw?.(); // an explorer's pictures are drawn for the letters that it finds
 }"""
+UNDRESS = """() => {
+  for (const name of ["--book-serif", "--book-sans", "font-family"])
+    document.documentElement.style.removeProperty(name);
+}"""
 
 
 def chromium() -> str:
@@ -208,6 +212,12 @@ def in_every_family(page: Any) -> Iterator[str]:
         page.evaluate(WEAR, f"'test {family}'")
         settle(page)
         yield family
+
+
+def in_its_own_family(page: Any) -> None:
+    """Set the page in its own letters again."""
+    page.evaluate(UNDRESS)
+    settle(page)
 
 
 def refuse_remote(page: Any, requests: list[str]) -> None:
