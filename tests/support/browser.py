@@ -64,9 +64,9 @@ come from matplotlib and are handed to the page."""
 LETTERS = [*range(0x20, 0x250), *range(0x370, 0x400), *range(0x2000, 0x2300)]
 """Latin, Greek, punctuation, arrows and signs: the files shrink to a sixth."""
 
+HAS_FACES = """[...document.fonts].some((face) => face.family.includes("test wide"))"""
 ADD_FACES = """async (faces) => {
-  const known = new Set([...document.fonts].map((face) => face.family.replaceAll('"', "")));
-  for (const [family, weight, text] of faces.filter(([family]) => !known.has(family))) {
+  for (const [family, weight, text] of faces) {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
     document.fonts.add(await new FontFace(family, bytes, { weight }).load());
   }
@@ -207,7 +207,8 @@ def faces() -> list[tuple[str, str, str]]:
 
 def in_every_family(page: Any) -> Iterator[str]:
     """Set the page in one family after the other; code and signs keep their own."""
-    page.evaluate(ADD_FACES, faces())
+    if not page.evaluate(HAS_FACES):
+        page.evaluate(ADD_FACES, faces())
     for family in FAMILIES:
         page.evaluate(WEAR, f"'test {family}'")
         settle(page)
@@ -267,6 +268,16 @@ def eventually(page: Any, question: Callable[[], bool]) -> None:
     while not question():
         assert time.monotonic() < end, "the answer stays no"
         settle(page)
+
+
+COLOURS = ["color-contrast", "link-in-text-block"]
+BUT_COLOURS = {"rules": {rule: {"enabled": False} for rule in COLOURS}}
+"""Options of axe: most of its time goes into colours, and they alone hang on the theme."""
+
+
+def rules_in(theme: str) -> dict[str, Any]:
+    """Return axe's options for a page that it is asked about in the light and in the dark."""
+    return {} if theme == "light" else {"runOnly": COLOURS}
 
 
 def broken_rules(page: Any, context: Any = None, **options: Any) -> list[tuple[str, list[str]]]:
