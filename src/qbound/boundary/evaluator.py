@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
-from qbound.boundary.monomials import VALUE, Monomials, occurring
+from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
 from qbound.boundary.screen import Screen, reaches, screen
 from qbound.boundary.separation import Separation
@@ -132,7 +132,9 @@ class Evaluator:
     def settled(self, q: Floats) -> Bools:
         """Tell where no row of the table is negative, in double precision, (n, joints) to (n,).
 
-        Every other way to `feasible` is quicker, and comes here with what it cannot decide.
+        Every other way to `feasible` is quicker, and comes here with what it cannot decide. All
+        are taken by matrix products of one shape, so that a sign does not depend on how many are
+        asked at once.
 
         Raises
         ------
@@ -141,10 +143,12 @@ class Evaluator:
         """
         self._checked(q)
         result = np.empty(len(q), dtype=np.bool_)
-        for start in range(0, len(q), self._block):
-            here = q[start : start + self._block]
-            values = self._lifted @ self._columns_of(here)
-            result[start : start + self._block] = (values[:, : len(here)] >= 0).all(axis=0)
+        for start in range(0, len(q), BLOCK):
+            here = q[start : start + BLOCK]
+            rows = self.monomials.of_columns(padded(here, self._width))
+            parts = rows.reshape(len(rows), -1, self._width).transpose(1, 0, 2)
+            safe = (self._lifted @ parts >= 0).all(axis=1).reshape(-1)
+            result[start : start + BLOCK] = safe[: len(here)]
         return result
 
     def _screened(self, q: Floats) -> tuple[Bools, Indices]:
@@ -174,9 +178,9 @@ class Evaluator:
         flat = q.reshape(-1, self.joints)
         result = np.empty((len(flat), len(self.table)))
         for start in range(0, len(flat), self._block):
-            here = flat[start : start + self._block]
-            values = self.table @ self._columns_of(here)
-            result[start : start + self._block] = self._lengths(values.T)[: len(here)]
+            columns = np.ascontiguousarray(flat[start : start + self._block].T)
+            values = self.table @ self.monomials.of_columns(columns)
+            result[start : start + self._block] = self._lengths(values.T)
         return result.reshape(*q.shape[:-1], len(self.table))
 
     def _columns(self, rows: Floats, bodies: Floats) -> Floats:
@@ -249,15 +253,15 @@ class Evaluator:
         return [float(reach) for reach in self.reach]
 
     @cached_property
-    def _block(self) -> int:
-        """Configurations a block; each is computed alike in any block of two or more."""
-        return max(256, min(BLOCK, PRODUCTS // max(1, self.table.size)))
+    def _width(self) -> int:
+        """Configurations of one matrix product whose rounding is to be always the same."""
+        most = PRODUCTS // max(1, self.table.size)
+        return 1 << min(9, max(3, most.bit_length() - 1))
 
-    def _columns_of(self, q: Floats) -> Floats:
-        """Return the monomials of configurations, of two at the least."""
-        return self.monomials.of_columns(
-            np.ascontiguousarray(q.T if len(q) > 1 else q.T.repeat(2, 1))
-        )
+    @cached_property
+    def _block(self) -> int:
+        """Configurations a block, where rounding need not be always the same."""
+        return max(256, min(BLOCK, PRODUCTS // max(1, self.table.size)))
 
 
 def compiled(

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from qbound.forms.factors import FACTORS, Kind
 
 Array = NDArray[Any]
+Floats = NDArray[np.float64]
 Index = tuple[int, ...]
 Function = tuple[Kind, int]
 
@@ -106,6 +107,14 @@ def occurring(
     place |= {index: row for row, index in enumerate(several, 1 + len(factors))}
     products = tuple((place[_head(index)], place[_tail(index)]) for index in several)
     return Monomials(len(kinds), tuple(factors), products), place
+
+
+def padded(q: Floats, width: int, dtype: type = np.float64) -> Array:
+    """Return configurations as columns, with zeros up to a multiple of `width`; (n, joints)."""
+    columns: Array = np.empty((q.shape[1], -(-len(q) // width) * width), dtype)
+    columns[:, : len(q)] = q.T
+    columns[:, len(q) :] = 0
+    return columns
 
 
 def _indices(coefficients: Array) -> tuple[list[Index], list[Index]]:

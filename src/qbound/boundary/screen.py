@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.monomials import Monomials
+from qbound.boundary.monomials import Monomials, padded
 from qbound.forms.factors import Kind
 
 Floats = NDArray[np.float64]
@@ -91,10 +91,8 @@ class Screen:
 
         A configuration with a NaN or an infinite value is too near to say.
         """
-        columns = np.empty((self.monomials.joints, -(-len(q) // WIDTH) * WIDTH), np.float32)
-        columns[:, len(q) :] = 0
         with np.errstate(over="ignore", invalid="ignore"):
-            columns[:, : len(q)] = q.T
+            columns = padded(q, WIDTH, np.float32)
             least = self._least(columns)[: len(q)]
         feasible = least >= 1
         near = feasible == (least <= -1)  # neither, as of NaN
