@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary.functions import clearance
 from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
-from qbound.boundary.screen import Screen, reaches, screen
+from qbound.boundary.screen import SINES, Screen, reaches, screen
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
@@ -121,13 +121,31 @@ class Evaluator:
         """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
         q = np.asarray(q, dtype=float)
         if q.ndim == 1 and self.bodies is None:
-            return self._one_feasible(self._shaped(q))
-        flat = self._shaped(q).reshape(-1, self.joints)
-        result, near = self._screened(flat)
-        result[near] = self.settled(flat[near])
+            return self._one_feasible(self.shaped(q))
+        flat = self.shaped(q).reshape(-1, self.joints)
+        return self.completed(flat, *self._screened(flat)).reshape(q.shape[:-1])
+
+    def completed(self, q: Floats, result: Bools, near: Indices) -> Bools:
+        """Return a screen's answers with those that it left open, and with bodies, if there are.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, joints)
+        result : ndarray of bool, shape (n,)
+            Who is feasible; it is changed.
+        near : ndarray of int
+            Which configurations the screen did not decide.
+
+        Raises
+        ------
+        ValueError
+            If one of these has a value that is NaN or infinite.
+        """
+        if len(near):
+            result[near] = self.settled(q[near])
         if self.bodies is not None:
-            result[result] = self.bodies.all_separated(flat[result], -self.bodies.rounding)
-        return result.reshape(q.shape[:-1])
+            result[result] = self.bodies.all_separated(q[result], -self.bodies.rounding)
+        return result
 
     def settled(self, q: Floats) -> Bools:
         """Tell where no row of the table is negative, in double precision, (n, joints) to (n,).
@@ -195,14 +213,15 @@ class Evaluator:
         """How many values a configuration has."""
         return self.monomials.joints
 
-    def _shaped(self, q: Floats) -> Floats:
+    def shaped(self, q: Floats) -> Floats:
+        """Return configurations, unless the last axis has not one value a joint (ValueError)."""
         if q.shape[-1:] != (self.joints,):
             found = q.shape[-1] if q.ndim else "a bare number"
             raise ValueError(f"expected {self.joints} joint values on the last axis, found {found}")
         return q
 
     def _checked(self, q: ArrayLike) -> Floats:
-        q = self._shaped(np.asarray(q, dtype=float))
+        q = self.shaped(np.asarray(q, dtype=float))
         finite = all(map(math.isfinite, q.tolist())) if q.ndim == 1 else np.isfinite(q).all()
         if not finite:
             raise ValueError("a joint value is NaN or infinite")
@@ -239,7 +258,17 @@ class Evaluator:
 
     @cached_property
     def _screen(self) -> Screen | None:
-        return screen(self._lifted, self.monomials, self.reach)
+        return self.screen()
+
+    def screen(self, sines: float = SINES) -> Screen | None:
+        """Return the table in single precision; None where lengths are beyond it.
+
+        Parameters
+        ----------
+        sines : float
+            Error of the sines and cosines that will be taken (`qbound.boundary.screen.UNIT`).
+        """
+        return screen(self._lifted, self.monomials, self.reach, sines)
 
     @cached_property
     def _certain(self) -> Floats:
