@@ -7,7 +7,6 @@ with a bound of its error decides who is far from every boundary, and the evalua
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 
 import numpy as np
@@ -52,26 +51,25 @@ def compiled_feasible(
 
     Notes
     -----
-    The first call ever compiles for some seconds, once for all robots; later processes find the
+    The first call ever compiles for a few seconds, once for all robots; later processes find the
     code beside the package, or in the user's cache. Where lengths are beyond single precision, or
-    bodies are to be told apart, that is the evaluator's work as before.
+    bodies are to be told apart, that is the evaluator's work as before. Not in the paper.
 
     Examples
     --------
     >>> from qbound import load_robot
-    >>> safe = compiled_feasible(load_robot("minervabot-v2"))  # doctest: +SKIP
-    >>> safe([[0.2, -0.5], [1.5, 0.0]]).tolist()  # doctest: +SKIP
+    >>> safe = compiled_feasible(load_robot("minervabot-v2"))
+    >>> safe([[0.2, -0.5], [1.5, 0.0]]).tolist()
     [True, False]
     """
     refuse_no_robot("compiled_feasible", robot)
     if threads < 1:
         raise ValueError(f"threads {threads}: one thread or more")
-    run, table = machine(), evaluator(robot, limits=limits)
+    (run, run_one), table = machine(), evaluator(robot, limits=limits)
     screen, one = table.screen(SINES), (table.joints,)
     if screen is None:
         return table.feasible
     plan, numbers = program(screen)
-    first = np.zeros(1, np.int64)  # of one configuration the index is always 0
 
     def answer(q: Floats, safe: Bools) -> None:
         near = np.empty(len(safe), np.int64)  # what is not written takes no memory
@@ -82,8 +80,8 @@ def compiled_feasible(
     def feasible(q: ArrayLike) -> Bools:
         q = np.asarray(q, float, order="C")
         if q.shape == one and table.bodies is None:
-            safe = np.empty(1, np.bool_)
-            return table.settled(q[None])[0] if run(q, plan, numbers, safe, first) else safe[0]
+            found = run_one(q, plan, numbers)
+            return table.settled(q[None]).reshape(()) if found < 0 else np.array(found == 1)
         flat = table.shaped(q).reshape(-1, table.joints)
         safe = np.empty(len(flat), np.bool_)
         if threads == 1 or len(safe) < 2 * SHARE:
@@ -97,6 +95,8 @@ def compiled_feasible(
 
 def shared(answer: Callable[[Floats, Bools], None], q: Floats, safe: Bools, threads: int) -> None:
     """Answer in parts, by several threads; the first error of any is raised."""
+    from concurrent.futures import ThreadPoolExecutor
+
     step = max(SHARE, -(-len(safe) // (4 * threads)))
     parts = [slice(start, start + step) for start in range(0, len(safe), step)]
     with ThreadPoolExecutor(threads) as pool:

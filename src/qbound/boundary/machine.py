@@ -9,8 +9,8 @@ Notes
 Sine and cosine are polynomials on one turn, the Chebyshev interpolants of degrees 11 and 12 in
 single precision. Their error, in units of :math:`2^{-24}`: 1.7 of the interpolation, 4 of the
 reduction to one turn, at most 60 of Horner's rule, by the sum over its steps of two roundings of
-each partial result; `SINES` is above the sum. Over every number of single precision within 32 rad
-the largest found is 6.
+each partial result; `SINES` is above the sum. Over every number of single precision from
+:math:`2^{-14}` to 32 rad the largest found is 9.9, with products and sums fused.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ Singles = NDArray[np.float32]
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Machine = Callable[[Floats, Integers, Singles, Bools, Integers], int]
+MachineOfOne = Callable[[Floats, Integers, Singles], int]
 
 SINES = 72.0
-"""Bound of the error of `_sines` beside an exact argument, in `qbound.boundary.screen.UNIT`."""
+"""Bound of the error of `_sines` of an exact argument, in `qbound.boundary.screen.UNIT`."""
 
 WIDTH = 256
 """Configurations at a time: a robot's monomials stay in the first cache."""
@@ -131,6 +132,30 @@ def judge(q: Floats, plan: Integers, numbers: Singles, safe: Bools, near: Intege
     return int(found)
 
 
+def judge_one(q: Floats, plan: Integers, numbers: Singles) -> int:
+    """Return 1 where one configuration is certainly feasible, 0 where not; -1: too near to say."""
+    joints, turning, products = plan[0], plan[1], plan[2]
+    weights, pairs = numbers[joints:], plan[4 + turning : 4 + turning + 2 * products]
+    rows = plan[4 + turning + 2 * products :]
+    where = rows[plan[3] + 1 :]
+    terms = np.empty(joints + 2 * turning + products, np.float32)
+    for j in range(joints):
+        terms[j] = q[j]
+        if not abs(terms[j]) <= numbers[j]:
+            return -1
+    for k in range(turning):
+        terms[joints + 2 * k], terms[joints + 2 * k + 1] = _cos_sin(terms[plan[4 + k]])
+    for k in range(products):
+        terms[joints + 2 * turning + k] = terms[pairs[2 * k]] * terms[pairs[2 * k + 1]]
+    least = TWO
+    for k in range(plan[3]):
+        value = weights[rows[k]]
+        for i in range(rows[k] + 1, rows[k + 1]):
+            value += weights[i] * terms[where[i]]
+        least = min(value, least)
+    return int(least >= ONE) if abs(least) >= ONE else -1
+
+
 def _columns(q: Floats, joints: int, n: int, scratch: Singles) -> None:
     """Write configurations as columns; a stride known beforehand is many times as quick."""
     if joints == 2:
@@ -146,13 +171,17 @@ def _columns(q: Floats, joints: int, n: int, scratch: Singles) -> None:
 
 
 def _sines(n: int, x: Singles, cosine: Singles, sine: Singles) -> None:
-    """Write cosine and sine by polynomials on one turn."""
     for i in range(n):
-        turns = (x[i] * PER_TURN + SHIFT) - SHIFT
-        r = (x[i] - turns * TURN) - turns * TURN_REST
-        z = r * r
-        cosine[i] = C0 + z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6)))))
-        sine[i] = r * (S0 + z * (S1 + z * (S2 + z * (S3 + z * (S4 + z * S5)))))
+        cosine[i], sine[i] = _cos_sin(x[i])
+
+
+def _cos_sin(x: np.float32) -> tuple[np.float32, np.float32]:
+    """Return cosine and sine, by polynomials on one turn."""
+    turns = (x * PER_TURN + SHIFT) - SHIFT
+    r = (x - turns * TURN) - turns * TURN_REST
+    z = r * r
+    cosine = C0 + z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6)))))
+    return cosine, r * (S0 + z * (S1 + z * (S2 + z * (S3 + z * (S4 + z * S5)))))
 
 
 def _row(
@@ -201,8 +230,8 @@ def _told(start: int, n: int, least: Singles, safe: Bools, near: Integers, found
 
 
 @lru_cache(maxsize=1)
-def machine() -> Machine:
-    """Return `judge` as machine code; compiled at the first call, and kept beside this file.
+def machine() -> tuple[Machine, MachineOfOne]:
+    """Return `judge` and `judge_one` as machine code; compiled when called, and kept.
 
     Raises
     ------
@@ -213,12 +242,10 @@ def machine() -> Machine:
     from numba import njit
     from numba.extending import register_jitable
 
-    fast = {"fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-    for step in (_columns, _sines, _row, _within, _told):
+    fast: dict[str, Any] = {"fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+    for step in (_columns, _cos_sin, _sines, _row, _within, _told):
         register_jitable(**fast)(step)
-    options: dict[str, Any] = {"nogil": True, **fast}
     try:
-        kept: Machine = njit(cache=True, **options)(judge)
-    except RuntimeError:  # nowhere to write to
-        kept = njit(**options)(judge)
-    return kept
+        return tuple(njit(cache=True, nogil=True, **fast)(each) for each in (judge, judge_one))
+    except RuntimeError:  # nowhere to keep it
+        return tuple(njit(nogil=True, **fast)(each) for each in (judge, judge_one))

@@ -35,8 +35,9 @@ UNIT = 2.0**-24
 """Half a unit in the last place of single precision, relative."""
 
 SINES = 16.0
-"""Error of NumPy's sine and cosine in single precision, in `UNIT`: it tests them to 2 to 4 units in
-the last place, which is at most 4 to 8 of these."""
+"""Bound of the error of NumPy's sine and cosine in single precision, in `UNIT`. Its tests allow 4
+units in the last place, at most 4 of these below 1; over every number from 2**-14 to 32 rad the
+largest found is 1.3."""
 
 ROOM = 1.25
 """The bound is this much larger than its first-order terms, themselves at most a thousandth."""
