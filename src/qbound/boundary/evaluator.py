@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
+from qbound.boundary.lengths import Denominator, denominators, lengths
 from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
 from qbound.boundary.screen import SINES, Screen, reaches, screen
@@ -30,7 +31,6 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Range = tuple[float, float] | None
-Denominator = tuple[Floats, Floats, Floats]
 
 BLOCK = 8192
 """Configurations a block at most: their monomials stay in the cache between the two passes."""
@@ -43,9 +43,6 @@ COUNT_SCREENED = 256
 """Fewer configurations than these are as quick without the screen."""
 
 NO_COLUMNS = np.empty(0, dtype=np.intp)
-
-NO_DISTANCE = 2.0**-1000
-"""Stands for the distance 0 in a denominator: 0 / 0 would be NaN where two points meet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -394,30 +391,6 @@ def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:
     """Return the clearance forms of boundaries as one stack, shape (m,)."""
     forms = np.array([clearance(robot, boundary).coefficients for boundary in boundaries])
     return HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
-
-
-def denominators(distance: Floats) -> Denominator:
-    r"""Return (a, b, d) of ``sqrt(a value + b) + d``: :math:`|B| + d_{\min}`, or 1 without one.
-
-    Parameters
-    ----------
-    distance : ndarray
-        :math:`d_{\min}` of the pairs; NaN where the value is a length.
-    """
-    pair = ~np.isnan(distance)
-    d = np.where(pair, np.maximum(distance, NO_DISTANCE), 0.0)
-    return pair.astype(float), np.where(pair, d * d, 1.0), d
-
-
-def lengths(values: Floats, rounding: Floats, denominator: Denominator) -> Floats:
-    """Return the margins of values of forms, shape (..., m); what rounding makes negative is 0.
-
-    The values may be changed.
-    """
-    if values.size and values.min() < 0:
-        values[(values < 0) & (values >= -rounding)] = 0
-    a, b, d = denominator
-    return np.asarray(values / (np.sqrt(np.maximum(a * values + b, 0)) + d))
 
 
 def limit_names(joint: str) -> tuple[str, str]:
