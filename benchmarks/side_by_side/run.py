@@ -24,6 +24,7 @@ from plan import JOBS
 SCHEMA = "qbound/side-by-side/1"
 FILE = ROOT / "benchmarks" / "side_by_side.json"
 QUICK_ROUNDS = 2
+TOO_LATE = {"missing": "not asked: the time of the run was up"}
 
 
 def main() -> int:
@@ -31,6 +32,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="a trial run: less of everything")
     parser.add_argument("--only", default="", help="jobs whose task and scene hold this")
     parser.add_argument("-o", "--output", type=Path, default=FILE)
+    parser.add_argument("--minutes", type=float, help="ask nothing more after so many")
     parser.add_argument("--judge", action="store_true", help="judge the goals of the file again")
     options = parser.parse_args()
     if options.judge:
@@ -40,8 +42,12 @@ def main() -> int:
     chosen = [job for job in JOBS if options.only in f"{job.task}-{job.scene}-{job.label}"]
     chosen = [job for job in chosen if not options.quick or job.quick is not None]
     peers = {name: Peer(name) for job in chosen for name in job.peers}
-    start, busy = time.monotonic(), load()
-    measurements = [found for job in chosen for found in measured(job, peers, options.quick)]
+    start, busy, measurements = time.monotonic(), load(), list[dict[str, Any]]()
+    for job in chosen:
+        if options.minutes is None or time.monotonic() - start < 60 * options.minutes:
+            measurements += measured(job, peers, options.quick)
+        else:
+            measurements += [entry(job, peers[name], [TOO_LATE], None) for name in job.peers]
     for peer in peers.values():
         peer.end()
     document = {
@@ -62,11 +68,11 @@ def main() -> int:
 def measured(job: Job, peers: dict[str, Peer], quick: bool) -> list[dict[str, Any]]:
     """Ask the peers of a job in turns, round by round, and put together what each answered."""
     answers: dict[str, list[dict[str, Any]]] = {name: [] for name in job.peers}
-    for number in range(QUICK_ROUNDS if quick else job.rounds):
+    for number in range(min(QUICK_ROUNDS, job.rounds) if quick else job.rounds):
         for name in job.peers:
             if wants_more(answers[name], number, quick):
                 answers[name].append(peers[name].ask(job.line(quick), LIMIT))
-        print(f"{job.id_of('')[:-1] or job.task}: round {number + 1}", file=sys.stderr, flush=True)
+        print(f"{job.id_of('')}: round {number + 1}", file=sys.stderr, flush=True)
     first = {name: rounds[0]["answer"] for name, rounds in answers.items() if timed(rounds)}
     kept = job.compare(first)
     return [entry(job, peers[name], rounds, kept.get(name)) for name, rounds in answers.items()]
