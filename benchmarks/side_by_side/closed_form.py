@@ -48,6 +48,8 @@ class PlanarArm:
         Limits of each joint; (-pi, pi) where it turns all the way round.
     turning : tuple of bool
         Which joints turn all the way round.
+    signs : ndarray, shape (joints,)
+        Which way round, in the plane, each joint turns.
     slopes : tuple of float
         No margin changes faster than this with each joint; length per rad.
     """
@@ -57,9 +59,9 @@ class PlanarArm:
         flat = int(np.argmax(np.abs(axes[0])))
         self._plane = [(1, 2), (0, 2), (0, 1)][flat]
         handed = -1.0 if flat == 1 else 1.0  # a turn about y takes z to x
-        self._signs = handed * axes[:, flat]
+        self.signs = handed * axes[:, flat]
         self._robot = robot
-        self._origins = [self._place(joint.origin) for joint in robot.joints]
+        self._origins = [self.place(joint.origin) for joint in robot.joints]
         limits = [joint.limits for joint in robot.joints]
         self.turning = tuple(ends is None for ends in limits)
         self.ranges = np.array([ends or (-np.pi, np.pi) for ends in limits])
@@ -68,7 +70,7 @@ class PlanarArm:
 
     def margin(self, q: Sequence[Floats]) -> Floats:
         """Return the least margin, a length; one array a joint, of shapes that broadcast."""
-        turns = [Turn(np.cos(x), sign * np.sin(x)) for sign, x in zip(self._signs, q, strict=True)]
+        turns = [Turn(np.cos(x), sign * np.sin(x)) for sign, x in zip(self.signs, q, strict=True)]
         least = np.full(np.broadcast_shapes(*(np.shape(turn.cos) for turn in turns)), np.inf)
         for margin in self._margins:
             np.minimum(least, margin(turns), out=least)
@@ -88,11 +90,12 @@ class PlanarArm:
             result[k : k + rows] = self.margin([x[k : k + rows, None], y[None]])
         return result
 
-    def _place(self, at: Any) -> Place:
+    def place(self, at: Any) -> Place:
+        """Return a place or a direction of three coordinates in the plane of motion."""
         across, up = self._plane
         return Place(float(at[across]), float(at[up]))
 
-    def _seen(self, turns: Turns, frames: tuple[int, int], at: Place) -> Place:
+    def seen(self, turns: Turns, frames: tuple[int, int], at: Place) -> Place:
         """Return the place of a point of frame `frames[1]`, seen from frame `frames[0]`."""
         for j in reversed(range(*frames)):
             origin, (c, s) = self._origins[j], turns[j]
@@ -103,21 +106,21 @@ class PlanarArm:
         """Return how far from a joint's axis a point on what it moves can be."""
         links = sum(float(np.hypot(*place)) for place in self._origins[joint + 1 :])
         depth, moved = self._robot.depth, list[Place]()
-        moved += [self._place(p.at) for p in self._robot.points if depth(p.frame) > joint]
+        moved += [self.place(p.at) for p in self._robot.points if depth(p.frame) > joint]
         for body in self._robot.bodies:
             if depth(body.frame) > joint:
-                moved += [self._place(corner) for corner in body.shape.places]
+                moved += [self.place(corner) for corner in body.shape.places]
         return links + max(float(np.hypot(*place)) for place in moved)
 
     def _margin(self, boundary: Any) -> Margin:
         robot = self._robot
         if isinstance(boundary, HalfSpace):
             point = robot.point(boundary.point)
-            normal, least = self._place(boundary.normal), boundary.offset + point.radius
-            frames, at = (0, robot.depth(point.frame)), self._place(point.at)
+            normal, least = self.place(boundary.normal), boundary.offset + point.radius
+            frames, at = (0, robot.depth(point.frame)), self.place(point.at)
 
             def height(turns: Turns) -> Floats:
-                x, y = self._seen(turns, frames, at)
+                x, y = self.seen(turns, frames, at)
                 if normal.x == 0 or normal.y == 0:
                     return np.asarray(normal.y * y if normal.x == 0 else normal.x * x) - least
                 return np.asarray(normal.x * x + normal.y * y - least)
@@ -127,11 +130,11 @@ class PlanarArm:
             points = [robot.point(name) for name in boundary.points]
             one, other = sorted(points, key=lambda point: robot.depth(point.frame))
             between = robot.depth(one.frame), robot.depth(other.frame)
-            to, end = self._place(one.at), self._place(other.at)
+            to, end = self.place(one.at), self.place(other.at)
             apart = robot.required_distance(boundary)
 
             def distance(turns: Turns) -> Floats:
-                x, y = self._seen(turns, between, end)
+                x, y = self.seen(turns, between, end)
                 return _length(x - to.x, y - to.y) - apart
 
             return distance
@@ -145,17 +148,17 @@ class PlanarArm:
         if not isinstance(shape, Capsule) or block.frame != self._robot.base:
             raise TypeError(f"no closed form for {link.name} and {block.name}")
         frames = 0, self._robot.depth(link.frame)
-        ends = self._place(shape.start), self._place(shape.end)
+        ends = self.place(shape.start), self.place(shape.end)
         if isinstance(core, Disc):
-            corners, thick = [self._place(core.at)], core.radius
+            corners, thick = [self.place(core.at)], core.radius
         elif isinstance(core, Polygon):
-            corners, thick = [self._place(corner) for corner in core.corners], 0.0
+            corners, thick = [self.place(corner) for corner in core.corners], 0.0
         else:
             raise TypeError(f"no closed form for {block.name}")
         apart, length = shape.radius + thick + clearance, float(_length(*_minus(*ends)))
 
         def distance(turns: Turns) -> Floats:
-            start, end = (self._seen(turns, frames, at) for at in ends)
+            start, end = (self.seen(turns, frames, at) for at in ends)
             return segment_distance(start, end, length, corners) - apart
 
         return distance

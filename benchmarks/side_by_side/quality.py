@@ -12,7 +12,7 @@ import base64
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import product
 from typing import Any
 
@@ -38,7 +38,7 @@ DRAWN = 1e-7
 """Largest distance (rad) of the polygons that stand for the exact region from its arcs."""
 SPACING = 0.01
 """Distance (rad) of the places on the exact arcs, and at most on an answer's edges."""
-MOST = 200_000
+MOST = 50_000
 """Places on an answer's boundary that are looked at, at most: evenly chosen."""
 SEAM = 1e-9
 """What is this near (rad) to the cut of a turning joint is on it."""
@@ -75,6 +75,11 @@ class Truth:
     window: Floats
     turning: tuple[bool, bool]
 
+    @cached_property
+    def boundary(self) -> STRtree:
+        """The boundary of the polygons, for its nearest places."""
+        return _tree(boundary_lines(self.polygons, self.window, self.turning), self)
+
 
 def quality(
     scene: str, rings: Rings | Packed, at: tuple[float, float] | None = None
@@ -99,7 +104,7 @@ def quality(
         boundary to the answer's, ``invented``, that from the answer's to the exact one,
         ``distance``, the larger of both, and ``typical``, the root mean square of the first;
         ``components`` and ``true_components``; ``corners`` of the answer. Distances are None where
-        nothing was answered. Those to the exact boundary are uncertain by ``DRAWN``.
+        nothing was answered. From ``invented`` is taken what the drawn arcs may be off, ``DRAWN``.
     """
     truth = true_region(scene, at)
     rings = unpacked(rings) if isinstance(rings, Mapping) else rings
@@ -118,15 +123,12 @@ def quality(
         "typical": None,
     }
     result["beyond"] = max(0.0, answer.area / truth.polygons.area - result["covered"])
-    edges = boundary_lines(answer, truth.window, truth.turning)
-    if edges:
-        missed = _distances(truth.arcs, edges, truth)
-        mine = np.concatenate([_spaced(line) for line in edges])
-        mine = mine[:: -(-len(mine) // MOST)]
-        invented = _distances(
-            mine, boundary_lines(truth.polygons, truth.window, truth.turning), truth
-        )
-        far = float(missed.max()), float(invented.max())
+    lines = boundary_lines(answer, truth.window, truth.turning)
+    if lines:
+        missed = _distances(truth.arcs, _tree(lines, truth))
+        mine = np.concatenate([_spaced(line) for line in lines])
+        invented = _distances(mine[:: -(-len(mine) // MOST)], truth.boundary) - DRAWN
+        far = float(missed.max()), max(0.0, float(invented.max()))
         result |= {"missed": far[0], "invented": far[1], "distance": max(far)}
         result["typical"] = float(np.sqrt(np.mean(missed**2)))
     return result
@@ -278,18 +280,25 @@ def _spaced(line: Floats) -> Floats:
     return np.asarray(line[edge] + part[:, None] * (line[edge + 1] - line[edge]))
 
 
-def _distances(places: Floats, lines: Sequence[Floats], truth: Truth) -> Floats:
-    """Return the distance of each place to the nearest line, across the cuts too."""
+def _tree(lines: Sequence[Floats], truth: Truth) -> STRtree:
+    """Return lines in short chains, repeated across the cuts, for their nearest places."""
     shifts = product(*((0, -TURN, TURN) if turns else (0,) for turns in truth.turning))
     low, high = truth.window[:, 0] - OVERLAP, truth.window[:, 1] + OVERLAP
     chains = []
     for shift in shifts:
         for line in lines:
             moved = line + np.array(shift)
+            if (moved.max(axis=0) < low).any() or (moved.min(axis=0) > high).any():
+                continue
             for k in range(0, len(moved) - 1, CHAIN):
                 chain = moved[k : k + CHAIN + 1]
                 if (chain.max(axis=0) > low).all() and (chain.min(axis=0) < high).all():
                     chains.append(shapely.linestrings(chain))
+    return STRtree(chains)
+
+
+def _distances(places: Floats, lines: STRtree) -> Floats:
+    """Return the distance of each place to the nearest line."""
     points = shapely.points(places)
-    _, apart = STRtree(chains).query_nearest(points, all_matches=False, return_distance=True)
+    _, apart = lines.query_nearest(points, all_matches=False, return_distance=True)
     return np.asarray(apart)
