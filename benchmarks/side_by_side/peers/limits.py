@@ -1,8 +1,9 @@
 """What this machine can do at most: sines and cosines, and reading memory, with nothing around.
 
-Every kernel reads configurations of two joints and writes one byte for each, compiled by numba to
+Every kernel takes configurations of two joints and writes one byte for each, compiled by numba to
 the processor's widest vectors. ``read`` only adds both values; ``sines`` has both sines and both
-cosines, by the polynomials of the Cephes library, of values that stay in the cache; ``both`` has them of values from memory: no method that needs them can be faster.
+cosines, by the polynomials of the Cephes library, of values that stay in the cache; ``both`` has
+them of values from memory: no method that needs them can be faster.
 """
 
 from __future__ import annotations

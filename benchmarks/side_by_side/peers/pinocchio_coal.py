@@ -54,7 +54,11 @@ def models(scene: str) -> tuple[Any, Any]:
 
 
 def _turning(pin: Any, axis: list[float]) -> Any:
-    aligned = {(1, 0, 0): pin.JointModelRX, (0, 1, 0): pin.JointModelRY, (0, 0, 1): pin.JointModelRZ}
+    aligned = {
+        (1, 0, 0): pin.JointModelRX,
+        (0, 1, 0): pin.JointModelRY,
+        (0, 0, 1): pin.JointModelRZ,
+    }
     found = aligned.get(tuple(axis))
     return found() if found else pin.JointModelRevoluteUnaligned(np.array(axis))
 

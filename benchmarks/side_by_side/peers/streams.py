@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 import scenes
-from serve import Task, Timed, bits, timed
+from packing import bits
+from serve import Task, Timed, timed
 
 Judge = Callable[[np.ndarray], Any]
 
 
-def stream_tasks(many: Callable[[str], Judge] | None, one: Callable[[str], Judge] | None) -> dict[str, Task]:
+def stream_tasks(
+    many: Callable[[str], Judge] | None, one: Callable[[str], Judge] | None
+) -> dict[str, Task]:
     """Return the tasks "stream" and "one" of a peer.
 
     Parameters
