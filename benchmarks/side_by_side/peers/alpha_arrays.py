@@ -7,6 +7,8 @@ edges that one of them alone has are its boundary.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import shapely
 from planar import Floats, arm
@@ -14,13 +16,20 @@ from quality import packed
 from sampled import count_for, feasible, largest_gap, polygon_rings
 from serve import Refused, Timed, serve, timed
 
-MOST = 3_000_000
+MOST = 500_000
 """Configurations, at most: they take over 20 s."""
+
+
+def spatial() -> Any:
+    """Return `scipy.spatial`, which loads at the first call."""
+    import scipy.spatial
+
+    return scipy.spatial
 
 
 def region(scene: str, accuracy: float) -> Timed:
     """Answer with the alpha shape of a random sample."""
-    form = arm(scene)
+    form, _ = arm(scene), spatial()
     count = count_for(form, accuracy)
     if count > MOST:
         raise Refused(f"{count:.2g} configurations are more than {MOST:.0e}")
@@ -31,9 +40,7 @@ def region(scene: str, accuracy: float) -> Timed:
 
 def _alpha_shape(points: Floats, radius: float) -> shapely.Geometry:
     """Return the union of all Delaunay triangles with a circumscribed circle below a radius."""
-    from scipy.spatial import Delaunay
-
-    net = Delaunay(points)
+    net = spatial().Delaunay(points)
     triangles = net.simplices.astype(np.int64)
     small = _circumradii(points[triangles]) < radius
     edges = np.sort(triangles[small][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2))

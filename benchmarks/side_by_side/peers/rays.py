@@ -19,16 +19,17 @@ RAYS = 12.0
 """Rays, times the root of the accuracy: chords between them are as near to a curve as that."""
 STRIDE = 0.05
 """Of the walk, rad: what is thinner may be stepped over."""
-MOST = 1.5e6
-"""Rays, at most."""
+MOST = 2e8
+"""Margins, at most, about: with more it takes over 20 s."""
 
 
 def region(scene: str, accuracy: float, stride: float = STRIDE) -> Timed:
     """Answer with one polygon about the start of the scene."""
     form, at = arm(scene), np.array(start(scene))
     count = math.ceil(RAYS / math.sqrt(accuracy))
-    if count > MOST:
-        raise Refused(f"{count:.2g} rays are more than {MOST:.0e}")
+    asked = count * (math.pi / stride + math.log2(1 + stride / accuracy))
+    if asked > MOST:
+        raise Refused(f"{asked:.2g} margins are more than {MOST:.0e}")
 
     def work() -> Floats:
         angle = np.arange(count) * (2 * math.pi / count)
