@@ -208,3 +208,36 @@ def duration(seconds: float) -> str:
         if seconds >= size:
             return f"{float(f'{seconds / size:.3g}'):g} {unit}"
     return f"{float(f'{seconds / 1e-9:.3g}'):g} ns"
+
+
+def wanted(goal: Mapping[str, Any]) -> str:
+    """Return what a goal asks for: a time, or a ratio.
+
+    Examples
+    --------
+    >>> wanted({"sense": "at most", "goal": 0.003, "of": ["ours", None]})
+    'at most 3 ms'
+    >>> wanted({"sense": "at least", "goal": 8, "of": ["ours", "theirs"]})
+    'at least 8'
+    """
+    number = times(goal["goal"]) if goal["of"][1] else duration(goal["goal"])
+    return f"{goal['sense']} {number}"
+
+
+def reached(goal: Mapping[str, Any]) -> str:
+    """Return what was measured of a goal: a time, a ratio, or why there is none.
+
+    Examples
+    --------
+    >>> reached({"of": ["ours", None], "ours": 0.0065, "ratio": None})
+    '6.5 ms'
+    >>> reached({"of": ["ours", "theirs"], "ours": 2.0, "ratio": 9.04})
+    '9'
+    >>> reached({"of": ["ours", None], "ours": None, "ratio": None, "why": "not measured: ours"})
+    'not measured: ours'
+    """
+    if goal["of"][1] and goal["ratio"] is not None:
+        return times(goal["ratio"])
+    if not goal["of"][1] and goal["ours"] is not None:
+        return duration(goal["ours"])
+    return str(goal["why"])
