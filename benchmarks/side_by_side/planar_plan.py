@@ -6,12 +6,14 @@ from typing import Any
 
 from jobs import ROUNDS, Answers, Job
 from quality import quality
+from scenes import SEED
 from streams_plan import compared
 
 ARCS = "qbound_arcs"
 OURS = (ARCS, "qbound_file", "qbound_polygons")
 QUICK_ONES = ("rays", "fine_rays")
 GRIDS = ("grid", "refined_grid")
+TYPED = "closed_form_joints"
 EVERYBODY = (*OURS, *QUICK_ONES, *GRIDS)
 
 SCENES = ("paper", "walls", "hundred", "obstacles10")
@@ -36,8 +38,7 @@ def _judged(scene: str, answer: dict[str, Any]) -> dict[str, Any]:
     kept = {name: value for name, value in answer.items() if name != "rings"}
     kept["all"] = quality(scene, answer["rings"])
     if "at" in answer:  # of the component that it is in, as that is all that it looks for
-        first, second = answer["at"]
-        kept["own"] = quality(scene, answer["rings"], (first, second))
+        kept["own"] = quality(scene, answer["rings"], answer["at"])
     return kept
 
 
@@ -74,23 +75,22 @@ def grows(scene: str, peers: tuple[str, ...]) -> Job:
 
 def joints(count: int) -> list[Job]:
     """Return the jobs about an arm of so many joints: judged, and its feasible part."""
-    scene, both = f"joints-{count}", ("qbound_joints", "closed_form_joints")
-    request = {"count": 100_000, "seed": 15}
+    scene = f"joints-{count}"
+    request, quick = {"count": 100_000, "seed": SEED}, {"count": 10_000}
     return [
-        Job(
-            "stream", scene, ("qbound_numpy", both[1]), request, {"count": 10_000}, "", 5, compared
-        ),
-        Job("part", scene, both, {"step": 0.2}, {}, "", 3),
+        Job("stream", scene, ("qbound_numpy", TYPED), request, quick, "", 5, compared),
+        Job("part", scene, ("qbound_joints", TYPED), {"step": 0.2}, {}, "", 3),
     ]
 
 
 JOBS = [
-    *(region(scene, 1e-3, (*OURS, *QUICK_ONES), ROUNDS) for scene in SCENES),
+    *(region(s, 1e-3, (*OURS, *QUICK_ONES), ROUNDS, quick=s in SWEPT) for s in SCENES),
     *(region(scene, 1e-3, GRIDS, 3, quick=False) for scene in SCENES),
-    *(region(scene, 1e-2, GRIDS if scene in SWEPT else EVERYBODY, 3) for scene in SCENES),
-    *(region(scene, 1e-1, ("alpha_shape", "alpha_arrays"), 3) for scene in SCENES),
+    *(region(s, 1e-2, GRIDS if s in SWEPT else EVERYBODY, 3, quick=s != "hundred") for s in SCENES),
+    *(region(s, 1e-1, ("alpha_shape", "alpha_arrays"), 3, quick=s in SWEPT) for s in SCENES),
     *(region(scene, 3e-2, ("alpha_arrays",), 3, quick=False) for scene in SCENES),
     *(region(scene, 1e-2, ("alpha_arrays", *OURS, *QUICK_ONES), 1, quick=False) for scene in SWEPT),
+    region("walls", 3e-3, ("alpha_arrays",), 1, quick=False),
     region("walls", 3e-2, ("alpha_shape",), 1, quick=False),
     region("paper", 5e-2, ("alpha_shape",), 1, quick=False),
     region("paper", 1e-2, ("alpha_shape",), 1, quick=False),
