@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+from closed_form import PlanarArm
 from jobs import ROUNDS, Answers, Job
 from quality import quality
-from scenes import SEED
+from scenes import SEED, configurations, robot
 from streams_plan import compared
 
 ARCS = "qbound_arcs"
@@ -23,6 +25,8 @@ FINER = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 BOUNDARIES = (10, 30, 100, 300)
 JOINTS = (2, 3, 4, 5, 6)
+MANY = 2_000_000
+"""Random configurations that stand for the feasible part of joint space."""
 
 
 def with_quality(scene: str) -> Any:
@@ -50,6 +54,24 @@ def without_rings(answers: Answers) -> dict[str, dict[str, Any]]:
     }
 
 
+def with_error(scene: str) -> Any:
+    """Return what puts errors beside feasible parts of a scene's joint space.
+
+    They are differences from the part of many random configurations, with its standard error.
+    """
+
+    def compare(answers: Answers) -> dict[str, dict[str, Any]]:
+        free = PlanarArm(robot(scene)).of(configurations(scene, MANY, SEED).T.copy()) >= 0
+        true = float(free.mean())
+        sure = {"true": true, "uncertain": math.sqrt(true * (1 - true) / MANY)}
+        return {
+            name: answer | sure | {"error": abs(answer["part"] - true)}
+            for name, answer in answers.items()
+        }
+
+    return compare
+
+
 def region(
     scene: str, accuracy: float, peers: tuple[str, ...], rounds: int, quick: bool = True
 ) -> Job:
@@ -70,7 +92,8 @@ def region(
 def grows(scene: str, peers: tuple[str, ...]) -> Job:
     """Return the job of finding a region to 1e-2, whose time alone is wanted."""
     quick = {} if scene != "boundaries-300" else None
-    return Job("growth", scene, peers, {"accuracy": 1e-2}, quick, "", 5, without_rings)
+    request = {"task": "region", "accuracy": 1e-2}
+    return Job("growth", scene, peers, request, quick, "", 5, without_rings)
 
 
 def joints(count: int) -> list[Job]:
@@ -79,7 +102,7 @@ def joints(count: int) -> list[Job]:
     request, quick = {"count": 100_000, "seed": SEED}, {"count": 10_000}
     return [
         Job("stream", scene, ("qbound_numpy", TYPED), request, quick, "", 5, compared),
-        Job("part", scene, ("qbound_joints", TYPED), {"step": 0.2}, {}, "", 3),
+        Job("part", scene, ("qbound_joints", TYPED), {"step": 0.2}, {}, "", 3, with_error(scene)),
     ]
 
 
