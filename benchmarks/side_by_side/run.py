@@ -31,7 +31,12 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="a trial run: less of everything")
     parser.add_argument("--only", default="", help="jobs whose task and scene hold this")
     parser.add_argument("-o", "--output", type=Path, default=FILE)
+    parser.add_argument("--judge", action="store_true", help="judge the goals of the file again")
     options = parser.parse_args()
+    if options.judge:
+        told = json.loads(options.output.read_text(encoding="utf-8"))
+        write(told | {"goals": judged(told["measurements"])}, options.output)
+        return 0
     chosen = [job for job in JOBS if options.only in f"{job.task}-{job.scene}-{job.label}"]
     chosen = [job for job in chosen if not options.quick or job.quick is not None]
     peers = {name: Peer(name) for job in chosen for name in job.peers}

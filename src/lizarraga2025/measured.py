@@ -60,6 +60,15 @@ class Measured:
         return self.peer.startswith(OURS)
 
     @property
+    def quality(self) -> Mapping[str, Any]:
+        """How good an answer about a region is; nothing where none was compared.
+
+        Of the one component that the peer looks for, where it looks for no other.
+        """
+        found: Mapping[str, Any] = self.answer.get("own", self.answer.get("all", {}))
+        return found
+
+    @property
     def rate(self) -> float:
         """How many of what the answer counts a second; ValueError where there was no answer."""
         if self.seconds is None:
