@@ -153,9 +153,18 @@ def test_what_would_take_too_long_is_refused(method):
 
 
 def test_vertices_are_held_against_more_digits():
-    found = reference.errors(scenes.robot("walls"))
-    assert found["vertices"] == 4
+    found = reference.errors("walls")
+    assert (found["vertices"], found["digits"]) == (4, 60)
     assert 0 < max(found["vertex_error"], found["arc_error"]) < 1e-14
+    assert found["area_error"] < 1e-12
+
+
+def test_a_place_beside_a_body_is_told_to_be_beside_it():
+    arc = find_region(scenes.robot("obstacles10")).components[0].loops[0][0]
+    (q, after), form = arc.at([0.4, 0.40001]), planar.arm("obstacles10")
+    across = np.array([-1, 1]) * (after - q)[::-1] / math.hypot(*(after - q))
+    assert reference.by_margin(form, q[None]) < 1e-12
+    assert reference.by_margin(form, (q + 1e-6 * across)[None]) == pytest.approx(1e-6, rel=1e-2)
 
 
 def test_a_place_beside_a_vertex_is_told_to_be_beside_it():

@@ -8,6 +8,7 @@ from typing import Any
 from closed_form import PlanarArm
 from jobs import ROUNDS, Answers, Job
 from quality import quality
+from reference import errors, of_arcs
 from scenes import SEED, configurations, robot
 from streams_plan import compared
 
@@ -15,6 +16,7 @@ ARCS = "qbound_arcs"
 OURS = (ARCS, "qbound_file", "qbound_polygons")
 QUICK_ONES = ("rays", "fine_rays")
 GRIDS = ("grid", "refined_grid")
+FIBRES = "qbound_joints"
 TYPED = "closed_form_joints"
 EVERYBODY = (*OURS, *QUICK_ONES, *GRIDS)
 
@@ -41,6 +43,9 @@ def with_quality(scene: str) -> Any:
 def _judged(scene: str, answer: dict[str, Any]) -> dict[str, Any]:
     kept = {name: value for name, value in answer.items() if name != "rings"}
     kept["all"] = quality(scene, answer["rings"])
+    if "drawn" in answer:  # the answer is arcs: the polygons stand for them, but for distances
+        kept["reference"] = errors(scene)
+        kept["all"] |= of_arcs(kept["reference"])
     if "at" in answer:  # of the component that it is in, as that is all that it looks for
         kept["own"] = quality(scene, answer["rings"], answer["at"])
     return kept
@@ -100,9 +105,12 @@ def joints(count: int) -> list[Job]:
     """Return the jobs about an arm of so many joints: judged, and its feasible part."""
     scene = f"joints-{count}"
     request, quick = {"count": 100_000, "seed": SEED}, {"count": 10_000}
+    rough: dict[str, Any] | None = {} if count < 5 else None
     return [
         Job("stream", scene, ("qbound_numpy", TYPED), request, quick, "", 5, compared),
-        Job("part", scene, ("qbound_joints", TYPED), {"step": 0.2}, {}, "", 3, with_error(scene)),
+        Job(
+            "part", scene, ("qbound_joints", TYPED), {"step": 0.2}, rough, "", 3, with_error(scene)
+        ),
     ]
 
 
@@ -122,7 +130,6 @@ JOBS = [
         for scene in SWEPT
         for accuracy in FINER
     ),
-    *(Job("reference", scene, (ARCS,), {}, {}, "", 1) for scene in SCENES[:3]),
     *(grows(f"boundaries-{count}", (ARCS, "grid", "rays")) for count in BOUNDARIES),
     *(job for count in JOINTS for job in joints(count)),
 ]
