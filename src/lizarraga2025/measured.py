@@ -69,6 +69,13 @@ class Measured:
         return found
 
     @property
+    def numbers(self) -> dict[str, float]:
+        """The plain numbers of the answer, and how much of a region it covers."""
+        told = {name: value for name, value in self.answer.items() if type(value) in (int, float)}
+        parts = {name: self.quality[name] for name in ("covered", "beyond") if name in self.quality}
+        return told | parts
+
+    @property
     def rate(self) -> float:
         """How many of what the answer counts a second; ValueError where there was no answer."""
         if self.seconds is None:
