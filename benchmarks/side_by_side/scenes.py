@@ -1,0 +1,181 @@
+"""The scenes of the comparison: each as a robot of qbound, and as plain numbers for its peers.
+
+Whoever judges a scene reads the same numbers from here: a robot by name (`robot`), what a peer
+needs of it in JSON (`plain`), and the same random configurations (`configurations`).
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+
+from bodies import among
+from regions import many_boundaries
+
+from qbound import load_robot
+from qbound.model.robot import Body, Capsule, Disc, HalfSpace, Pair, Point, Polygon, Revolute, Robot
+
+SEED = 15
+WALLS_AREA = 3.21682
+"""Of the region between the two walls, rad^2, as the literature on IRIS has it by grids."""
+
+LIMIT = 1.57
+NAMES = ("paper", "walls", "hundred", "obstacles10", "ur5")
+
+
+@lru_cache(maxsize=32)
+def robot(name: str) -> Robot:
+    """Return the robot of a scene: one of `NAMES`, or ``boundaries-30`` with so many of them.
+
+    Raises
+    ------
+    KeyError
+        If there is no such scene.
+    """
+    kind, _, number = name.partition("-")
+    if kind == "boundaries" and number.isdecimal():
+        return boundaries(int(number))
+    makers = {
+        "paper": lambda: load_robot("minervabot-v2"),
+        "walls": walls,
+        "hundred": lambda: boundaries(100),
+        "obstacles10": lambda: among(10, SEED),
+        "ur5": lambda: load_robot("ur5"),
+    }
+    return makers[name]()
+
+
+def boundaries(count: int) -> Robot:
+    """Return the planar arm with so many pairs and walls at random places."""
+    return many_boundaries(count, SEED)
+
+
+def walls() -> Robot:
+    """Return two links of 2 and 1 that hang between walls at +-1.83, a ball of 0.5 at the tip.
+
+    The double pendulum on which Drake tests its IRIS; straight down at zero.
+    """
+    axis, mount, ends = np.array([0.0, -1.0, 0.0]), np.eye(3), (-LIMIT, LIMIT)
+    joints = (
+        Revolute("q1", "base", "upper", np.zeros(3), mount, axis, ends),
+        Revolute("q2", "upper", "lower", np.array([0.0, 0.0, -2.0]), mount, axis, ends),
+    )
+    ball = Point("ball", "lower", np.array([0.0, 0.0, -1.0]), 0.5)
+    sides = tuple(
+        HalfSpace(name, "ball", np.array([x, 0.0, 0.0]), -1.83)
+        for name, x in (("right wall", -1.0), ("left wall", 1.0))
+    )
+    return Robot("Between walls", joints, (ball,), sides, np.zeros(2), "ball", "m", "rad")
+
+
+def ends(arm: Robot) -> np.ndarray:
+    """Return the lower and upper end of every joint, shape (2, joints), rad; a turn without."""
+    return np.array([joint.limits or (-np.pi, np.pi) for joint in arm.joints]).T
+
+
+def configurations(name: str, count: int, seed: int) -> np.ndarray:
+    """Return uniform random configurations of a scene, shape (count, joints)."""
+    low, high = ends(robot(name))
+    return np.random.default_rng(seed).uniform(low, high, (count, len(low)))
+
+
+def plain(name: str) -> dict[str, Any]:
+    """Return what a peer needs of a scene, in JSON: lengths, radians.
+
+    Every pair of ``pairs`` collides where the centres are nearer than ``distance``, which is the
+    sum of the radii of its two ``points``. A wall collides where ``normal . centre < level``.
+    """
+    arm = robot(name)
+    pairs = [b for b in arm.used if isinstance(b, Pair)]
+    held = [b for b in arm.used if isinstance(b, HalfSpace)]
+    radii = ball_radii(arm, pairs)
+    low, high = ends(arm)
+    return {
+        "scene": name,
+        "unit": arm.length_unit,
+        "base": arm.base,
+        "tool": arm.tool,
+        "home": arm.home.tolist(),
+        "joints": [
+            {
+                "name": joint.name,
+                "type": joint.type_name,
+                "parent": joint.parent,
+                "frame": joint.frame,
+                "origin": joint.origin.tolist(),
+                "mount": np.asarray(joint.mount).tolist(),
+                "axis": joint.axis.tolist(),
+                "low": float(low[j]),
+                "high": float(high[j]),
+                "limited": joint.limits is not None,
+            }
+            for j, joint in enumerate(arm.joints)
+        ],
+        "points": [
+            {
+                "name": point.name,
+                "frame": point.frame,
+                "at": point.at.tolist(),
+                "radius": radii.get(point.name, point.radius),
+            }
+            for point in arm.points
+        ],
+        "pairs": [
+            {"name": b.name, "points": list(b.points), "distance": arm.required_distance(b)}
+            for b in pairs
+        ],
+        "walls": [
+            {
+                "name": b.name,
+                "point": b.point,
+                "normal": b.normal.tolist(),
+                "level": b.offset + arm.point(b.point).radius,
+            }
+            for b in held
+        ],
+        "bodies": [solid(body) for body in arm.bodies] if arm.collisions else [],
+        "obstacles": [solid(body) for body in arm.obstacles],
+        "allowed": [sorted(names) for names in arm.allowed],
+    }
+
+
+def ball_radii(arm: Robot, pairs: list[Pair]) -> dict[str, float]:
+    """Return radii of balls that touch where the points of each pair are as near as they may be.
+
+    Raises
+    ------
+    ValueError
+        If no radii are so for all pairs.
+    """
+    names = sorted({name for pair in pairs for name in pair.points})
+    place = {name: i for i, name in enumerate(names)}
+    told = np.zeros((len(pairs), len(names)))
+    for row, pair in zip(told, pairs, strict=True):
+        row[[place[name] for name in pair.points]] = 1
+    wanted = np.array([arm.required_distance(pair) for pair in pairs])
+    own = np.array([arm.point(name).radius for name in names])
+    radii = own + np.linalg.lstsq(told, wanted - told @ own)[0] if pairs else own
+    if not np.allclose(told @ radii, wanted, rtol=0, atol=1e-12) or (radii < 0).any():
+        raise ValueError(f"{arm.name}: no balls stand for these pairs")
+    return dict(zip(names, radii.tolist(), strict=True))
+
+
+def solid(body: Body) -> dict[str, Any]:
+    """Return a body or an obstacle in JSON: a capsule, a disc or a polygon in its frame."""
+    shape, about = body.shape, {"name": body.name, "frame": body.frame}
+    if isinstance(shape, Capsule):
+        return about | {
+            "capsule": np.stack([shape.start, shape.end]).tolist(),
+            "radius": shape.radius,
+        }
+    if isinstance(shape, Disc):
+        return about | {"disc": shape.at.tolist(), "radius": shape.radius}
+    if isinstance(shape, Polygon):
+        return about | {"polygon": np.asarray(shape.corners).tolist()}
+    raise ValueError(f"{body.name}: no plain form of a {type(shape).__name__}")
