@@ -11,6 +11,7 @@
     python3 run.py renumber write numbers, references, first cells and the list of the chapters
     python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
     python3 run.py licences list the licence of everything that is installed in .venv
+    python3 run.py bench    measure side by side with other tools (--quick: a trial of minutes)
     python3 run.py pack     make the files of a release in dist/, with their checksums
     python3 run.py clean    remove what the other commands made
 
@@ -58,10 +59,12 @@ NODE_MODULES = VENV / "javascript" / "node_modules"
 
 # What the book is made from (a change of any of it makes the book stale), and what is no source.
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
-SOURCES += ["tools/reads"]
+SOURCES += ["tools/reads", "benchmarks/side_by_side.json"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
 DIST = ROOT / "dist"
+BENCH = ".venv-bench"  # the environment of the comparison with other tools
+COMPARISON = Path("benchmarks", "side_by_side")
 CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
@@ -176,7 +179,7 @@ def prepare() -> None:
         install_lock()
         stamp("lock").write_text(wanted("lock"))
     if not is_stamped("package"):
-        must("Installing qbound itself", [*pip(VENV), *OFFLINE, "--editable", "."], quiet=True)
+        install_ourselves(VENV)
         stamp("package").write_text(wanted("package"))
 
 
@@ -199,18 +202,26 @@ def wanted(name: str) -> str:
 
 
 def install_lock() -> None:
+    install_pinned(VENV, LOCK)
+
+
+def install_pinned(venv: Path, lock: Path) -> None:
     """Install with uv where there is one (it is faster), else, or where it fails, with pip.
 
     Nothing is compiled before it is imported: most of what the tools bring never is.
     """
     title = "Installing the packages of requirements.lock (once; a minute or so)"
-    options = ["--require-hashes", "--requirement", LOCK]
+    options = ["--require-hashes", "--requirement", lock]
     uv = shutil.which("uv")
     if uv is not None:
-        command = [uv, "pip", "install", "--quiet", "--python", in_venv("python"), *options]
+        command = [uv, "pip", "install", "--quiet", "--python", in_venv("python", venv), *options]
         if call(title, command, quiet=True) == 0:
             return
-    must(title, [*pip(VENV), "--no-compile", *options], quiet=True)
+    must(title, [*pip(venv), "--no-compile", *options], quiet=True)
+
+
+def install_ourselves(venv: Path) -> None:
+    must("Installing qbound itself", [*pip(venv), *OFFLINE, "--editable", "."], quiet=True)
 
 
 def make_venv(place: Path) -> None:
@@ -725,6 +736,8 @@ def lock() -> int:
         command = [uv, "pip", "compile", "pyproject.toml", *options, "--output-file"]
         must("Pinning the dependencies", [*command, LOCK.name, "--all-extras"], quiet=True)
         must("Pinning the oldest", [*command, LOWEST.name, *lowest], quiet=True)
+        compared = [uv, "pip", "compile", COMPARISON / "requirements.in", *options, "--output-file"]
+        must("Pinning the comparison", [*compared, COMPARISON / LOCK.name], quiet=True)
     say(f"{LOCK.name} and {LOWEST.name} are written. Run book and test before you commit them.")
     return 0
 
@@ -795,15 +808,40 @@ def write_checksums() -> None:
     (DIST / "SHA256SUMS").write_text("".join(lines), encoding="utf-8", newline="\n")
 
 
-def clean() -> int:
-    """Remove the environment, the book and the caches; results/ stays."""
-    for path in [VENV, NEXT, CHAPTERS, BUILD, GENERATED, *(ROOT / name for name in CACHES + BUILT)]:
-        remove(path)
-    say("Removed the environment, the book and the caches.")
+def bench(*words: str) -> int:
+    """Measure side by side with other tools; --quick is a trial run."""
+    venv = prepare_bench()
+    runner = [in_venv("python", venv), ROOT / COMPARISON / "run.py", *words]
+    must("Asking everybody in turns (a quarter of an hour)", runner)
     return 0
 
 
-COMMANDS = [book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, pack, clean]
+def prepare_bench() -> Path:
+    """Make an environment of its own for the comparison, as its lock says, and return it."""
+    venv, lock = ROOT / BENCH, ROOT / COMPARISON / LOCK.name
+    ours = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    made_from = digest(lock.read_text(encoding="utf-8"), ours, sys.version_info[:2], venv)
+    made = venv / "bench.stamp"
+    if not (made.exists() and made.read_text() == made_from):
+        remove(venv)
+        make_venv(venv)
+        install_pinned(venv, lock)
+        install_ourselves(venv)
+        made.write_text(made_from)
+    return venv
+
+
+def clean() -> int:
+    """Remove the environments, the book and the caches; results/ stays."""
+    made = [ROOT / name for name in [BENCH, *CACHES, *BUILT]]
+    for path in [VENV, NEXT, CHAPTERS, BUILD, GENERATED, *made]:
+        remove(path)
+    say("Removed the environments, the book and the caches.")
+    return 0
+
+
+COMMANDS = [book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, bench]
+COMMANDS += [pack, clean]
 
 
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
@@ -815,7 +853,8 @@ def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
             function.__name__, help=text, description=text, allow_abbrev=False
         ).set_defaults(function=function)
     chosen, rest = parser.parse_known_args(words)
-    if rest and chosen.function is not test:
+    known = chosen.function is test or (chosen.function is bench and rest == ["--quick"])
+    if rest and not known:
         parser.error(f"{chosen.command} takes no arguments, found: {' '.join(rest)}")
     return chosen, rest
 

@@ -11,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 
 
 class WithResults(build_py):
-    """Copy the recorded results beside the modules, so that `qbound claims` needs no repository."""
+    """Copy what was recorded and measured beside the modules: `qbound claims` needs no more."""
 
     def run(self) -> None:
         """Build as usual; a working copy (an editable installation) reads the folder itself."""
@@ -22,6 +22,9 @@ class WithResults(build_py):
             target.mkdir(parents=True)
             for file in sorted(HERE.glob("results/*.json")):
                 shutil.copy(file, target)
+            measured = HERE / "benchmarks" / "side_by_side.json"
+            if measured.is_file():
+                shutil.copy(measured, target.parent)
 
 
 def urls() -> dict[str, str]:

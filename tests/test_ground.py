@@ -104,7 +104,9 @@ def test_an_old_python_can_read_run_far_enough_to_be_refused() -> None:
     assert all(isinstance(node, ast.Import | ast.ImportFrom) for node in before)
 
 
-@pytest.mark.parametrize("words", [[], ["frobnicate"], ["book", "-x"], ["lint", "src"]])
+@pytest.mark.parametrize(
+    "words", [[], ["frobnicate"], ["book", "-x"], ["lint", "src"], ["bench", "-x"]]
+)
 def test_a_wrong_command_line_exits_with_2(words: list[str]) -> None:
     done = subprocess.run(
         [sys.executable, ROOT / "run.py", *words], capture_output=True, text=True, check=False
@@ -240,6 +242,33 @@ def test_the_code_of_the_user_does_not_mix_in(
     assert "PYTHONPATH" not in environment
     assert environment["PYTHONNOUSERSITE"] == "1"
     assert environment["QBOUND_REQUIRE_BROWSER"] == "1"
+
+
+def test_the_comparison_has_an_environment_of_its_own(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is made once a lock, stamped last, and .venv is not touched."""
+    lock = house / run.COMPARISON / "requirements.lock"
+    lock.parent.mkdir(parents=True)
+    lock.write_text("drake==1\n")
+    steps: list[str] = []
+    killed = [True]
+
+    def install(venv: Path, pinned: Path) -> None:
+        assert (venv, pinned) == (house / run.BENCH, lock)
+        steps.append("lock")
+        if killed.pop():
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "make_venv", lambda place: place.mkdir())
+    monkeypatch.setattr(run, "install_pinned", install)
+    monkeypatch.setattr(run, "install_ourselves", lambda _: steps.append("qbound"))
+    monkeypatch.setattr(run, "must", lambda _, command: steps.append(command[-1]))
+    assert run.main(["bench"]) == 130
+    killed.append(False)
+    assert run.main(["bench", "--quick"]) == run.main(["bench", "--quick"]) == 0
+    assert steps == ["lock", "lock", "qbound", "--quick", "--quick"]
+    assert not run.VENV.exists()
 
 
 # --- run.py: the book -----------------------------------------------------------------------------
@@ -451,6 +480,7 @@ def test_a_failing_step_ends_the_run_with_its_status(
 def test_clean_keeps_the_sources_and_the_results(run: ModuleType, house: Path) -> None:
     kept = house / "results/region.json"
     made = [run.VENV, run.NEXT, run.CHAPTERS, run.BUILD, house / ".mypy_cache", house / "dist"]
+    made.append(house / run.BENCH)
     for folder in (kept.parent, *made):
         folder.mkdir(parents=True)
         (folder / "region.json").touch()

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
-from streams_plan import JOBS as STREAMS
+from importlib import import_module
+from importlib.util import find_spec
 
-JOBS = [*STREAMS]
+PLANS = ("streams_plan", "planar_plan", "solvers_plan", "machine_plan")
+"""Modules with a list of JOBS; one that is not there adds none."""
+
+JOBS = [job for plan in PLANS if find_spec(plan) for job in import_module(plan).JOBS]

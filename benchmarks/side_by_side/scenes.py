@@ -62,7 +62,7 @@ def walls() -> Robot:
 
     The double pendulum on which Drake tests its IRIS; straight down at zero.
     """
-    axis, mount, ends = np.array([0.0, -1.0, 0.0]), np.eye(3), (-LIMIT, LIMIT)
+    axis, mount, ends = np.array([0.0, 1.0, 0.0]), np.eye(3), (-LIMIT, LIMIT)
     joints = (
         Revolute("q1", "base", "upper", np.zeros(3), mount, axis, ends),
         Revolute("q2", "upper", "lower", np.array([0.0, 0.0, -2.0]), mount, axis, ends),

@@ -5,6 +5,7 @@
 `computations`: the function that judges each.  `verdicts`: from its outcome to the verdict.
 `evidence`: arms, regions and proofs that they share.  `collisions`: what Figure 11 may draw red.
 `results`, `recorded`: the book's numbers, written and read.  `commands`: `claims` and `results`.
+`measured`: times side by side with other tools, read.
 `exercises`: a value that a reader filled in, right or wrong.
 `typeset`: printed formulas as LaTeX, their terms in the order of the print.
 """

@@ -39,6 +39,7 @@ CHAPTERS = (
     "three_joints",
     "real_arm",
     "many_robots",
+    "side_by_side",
 )
 """In the order of the book, which ``run.py renumber`` writes here."""
 

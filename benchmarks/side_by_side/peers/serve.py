@@ -12,7 +12,6 @@ Then each request, such as ``{"task": "stream", "scene": "paper", "count": 1000,
 
 from __future__ import annotations
 
-import base64
 import importlib
 import importlib.metadata
 import json
@@ -20,11 +19,8 @@ import os
 import sys
 import time
 import traceback
-import zlib
 from collections.abc import Callable, Mapping
 from typing import Any
-
-import numpy as np
 
 Timed = tuple[float, float, Any]
 Task = Callable[..., Timed]
@@ -43,18 +39,6 @@ def timed(work: Callable[[], Any]) -> Timed:
     wall, processor = time.perf_counter(), time.process_time()
     answer = work()
     return time.perf_counter() - wall, time.process_time() - processor, answer
-
-
-def bits(judged: Any) -> str:
-    """Return an array of booleans as text: what `unpacked` reads."""
-    packed = np.packbits(np.asarray(judged, dtype=bool)).tobytes()
-    return base64.b64encode(zlib.compress(packed, 1)).decode()
-
-
-def unpacked(text: str, count: int) -> np.ndarray:
-    """Return the booleans that `bits` has packed."""
-    packed = np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=np.uint8)
-    return np.unpackbits(packed, count=count).astype(bool)
 
 
 def serve(peer: str, needs: Mapping[str, str], tasks: Mapping[str, Task]) -> None:

@@ -1,0 +1,243 @@
+"""What was measured side by side with other tools: read, not measured, as it is committed.
+
+`python3 run.py bench` asks everybody and writes ``benchmarks/side_by_side.json``; a wheel carries a
+copy. The book reads that file alone, so that making it again changes no number.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any, Final
+
+SCHEMA: Final = "qbound/side-by-side/1"
+NAME: Final = "side_by_side.json"
+
+OURS: Final = "qbound"
+"""How the names of our own peers begin."""
+
+VERDICTS: Final[dict[bool | None, str]] = {True: "met", False: "missed", None: "open"}
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The answer of one peer to one request.
+
+    Attributes
+    ----------
+    id, task, scene, label : str
+        What was asked; the label tells requests of one task and scene apart.
+    peer : str
+        Who was asked.
+    seconds, low, high, processor : float or None
+        Median, least and most of the rounds' wall time, median of the processor time; None where
+        there was no answer.
+    answer : mapping
+        What the file keeps of the answer.
+    why : str
+        Why there was none: not installed, refused, or stopped.
+    """
+
+    id: str
+    task: str
+    scene: str
+    label: str
+    peer: str
+    seconds: float | None
+    low: float | None
+    high: float | None
+    processor: float | None
+    answer: Mapping[str, Any]
+    why: str
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it is this project's."""
+        return self.peer.startswith(OURS)
+
+    @property
+    def rate(self) -> float:
+        """How many of what the answer counts a second; ValueError where there was no answer."""
+        if self.seconds is None:
+            raise ValueError(f"{self.id}: {self.why}")
+        return float(self.answer["count"]) / self.seconds
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All that was measured in one run.
+
+    Attributes
+    ----------
+    date : str
+    quick : bool
+        Whether it was a trial run, with less of everything.
+    machine : mapping
+        Processor, cores, memory (bytes), system.
+    versions : mapping of str to str
+        Of every package that was asked.
+    measurements : tuple of Measured
+    goals : tuple of mapping
+        Each with ``id``, ``part``, ``text``, ``goal``, ``sense``, ``ours``, ``theirs``, ``ratio``,
+        ``met`` (None where it is open, with a ``why``).
+    """
+
+    date: str
+    quick: bool
+    machine: Mapping[str, Any]
+    versions: Mapping[str, str]
+    measurements: tuple[Measured, ...]
+    goals: tuple[Mapping[str, Any], ...]
+
+    def of(self, task: str, scene: str | None = None, label: str | None = None) -> list[Measured]:
+        """Return what was answered about a task, of one scene and label or of all, fastest first.
+
+        Examples
+        --------
+        >>> found = side_by_side()
+        >>> all(one.seconds <= other.seconds for one, other in zip(*[iter(found.of("one"))] * 2))
+        True
+        >>> found.of("no such task")
+        []
+        """
+        chosen = [
+            each
+            for each in self.measurements
+            if each.task == task
+            and scene in (None, each.scene)
+            and label in (None, each.label)
+            and each.seconds is not None
+        ]
+        return sorted(chosen, key=lambda each: each.seconds or 0.0)
+
+    def ahead(self, task: str) -> list[tuple[Measured, Measured]]:
+        """Return who was faster than the best of ours, each with that, one by one.
+
+        Only requests that both answered are compared, of the same scene and label.
+        """
+        asked = dict.fromkeys((each.scene, each.label) for each in self.of(task))
+        pairs = []
+        for scene, label in asked:
+            found = self.of(task, scene, label)
+            ours = next((each for each in found if each.is_ours), None)
+            if ours is not None:
+                pairs += [(each, ours) for each in found[: found.index(ours)]]
+        return pairs
+
+    def unanswered(self) -> list[Measured]:
+        """Return the requests without an answer, each with the reason."""
+        return [each for each in self.measurements if each.seconds is None]
+
+
+def side_by_side(file: Path | None = None) -> Comparison:
+    """Read the committed measurements, or those of another file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is neither a copy in the package nor a repository around it.
+    ValueError
+        If the file has another schema.
+    """
+    source = file or _committed()
+    told = json.loads(source.read_text(encoding="utf-8"))
+    if not isinstance(told, dict) or told.get("schema") != SCHEMA:
+        raise ValueError(f"{source.name}: this is no {SCHEMA}")
+    versions = {k: v for peer in told["peers"] for k, v in peer.get("versions", {}).items()}
+    return Comparison(
+        told["date"],
+        told["quick"],
+        told["machine"],
+        dict(sorted(versions.items())),
+        tuple(map(_measured, told["measurements"])),
+        tuple(told["goals"]),
+    )
+
+
+def _committed() -> Traversable:
+    packaged = resources.files("lizarraga2025") / NAME
+    repository = Path(__file__).resolve().parents[2] / "benchmarks" / NAME
+    for place in (packaged, repository):
+        if place.is_file():
+            return place
+    raise FileNotFoundError("this installation carries no measurements")
+
+
+def _measured(told: Mapping[str, Any]) -> Measured:
+    words = {"missing": "missing: {}", "refused": "refused: {}", "over": "over {:g} s"}
+    why = next((text.format(told[word]) for word, text in words.items() if word in told), "")
+    return Measured(
+        id=told["id"],
+        task=told["task"],
+        scene=told["scene"],
+        label=told["label"],
+        peer=told["peer"],
+        seconds=told.get("seconds"),
+        low=told.get("low"),
+        high=told.get("high"),
+        processor=told.get("processor"),
+        answer=told.get("answer") or {},
+        why=why,
+    )
+
+
+def times(ratio: float) -> str:
+    """Return a ratio in words of a table: two digits, and no more zeros than needed.
+
+    Examples
+    --------
+    >>> times(1234.5), times(12.34), times(0.1234)
+    ('1200', '12', '0.12')
+    """
+    return f"{float(f'{ratio:.2g}'):g}" if ratio < 1e6 else f"{ratio:.1e}"
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit that suits it, in two or three digits.
+
+    Examples
+    --------
+    >>> duration(1.234), duration(0.0123), duration(4.56e-6), duration(7.8e-8)
+    ('1.23 s', '12.3 ms', '4.56 µs', '78 ns')
+    """
+    for size, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
+        if seconds >= size:
+            return f"{float(f'{seconds / size:.3g}'):g} {unit}"
+    return f"{float(f'{seconds / 1e-9:.3g}'):g} ns"
+
+
+def wanted(goal: Mapping[str, Any]) -> str:
+    """Return what a goal asks for: a time, or a ratio.
+
+    Examples
+    --------
+    >>> wanted({"sense": "at most", "goal": 0.003, "of": ["ours", None]})
+    'at most 3 ms'
+    >>> wanted({"sense": "at least", "goal": 8, "of": ["ours", "theirs"]})
+    'at least 8'
+    """
+    number = times(goal["goal"]) if goal["of"][1] else duration(goal["goal"])
+    return f"{goal['sense']} {number}"
+
+
+def reached(goal: Mapping[str, Any]) -> str:
+    """Return what was measured of a goal: a time, a ratio, or why there is none.
+
+    Examples
+    --------
+    >>> reached({"of": ["ours", None], "ours": 0.0065, "ratio": None})
+    '6.5 ms'
+    >>> reached({"of": ["ours", "theirs"], "ours": 2.0, "ratio": 9.04})
+    '9'
+    >>> reached({"of": ["ours", None], "ours": None, "ratio": None, "why": "not measured: ours"})
+    'not measured: ours'
+    """
+    if goal["of"][1] and goal["ratio"] is not None:
+        return times(goal["ratio"])
+    if not goal["of"][1] and goal["ours"] is not None:
+        return duration(goal["ours"])
+    return str(goal["why"])
