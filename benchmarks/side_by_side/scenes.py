@@ -31,7 +31,7 @@ NAMES = ("paper", "walls", "hundred", "obstacles10", "ur5")
 
 @lru_cache(maxsize=32)
 def robot(name: str) -> Robot:
-    """Return the robot of a scene: one of `NAMES`, or ``boundaries-30`` with so many of them.
+    """Return the robot of a scene: one of `NAMES`, ``boundaries-30``, or ``joints-4``.
 
     Raises
     ------
@@ -41,6 +41,8 @@ def robot(name: str) -> Robot:
     kind, _, number = name.partition("-")
     if kind == "boundaries" and number.isdecimal():
         return boundaries(int(number))
+    if kind == "joints" and number.isdecimal():
+        return chain(int(number))
     makers = {
         "paper": lambda: load_robot("minervabot-v2"),
         "walls": walls,
@@ -98,6 +100,32 @@ def three() -> Robot:
     floor = [HalfSpace(f"{n}, floor", n, np.array([0.0, 0.0, 1.0]), -0.3) for n in names]
     home, bounds = np.zeros(3), (*pairs, *floor)
     return Robot("Three links", joints, tuple(points), bounds, home, "tip", "m", "rad")
+
+
+def chain(count: int) -> Robot:
+    """Return a planar arm of so many equal links, 1 long in all, with a ball at the end of each.
+
+    The balls keep off each other, but for neighbours, and off a floor below the base.
+    """
+    axis, mount, length = np.array([0.0, 1.0, 0.0]), np.eye(3), 1 / count
+    along = np.array([0.0, 0.0, length])
+    joints = tuple(
+        Revolute(f"q{j + 1}", str(j), str(j + 1), along if j else np.zeros(3), mount, axis)
+        for j in range(count)
+    )
+    points = tuple(
+        Point(f"ball {j}", str(j), along if j else np.zeros(3), length / 3)
+        for j in range(count + 1)
+    )
+    apart = tuple(
+        Pair(f"{i}, {j}", (f"ball {i}", f"ball {j}"), 0.0)
+        for i in range(count - 1)
+        for j in range(i + 2, count + 1)
+    )
+    up = np.array([0.0, 0.0, 1.0])
+    floor = tuple(HalfSpace(f"floor, {j}", f"ball {j}", up, -0.3) for j in range(1, count + 1))
+    bounds, tool = (*apart, *floor), f"ball {count}"
+    return Robot(f"{count} links", joints, points, bounds, np.zeros(count), tool, "m", "rad")
 
 
 def ends(arm: Robot) -> np.ndarray:
