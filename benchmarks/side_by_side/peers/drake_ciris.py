@@ -51,7 +51,7 @@ def prepared(name: str) -> tuple[Any, ...]:
     return checker(made), proof, kinematics, home, HPolyhedron.MakeBox(*ends)
 
 
-def certified(scene: str, iterations: int = 10) -> Timed:
+def certify(scene: str, iterations: int = 10) -> Timed:
     """Grow a polytope by IRIS-ZO, shrink it till it is proved, then enlarge that by turns.
 
     ``iterations`` of bilinear alternation; 10 is the documented default. Clarabel, the fastest of
@@ -62,8 +62,8 @@ def certified(scene: str, iterations: int = 10) -> Timed:
     if not found:
         raise Refused("nothing was proved about home")
     last = found[-1].certified_polytope()
-    rings = [_ring(last)]
-    return wall, processor, {"polygons": rings, "steps": len(found) - 1, "solver": "Clarabel"}
+    answer = {"rings": [[_ring(last)]], "steps": len(found) - 1, "solver": "Clarabel"}
+    return wall, processor, answer
 
 
 def _certify(
@@ -127,4 +127,4 @@ def _ring(polytope: Any) -> list[list[float]]:
 
 if __name__ == "__main__":
     os.environ["DRAKE_NUM_THREADS"] = "1"
-    serve("Drake C-IRIS", {"pydrake": "drake"}, {"certified": certified})
+    serve("Drake C-IRIS", {"pydrake": "drake"}, {"certify": certify})

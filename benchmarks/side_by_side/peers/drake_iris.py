@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from functools import lru_cache
+from itertools import islice
 from typing import Any
 
 import numpy as np
-from serve import Refused, Timed, serve, timed
+from serve import Timed, serve, timed
 
 SEEDS = 15
 """Of the random seeds' generator."""
@@ -26,25 +27,19 @@ def prepared(name: str) -> tuple[Any, Any]:
 
 
 def seeds(name: str, count: int) -> list[np.ndarray]:
-    """Return home, then random configurations of which Drake says that they are free."""
+    """Return home, then random configurations: those that Drake's own checker finds free."""
     import scenes
 
     check, _ = prepared(name)
-    found = [np.array(scenes.plain(name)["home"], dtype=float)]
-    for q in scenes.configurations(name, 1000, SEEDS):
-        if len(found) >= count:
-            break
-        if check.CheckConfigCollisionFree(q):
-            found.append(q)
-    return found[:count]
+    home = np.array(scenes.plain(name)["home"], dtype=float)
+    some = (home, *scenes.configurations(name, 1000, SEEDS))
+    return list(islice(filter(check.CheckConfigCollisionFree, some), count))
 
 
 def iris(scene: str, variant: str, count: int = 1) -> Timed:
     """Grow a polytope about each of so many seeds, by "np", "np2" or "zo"."""
     check, domain = prepared(scene)
     places = seeds(scene, count)
-    if not check.CheckConfigCollisionFree(places[0]):
-        raise Refused("home collides")
     grow = {"np": iris_np, "np2": iris_np2, "zo": iris_zo}[variant]
     wall, processor, found = timed(lambda: [grow(check, domain, place) for place in places])
     return wall, processor, answer(found)
@@ -71,6 +66,7 @@ def iris_np2(check: Any, domain: Any, place: np.ndarray) -> Any:
 
     options = IrisNp2Options()
     options.solver = IpoptSolver()
+    options.sampled_iris_options.relax_margin = True
     options.sampled_iris_options.parallelism = one_thread()
     return IrisNp2(check, small_ball(place), domain, options)
 
@@ -80,6 +76,7 @@ def iris_zo(check: Any, domain: Any, place: np.ndarray) -> Any:
     from pydrake.planning import IrisZo, IrisZoOptions
 
     options = IrisZoOptions()
+    options.sampled_iris_options.relax_margin = True
     options.sampled_iris_options.parallelism = one_thread()
     return IrisZo(check, small_ball(place), domain, options)
 
@@ -100,15 +97,16 @@ def cover(scene: str, coverage: float = 0.7) -> Timed:
     check, _ = prepared(scene)
     inner = IrisZoOptions()
     inner.sampled_iris_options.max_iterations = 1
+    inner.sampled_iris_options.relax_margin = True
     inner.sampled_iris_options.parallelism = one_thread()
     options = IrisFromCliqueCoverOptions()
     options.iris_options = inner
     options.coverage_termination_threshold = coverage
     options.parallelism = one_thread()
-    return_sets = timed(
+    wall, processor, found = timed(
         lambda: IrisInConfigurationSpaceFromCliqueCover(check, options, RandomGenerator(1), [])
     )
-    return return_sets[0], return_sets[1], answer(return_sets[2])
+    return wall, processor, answer(found)
 
 
 def small_ball(place: np.ndarray) -> Any:
@@ -126,9 +124,9 @@ def one_thread() -> Any:
 
 
 def answer(sets: list[Any]) -> dict[str, Any]:
-    """Return polygons with their corners in order, and in how many half-planes they are written."""
+    """Return polygons, each a component of its own, and in how many half-planes they are written."""
     return {
-        "polygons": [ring(found) for found in sets],
+        "rings": [[ring(found)] for found in sets],
         "polytopes": len(sets),
         "faces": int(sum(len(found.b()) for found in sets)),
     }
