@@ -7,6 +7,7 @@ from math import radians
 from typing import Any
 
 import scenes
+from quality import quality
 
 from qbound.model.robotfile import robot_text
 
@@ -17,15 +18,29 @@ length_unit = "m"
 angle_unit = "rad"
 home = { q1 = 0.0, q2 = 0.0 }
 tool = "ball"
-joint = [
-  { name = "q1", type = "revolute", parent = "base", frame = "upper", origin = [0, 0, 0], axis = [0, -1, 0], limits = [-1.57, 1.57] },
-  { name = "q2", type = "revolute", parent = "upper", frame = "lower", origin = [0, 0, -2], axis = [0, -1, 0], limits = [-1.57, 1.57] },
-]
 point = [{ name = "ball", frame = "lower", at = [0, 0, -1], radius = 0.5 }]
 boundary = [
   { name = "right wall", type = "half-space", point = "ball", normal = [-1, 0, 0], offset = -1.83 },
   { name = "left wall", type = "half-space", point = "ball", normal = [1, 0, 0], offset = -1.83 },
 ]
+
+[[joint]]
+name = "q1"
+type = "revolute"
+parent = "base"
+frame = "upper"
+origin = [0, 0, 0]
+axis = [0, 1, 0]
+limits = [-1.57, 1.57]
+
+[[joint]]
+name = "q2"
+type = "revolute"
+parent = "upper"
+frame = "lower"
+origin = [0, 0, -2]
+axis = [0, 1, 0]
+limits = [-1.57, 1.57]
 """
 """The robot file of `scenes.walls`."""
 
@@ -50,8 +65,6 @@ def rings_of(certificate: str, degrees: bool) -> list[list[list[list[float]]]]:
 
 def with_share(scene: str) -> Any:
     """Return what puts the share of home's component in the place of the polygons in answers."""
-    from quality import quality
-
     home = [float(x) for x in scenes.robot(scene).home]
 
     def compare(answers: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:

@@ -21,8 +21,8 @@ FINER = 0.7
 def prepared(name: str) -> tuple[Any, Any, float]:
     """Return the box of joint values, the separator of the region, and the box's volume.
 
-    One separator a boundary, and their intersection: the vector of all in one separator, which is
-    the other documented way, takes longer, and where coefficients depend on one joint alone it fails.
+    One separator a boundary, and their intersection. The other documented way, one separator of the
+    vector of all, takes longer, and finds nothing where some boundary depends on one joint alone.
     """
     import scenes
     from codac import AnalyticFunction, Interval, IntervalVector, SepInverse, VectorVar, oo

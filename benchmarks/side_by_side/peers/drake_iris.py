@@ -124,7 +124,7 @@ def one_thread() -> Any:
 
 
 def answer(sets: list[Any]) -> dict[str, Any]:
-    """Return polygons, each a component of its own, and in how many half-planes they are written."""
+    """Return polygons, each a component of its own, and the number of their faces."""
     return {
         "rings": [[ring(found)] for found in sets],
         "polytopes": len(sets),

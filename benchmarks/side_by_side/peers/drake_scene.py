@@ -1,8 +1,8 @@
 """A scene for Drake: a multibody plant in which nothing but the scene's own pairs collides.
 
 Of each pair and each wall the two geometries are its own: two balls of half the distance, or a ball
-and a wide box for the half-space: C-IRIS knows no half-space, and the fifteenth one ends the process.
-Each is welded on as a body of its own, since the checker filters whole bodies. Outlines are prisms
+and a wide box for the half-space, since C-IRIS knows none and the fifteenth ends the process. Each
+is welded on as a body of its own, since the checker filters whole bodies. Outlines are prisms
 across the plane of motion.
 """
 
@@ -58,9 +58,7 @@ class Geometries:
         arm = self.plant.GetModelInstanceByName("arm")
         body = self.plant.AddRigidBody(name, arm, MASS)
         self.plant.WeldFrames(self.frames[frame].body_frame(), body.body_frame(), place)
-        made = self.plant.RegisterCollisionGeometry(
-            body, RigidTransform(), shape, name, friction
-        )
+        made = self.plant.RegisterCollisionGeometry(body, RigidTransform(), shape, name, friction)
         self.every.append(made)
         return made
 

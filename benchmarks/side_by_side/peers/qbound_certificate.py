@@ -26,7 +26,7 @@ def certificate(scene: str) -> Certificate:
     return certify_region(text_of(scene), inset(scene))
 
 
-def certify(scene: str, iterations: int = 0) -> Timed:  # noqa: ARG001 (C-IRIS's)
+def certify(scene: str, iterations: int = 0) -> Timed:
     """Search for the proof, write it down, and have it confirmed by `check.py` as always."""
     text, strip = text_of(scene), inset(scene)
     wall, processor, found = timed(lambda: certify_region(text, strip))

@@ -19,7 +19,7 @@ def prepared(scene: str) -> Any:
     return exact_problem(exact_robot(scenes.robot(scene)))
 
 
-def paving(scene: str, undecided: float, eps: float = 0) -> Timed:  # noqa: ARG001 (codac's)
+def paving(scene: str, undecided: float, eps: float = 0) -> Timed:
     """Pave by columns until at most a part of the box is undecided."""
     problem = prepared(scene)
     wall, processor, found = timed(lambda: pave_columns(problem, undecided))

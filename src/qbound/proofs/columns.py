@@ -2,10 +2,10 @@ r"""Certified pavings by columns: cells of all joints but one, over which that o
 
 Along one turning joint x, the lift, every form is :math:`a \cos x + b \sin x + c` (Theorem 2). Over
 a cell of the other joints its two roots stay within slabs that tilt as the roots do: across a slab
-the form is proved to change its sign, so that both roots are accounted for, and beside the slabs its
-sign is proved. A slab is as thick as the form bends over the cell, which falls with the square of
-the cell's width; a cell of `paving` leaves undecided what falls with the width alone. Where the two
-roots are not proved apart, near a fold, bounds of the form all over the cell decide.
+the form is proved to change its sign, so that both roots are accounted for, and beside the slabs
+its sign is proved. A slab is as thick as the form bends over the cell, which falls with the square
+of the cell's width; a cell of `paving` leaves undecided what falls with the width alone. Where the
+two roots are not proved apart, near a fold, bounds of the form all over the cell decide.
 
 Not in the paper. The bounds are those of `dyadic`: sums and products of doubles, their rounding
 taken off; cosines and sines by `trigonometry`.
@@ -117,7 +117,8 @@ class ColumnPaving:
         """Volumes between which that of the region lies, in the product of the joints' units."""
         inner = float(self.columns.feasible.sum())
         outer = inner + float(self.columns.undecided.sum())
-        return inner * (1 - FUZZ) - FUZZ * self.volume, outer * (1 + FUZZ) + FUZZ * self.volume
+        rounding = FUZZ * self.volume
+        return max(0.0, inner * (1 - FUZZ) - rounding), outer * (1 + FUZZ) + rounding
 
     def verdicts(self, q: Any) -> set[Verdict]:
         """Return what is known of a configuration being feasible, by all cells that hold it.
@@ -209,7 +210,8 @@ def _start(problem: ExactProblem, lift: int) -> ColumnPaving:
     count = max(1, round(FIRST ** (1 / len(base))))
     edges = [np.linspace(low[j], high[j], count + 1) for j in base]
     corners = [np.stack(np.meshgrid(*side, indexing="ij"), axis=-1) for side in _sides(edges)]
-    empty = Columns(*np.zeros((2, 0, len(base))), *np.zeros((2, 0)), np.zeros((0, len(base))))
+    none, no_cells = np.zeros(0), np.zeros((0, len(base)))
+    empty = Columns(no_cells, no_cells, none, none, no_cells)
     paving = ColumnPaving(problem, lift, bounds, empty)
     cells = (c.reshape(-1, len(base)) for c in corners)
     return replace(paving, columns=_looked_at(paving, *cells))

@@ -143,9 +143,7 @@ def sectors_of(
     tilts = np.where(ok[..., None], tilt, tilts)
     undecided = ~(everywhere | nowhere)
     slopes = (np.where(undecided[..., None], wave.steepest, 0) * half[:, None]).max(axis=1)
-    return Sectors(
-        centre, np.stack(both[0]), np.stack(both[1]), tilts, everywhere, nowhere, slopes
-    )
+    return Sectors(centre, np.stack(both[0]), np.stack(both[1]), tilts, everywhere, nowhere, slopes)
 
 
 class _Waves:
@@ -225,7 +223,13 @@ class _Waves:
             ends[1] + reach[1] + MARGIN < ends[0] + TURN - reach[0] - MARGIN
         )
         ok = wanted & proved.all(axis=0) & (slope[0] > 0) & (slope[1] < 0) & apart
-        return ok, ends, np.where(ok, thick, 0), np.where(ok, reach, 0), np.where(ok[..., None], tilt, 0)
+        return (
+            ok,
+            ends,
+            np.where(ok, thick, 0),
+            np.where(ok, reach, 0),
+            np.where(ok[..., None], tilt, 0),
+        )
 
     @staticmethod
     def _at(rows: Floats, cosine: Floats, sine: Floats) -> Floats:
