@@ -90,7 +90,8 @@ def test_beside_the_boundary_nothing_wrong_is_proved() -> None:
     region = find_region(load_robot("minervabot-v2"))
     loops = [loop for component in region.components for loop in component.loops]
     on = np.concatenate([arc.at(np.linspace(0, 1, 10)) for loop in loops for arc in loop])
-    near = np.random.default_rng(3).normal(on, 3e-3)[::2]
+    rng = np.random.default_rng(3)
+    near = rng.normal(on, 10.0 ** rng.uniform(-5, -2, (len(on), 1)))
     told = {Verdict.PROVED: 0, Verdict.REFUTED: 0}
     near = (near + np.pi) % (2 * np.pi) - np.pi
     for place, margin in zip(near, margins("minervabot-v2", near), strict=True):
