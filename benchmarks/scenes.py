@@ -23,8 +23,8 @@ from qbound.model.robot import Robot
 from qbound.region.region import Region, clearance_problem, solve
 from support import scenes
 
-SAME_AREA = 1e-6
-"""Areas of both bases come apart by what a double root is uncertain, at touching edges."""
+SAME_AREA = 1e-9
+"""Areas that two bases find may come apart by this."""
 
 
 def regions_of(robot: Robot, bases: Sequence[int | None]) -> list[Region]:

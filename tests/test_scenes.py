@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from qbound.model.robot import Robot
-from qbound.region import find_region
+from qbound.region import clearance_problem, find_region, solve
 from support import scenes
 
 
@@ -29,6 +29,26 @@ def check(robot: Robot, seed: int) -> None:
     wrong = scenes.wrongly_told(robot, region, np.concatenate([q, near]))
     assert len(wrong) == 0, f"{len(wrong)}, such as {wrong[0].tolist()}"
     assert not scenes.touching_in_cells(robot, region, q).any()
+
+
+TANGENT = {
+    16: [1.0832608213156707, -1.5707963279420865],
+    132: [1.57079632344419, -0.3949190342588109],
+    169: [1.57079632434598, -1.1886775567893495],
+    173: [0.8651149766933801, -1.9999999756772293],
+    268: [0.0, 0.0],
+}
+"""Configurations that stood on the wrong side of a line beside a tangent contact."""
+
+
+@pytest.mark.parametrize("seed", TANGENT)
+def test_lines_beside_tangent_contacts_are_right_to_the_last_digits(seed) -> None:
+    robot = scenes.drawn_scene(seed)
+    problem = clearance_problem(robot)
+    first, second = (solve(problem, base=base) for base in (0, 1))
+    assert first.area == pytest.approx(second.area, rel=0, abs=1e-11)
+    for region in (first, second):
+        assert len(scenes.wrongly_told(robot, region, np.array([TANGENT[seed]]))) == 0
 
 
 @pytest.mark.parametrize("more", [0.05, -0.02])

@@ -24,22 +24,48 @@ from plan import JOBS
 SCHEMA = "qbound/side-by-side/1"
 FILE = ROOT / "benchmarks" / "side_by_side.json"
 QUICK_ROUNDS = 2
+TOO_LATE = {"missing": "not asked: the time of the run was up"}
 
 
 def main() -> int:
+    options = command_line()
+    if options.judge:
+        told = json.loads(options.output.read_text(encoding="utf-8"))
+        write(told | {"goals": judged(told["measurements"])}, options.output)
+        return 0
+    told = asked([job for job in JOBS if is_chosen(job, options)], options)
+    write(told, options.output)
+    print(f"{options.output}: {len(told['measurements'])} measurements in {told['seconds']} s")
+    return 0
+
+
+def command_line() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a trial run: less of everything")
     parser.add_argument("--only", default="", help="jobs whose task and scene hold this")
     parser.add_argument("-o", "--output", type=Path, default=FILE)
-    options = parser.parse_args()
-    chosen = [job for job in JOBS if options.only in f"{job.task}-{job.scene}-{job.label}"]
-    chosen = [job for job in chosen if not options.quick or job.quick is not None]
-    peers = {name: Peer(name) for job in chosen for name in job.peers}
-    start, busy = time.monotonic(), load()
-    measurements = [found for job in chosen for found in measured(job, peers, options.quick)]
+    parser.add_argument("--minutes", type=float, help="ask nothing more after so many")
+    parser.add_argument("--judge", action="store_true", help="judge the goals of the file again")
+    return parser.parse_args()
+
+
+def is_chosen(job: Job, options: argparse.Namespace) -> bool:
+    named = options.only in f"{job.task}-{job.scene}-{job.label}"
+    return named and not (options.quick and job.quick is None)
+
+
+def asked(jobs: list[Job], options: argparse.Namespace) -> dict[str, Any]:
+    """Ask everybody, and return the document."""
+    peers = {name: Peer(name) for job in jobs for name in job.peers}
+    start, busy, measurements = time.monotonic(), load(), list[dict[str, Any]]()
+    for job in jobs:
+        if options.minutes is None or time.monotonic() - start < 60 * options.minutes:
+            measurements += measured(job, peers, options.quick)
+        else:
+            measurements += [entry(job, peers[name], [TOO_LATE], None) for name in job.peers]
     for peer in peers.values():
         peer.end()
-    document = {
+    return {
         "schema": SCHEMA,
         "date": datetime.now(UTC).date().isoformat(),
         "quick": options.quick,
@@ -49,19 +75,16 @@ def main() -> int:
         "measurements": measurements,
         "goals": judged(measurements),
     }
-    write(document, options.output)
-    print(f"{options.output}: {len(measurements)} measurements in {document['seconds']} s")
-    return 0
 
 
 def measured(job: Job, peers: dict[str, Peer], quick: bool) -> list[dict[str, Any]]:
     """Ask the peers of a job in turns, round by round, and put together what each answered."""
     answers: dict[str, list[dict[str, Any]]] = {name: [] for name in job.peers}
-    for number in range(QUICK_ROUNDS if quick else job.rounds):
+    for number in range(min(QUICK_ROUNDS, job.rounds) if quick else job.rounds):
         for name in job.peers:
             if wants_more(answers[name], number, quick):
                 answers[name].append(peers[name].ask(job.line(quick), LIMIT))
-        print(f"{job.id_of('')[:-1] or job.task}: round {number + 1}", file=sys.stderr, flush=True)
+        print(f"{job.id_of('')}: round {number + 1}", file=sys.stderr, flush=True)
     first = {name: rounds[0]["answer"] for name, rounds in answers.items() if timed(rounds)}
     kept = job.compare(first)
     return [entry(job, peers[name], rounds, kept.get(name)) for name, rounds in answers.items()]

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[1]))
+if (beside := str(Path(__file__).resolve().parents[1])) not in sys.path:
+    sys.path.append(beside)
 
 from bodies import among
 from regions import many_boundaries

@@ -60,6 +60,22 @@ class Measured:
         return self.peer.startswith(OURS)
 
     @property
+    def quality(self) -> Mapping[str, Any]:
+        """How good an answer about a region is; nothing where none was compared.
+
+        Of the one component that the peer looks for, where it looks for no other.
+        """
+        found: Mapping[str, Any] = self.answer.get("own", self.answer.get("all", {}))
+        return found
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The plain numbers of the answer, and how much of a region it covers."""
+        told = {name: value for name, value in self.answer.items() if type(value) in (int, float)}
+        parts = {name: self.quality[name] for name in ("covered", "beyond") if name in self.quality}
+        return told | parts
+
+    @property
     def rate(self) -> float:
         """How many of what the answer counts a second; ValueError where there was no answer."""
         if self.seconds is None:

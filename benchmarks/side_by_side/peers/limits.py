@@ -3,7 +3,7 @@
 Every kernel takes configurations of two joints and writes one byte for each, compiled by numba to
 the processor's widest vectors. ``read`` only adds both values; ``sines`` has both sines and both
 cosines, by the polynomials of the Cephes library, of values that stay in the cache; ``both`` has
-them of values from memory: no method that needs them can be faster.
+them of values from memory: no method that needs them in double precision can be faster.
 """
 
 from __future__ import annotations

@@ -6,18 +6,12 @@ import scenes
 from serve import serve
 from streams import Judge, stream_tasks
 
-from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
-
-MANY_JOINTS = 4
 
 
 def feasible(scene: str) -> Judge:
-    """Return what judges configurations: by forms, or by balls where a form is a large table."""
-    robot = scenes.robot(scene)
-    if len(robot.joints) >= MANY_JOINTS:
-        return Balls.of(robot).feasible
-    return evaluator(robot).feasible
+    """Return what judges configurations, one or many."""
+    return evaluator(scenes.robot(scene)).feasible
 
 
 if __name__ == "__main__":

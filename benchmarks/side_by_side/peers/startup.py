@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import time
+from functools import lru_cache
 from pathlib import Path
 
 from serve import Missing, Timed, serve
@@ -21,11 +22,16 @@ KIB = 1 if sys.platform == "darwin" else 1024  # of ru_maxrss
 
 
 def run(words: list[str]) -> Timed:
-    """Run Python with these words; return wall and processor seconds, and the peak memory."""
-    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    command = [sys.executable, *words]
+    """Run Python with these words; return wall and processor seconds, and the peak memory.
+
+    It runs once before, so that compiled modules are there, as they are for a user.
+    """
+    command = [sys.executable, "-s", *words]
+    warm(tuple(words))
     start = time.perf_counter()
-    process = subprocess.Popen(command, env=kept, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        command, env=plain_environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
     _, status, used = os.wait4(process.pid, 0)
     seconds = time.perf_counter() - start
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -33,6 +39,18 @@ def run(words: list[str]) -> Timed:
     if process.returncode != 0:
         raise Missing(said.strip().splitlines()[-1] if said.strip() else "it failed")
     return seconds, used.ru_utime + used.ru_stime, {"memory": used.ru_maxrss * KIB}
+
+
+@lru_cache(maxsize=64)
+def warm(words: tuple[str, ...]) -> None:
+    """Run Python once, whatever comes of it, so that its modules are compiled."""
+    command = [sys.executable, "-s", *words]
+    subprocess.run(command, env=plain_environment(), capture_output=True, check=False)
+
+
+def plain_environment() -> dict[str, str]:
+    """Return the environment without what changes Python, such as one that keeps no bytecode."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
 def imported(scene: str) -> Timed:

@@ -2,7 +2,8 @@
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
 - `relevant`: of many forms, those that can bound anything here;
-- `plane`: forms over a base, their roots and signs; `critical`: where roots may meet;
+- `plane`: forms over a base, their roots and signs;
+- `critical`: where roots may meet; `polynomials`: where stacks of them vanish;
 - `pieces`: where bodies touch, and where such contacts cross;
 - `decomposition`: cells in which all is free; `cells`: which of them are adjacent;
 - `emptiness`: which boundaries leave no room, where there are none;

@@ -1,7 +1,7 @@
 """At which base values can two forms share a root along the lift? Roots of univariate polynomials.
 
 Every kind of event is one polynomial of the base: of z = exp(i t) on a circle, of t itself on a
-line. They are solved in stacks, by eigenvalues; each root is returned with the row it belongs to.
+line. They are solved in stacks (`polynomials`); each root is returned with the row it belongs to.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from qbound.forms.angles import TURN, turns_within
 from qbound.forms.factors import basis
 from qbound.region.plane import Plane
+from qbound.region.polynomials import polynomial_roots
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
 
 Floats = NDArray[np.float64]
@@ -140,7 +141,7 @@ def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
 
 
 def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
-    rows, z = _polynomial_roots(stack)
+    rows, z = polynomial_roots(stack)
     if plane.base_kind == "prismatic":
         near = np.abs(z.imag) <= NEAR_CIRCLE * (1 + np.abs(z.real))
         return rows[near], np.asarray(plane.base_unit * z.real[near])
@@ -148,62 +149,3 @@ def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
     rows, t = rows[near], np.angle(z[near])
     turns = np.array(turns_within(*plane.ends, [-math.pi, math.pi]))
     return np.repeat(rows, len(turns)), (t[:, None] + TURN * turns).ravel()
-
-
-def _polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
-    """Return rows and roots of stacked polynomials, equal degrees by one call of the solver.
-
-    Both ends are trimmed relative to the largest coefficient: a fixed degree would send roots to
-    zero or infinity and spoil the others.
-    """
-    rows = np.flatnonzero(np.abs(stack).max(axis=-1, initial=0.0) > NEGLIGIBLE)
-    stack = stack[rows]
-    kept = np.abs(stack) > NEGLIGIBLE * np.abs(stack).max(axis=-1, keepdims=True, initial=0.0)
-    first = kept.argmax(axis=-1)
-    last = stack.shape[-1] - 1 - kept[:, ::-1].argmax(axis=-1)
-    zero = rows[first > 0]  # roots that are trimmed with their coefficients
-    found = [(zero, np.zeros(len(zero), dtype=complex))]
-    for low, high in set(zip(first.tolist(), last.tolist(), strict=True)):
-        if high > low:
-            chosen = (first == low) & (last == high)
-            where, z = _companion_roots(stack[chosen, low : high + 1])
-            found.append((rows[chosen][where], z))
-    return np.concatenate([rows for rows, _ in found]), np.concatenate([z for _, z in found])
-
-
-def _companion_roots(stack: Complexes) -> tuple[Ints, Complexes]:
-    """Return rows and roots of polynomials with non-zero ends; the mean of close ones once more."""
-    degree = stack.shape[1] - 1
-    matrices = np.zeros((len(stack), degree, degree), dtype=complex)
-    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
-    matrices[:, :, -1] = -stack[:, :-1] / stack[:, -1:]
-    z = np.asarray(np.linalg.eigvals(matrices), dtype=complex)
-    close = np.abs(z[:, :, None] - z[:, None, :]) < 1e-6
-    count = close.sum(axis=-1)
-    # The errors of a double root's two halves cancel in their mean.
-    means = np.einsum("kij,kj->ki", close, z) / count
-    rows = np.repeat(np.arange(len(stack)), degree)
-    doubled = count > 1
-    return (
-        np.concatenate([rows, rows[doubled.ravel()]]),
-        np.concatenate([_polished(stack, z).ravel(), means[doubled]]),
-    )
-
-
-def _polished(stack: Complexes, z: Complexes) -> Complexes:
-    """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
-    powers = np.arange(stack.shape[1])
-    slopes = (stack * powers)[:, 1:]
-    for _ in range(2):
-        value, slope = _horner(stack, z), _horner(slopes, z)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = value / slope
-        z = np.where(np.abs(step) < 1e-6, z - step, z)
-    return z
-
-
-def _horner(stack: Complexes, z: Complexes) -> Complexes:
-    result = np.zeros_like(z)
-    for k in reversed(range(stack.shape[1])):
-        result = result * z + stack[:, k : k + 1]
-    return result

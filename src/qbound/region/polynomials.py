@@ -1,0 +1,141 @@
+"""Where do polynomials vanish? Roots of stacks of them, a multiple root once and as it is.
+
+Roots are eigenvalues of companion matrices. Rounding spreads an m-fold one by its own m-th root,
+1e-8 of a double one: two curves that touch would part there, or miss each other. But an m-fold root
+is a simple one of the (m - 1)-th derivative, and of that Newton finds all digits.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.tolerances import MULTIPLE, NEGLIGIBLE, SPREAD
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Complexes = NDArray[np.complex128]
+
+
+def polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
+    """Return rows and roots of stacked polynomials, equal degrees by one call of the solver.
+
+    Both ends are trimmed relative to the largest coefficient: a fixed degree would send roots to
+    zero or infinity and spoil the others. Not in the paper.
+
+    Parameters
+    ----------
+    stack : ndarray of complex, shape (n, d + 1)
+        Coefficients, ascending powers, of terms of size 1 or less.
+
+    Returns
+    -------
+    tuple of ndarray
+        Row and place of each root, shape (k,), in no order; a multiple root stands there once.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows, z = polynomial_roots(np.poly([0.3, 0.3, -0.5])[None, ::-1].astype(complex))
+    >>> sorted(z.real.round(14).tolist())
+    [-0.5, 0.3]
+    """
+    rows = np.flatnonzero(np.abs(stack).max(axis=-1, initial=0.0) > NEGLIGIBLE)
+    stack = stack[rows]
+    kept = np.abs(stack) > NEGLIGIBLE * np.abs(stack).max(axis=-1, keepdims=True, initial=0.0)
+    first = kept.argmax(axis=-1)
+    last = stack.shape[-1] - 1 - kept[:, ::-1].argmax(axis=-1)
+    zero = rows[first > 0]  # roots that are trimmed with their coefficients
+    found = [(zero, np.zeros(len(zero), dtype=complex))]
+    for low, high in set(zip(first.tolist(), last.tolist(), strict=True)):
+        if high > low:
+            chosen = (first == low) & (last == high)
+            where, z = _companion_roots(stack[chosen, low : high + 1])
+            found.append((rows[chosen][where], z))
+    return np.concatenate([rows for rows, _ in found]), np.concatenate([z for _, z in found])
+
+
+def _companion_roots(stack: Complexes) -> tuple[Ints, Complexes]:
+    """Return rows and roots of polynomials with non-zero ends."""
+    degree = stack.shape[1] - 1
+    matrices = np.zeros((len(stack), degree, degree), dtype=complex)
+    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    matrices[:, :, -1] = -stack[:, :-1] / stack[:, -1:]
+    z = np.asarray(np.linalg.eigvals(matrices), dtype=complex)
+    rows, multiple, simple = _multiple_roots(stack, z)
+    return (
+        np.concatenate([np.nonzero(simple)[0], rows]),
+        np.concatenate([_polished(stack, z)[simple], multiple]),
+    )
+
+
+def _multiple_roots(stack: Complexes, z: Complexes) -> tuple[Ints, Complexes, Bools]:
+    """Return rows and places of multiple roots, and which of the computed roots (n, d) are none."""
+    simple = np.ones(z.shape, dtype=np.bool_)
+    found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex))]
+    gaps = np.abs(z[:, :, None] - z[:, None, :])
+    company = (gaps <= _spread(z.shape[1])).sum(axis=-1).max(axis=-1)
+    for m in range(int(company.max(initial=0)), 1, -1):
+        near = np.flatnonzero(company >= m)
+        k, one = np.nonzero((gaps[near] <= _spread(m)).sum(axis=-1) >= m)
+        if not len(k):
+            continue
+        rows = near[k]
+        own = np.argsort(gaps[rows, one], axis=-1)[:, :m]  # the root itself, and its nearest
+        _, first = np.unique(rows * 2 ** z.shape[1] + (2**own).sum(axis=1), return_index=True)
+        rows, own = rows[first], own[first]  # each of the parts has the same ones
+        place, rounded = _m_fold(stack[rows], np.take_along_axis(z[rows], own, axis=1), m)
+        new = rounded & simple[rows[:, None], own].all(axis=1)
+        simple[rows[new, None], own[new]] = False
+        found.append((rows[new], place[new]))
+    rows, places = (np.concatenate(x) for x in zip(*found, strict=True))
+    return rows, places, simple
+
+
+def _spread(m: int) -> float:
+    """Return how far from each other rounding may leave the m parts of one root."""
+    return float(SPREAD * NEGLIGIBLE ** (1 / m))
+
+
+def _m_fold(stack: Complexes, parts: Complexes, m: int) -> tuple[Complexes, Bools]:
+    """Return the root that m computed ones (k, m) would be, and whether but for rounding they are.
+
+    They are if of the Taylor coefficients there the first m cannot be told from zero.
+    """
+    tables = [_taylor(stack, j) for j in range(m + 1)]
+    place = parts.mean(axis=1, keepdims=True)
+    for _ in range(3):
+        value, slope = _horner(tables[m - 1], place), m * _horner(tables[m], place)
+        step = np.divide(value, slope, out=np.zeros_like(value), where=slope != 0)
+        place = np.where(np.abs(step) <= _spread(m), place - step, place)
+    rounded = np.ones(len(stack), dtype=np.bool_)
+    for table in tables[:m]:
+        size = 1 + _horner(np.abs(table), np.abs(place))
+        rounded &= (np.abs(_horner(table, place)) <= MULTIPLE * size)[:, 0]
+    return place[:, 0], rounded
+
+
+def _taylor(stack: Complexes, j: int) -> Complexes:
+    """Return the polynomials' j-th derivatives over j!, ascending powers."""
+    return np.asarray(stack[:, j:] * [math.comb(k, j) for k in range(j, stack.shape[1])])
+
+
+def _polished(stack: Complexes, z: Complexes) -> Complexes:
+    """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
+    slopes = _taylor(stack, 1)
+    for _ in range(2):
+        value, slope = _horner(stack, z), _horner(slopes, z)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = value / slope
+        z = np.where(np.abs(step) < 1e-6, z - step, z)
+    return z
+
+
+def _horner(stack: NDArray[np.inexact], z: NDArray[np.inexact]) -> NDArray[np.inexact]:
+    result = np.zeros_like(z)
+    for k in reversed(range(stack.shape[1])):
+        result = result * z + stack[:, k : k + 1]
+    return result
