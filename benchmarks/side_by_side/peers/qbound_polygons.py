@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from qbound_arcs import warmed
 from quality import packed
-from scenes import robot
 from serve import Refused, Timed, serve, timed
 
 from qbound import find_region
@@ -17,7 +17,7 @@ def region(scene: str, accuracy: float) -> Timed:
     """Answer with polygons within the accuracy."""
     if accuracy < FINEST:
         raise Refused(f"{accuracy:.0e} is finer than {FINEST:.0e}")
-    arm = robot(scene)
+    arm = warmed(scene)
     seconds, processor, drawn = timed(lambda: find_outlines(find_region(arm), accuracy))
     pieces = (piece for pieces in drawn.pieces for piece in pieces)
     rings = [(piece.outer, *piece.holes) for piece in pieces]

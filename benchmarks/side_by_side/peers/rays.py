@@ -1,8 +1,8 @@
 """Ray bisection: from a feasible place, the first way out in each direction.
 
 As users do it: every ray is walked in equal strides until a margin is negative, and that last
-stride is halved until it is shorter than the accuracy; all rays at once. What is behind a boundary,
-seen from the start, is not found, and neither is any other component.
+stride is halved until it is shorter than the accuracy; all rays at once, many strides at a time.
+What is behind a boundary, seen from the start, is not found, and neither is any other component.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from closed_form import PlanarArm
+from closed_form import BLOCK, PlanarArm
 from planar import Floats, arm, start
 from quality import packed
 from serve import Refused, Timed, serve, timed
@@ -59,11 +59,15 @@ def _walked(form: PlanarArm, at: Floats, direction: Floats, stride: float) -> tu
     safe, walking = np.zeros(direction.shape[1]), np.arange(direction.shape[1])
     end = last.copy()
     while len(walking):
-        there = np.minimum(safe[walking] + stride, last[walking])
-        free = form.of(at[:, None] + there * direction[:, walking]) >= 0
-        end[walking[~free]] = there[~free]
-        safe[walking[free]] = there[free]
-        walking = walking[free & (there < last[walking])]
+        some = np.arange(1, 1 + max(1, BLOCK // len(walking)))
+        there = np.minimum(safe[walking, None] + stride * some, last[walking, None])
+        q = at[:, None, None] + there * direction[:, walking, None]
+        free = (form.of(q.reshape(2, -1)) >= 0).reshape(there.shape)
+        count = np.where(free.all(axis=1), free.shape[1], free.argmin(axis=1))
+        stopped, row = count < free.shape[1], np.arange(len(walking))
+        end[walking[stopped]] = there[row, count - free.shape[1]][stopped]
+        safe[walking] = np.where(count > 0, there[row, count - 1], safe[walking])
+        walking = walking[~stopped & (safe[walking] < last[walking])]
     return safe, end
 
 
