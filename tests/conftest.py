@@ -9,9 +9,9 @@ from hypothesis import HealthCheck, settings
 
 pytest.register_assert_rewrite("support")  # before its first import: its assertions show values
 
-from support.browser import browser, open_quietly  # noqa: E402
+from support.browser import browser, open_quietly, tabs  # noqa: E402
 
-__all__ = ["browser", "open_quietly"]
+__all__ = ["browser", "open_quietly", "tabs"]
 
 # What the library and the parsed pages keep is looked through again and again, in vain.
 gc.set_threshold(50_000, 20, 50)

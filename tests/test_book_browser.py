@@ -9,13 +9,16 @@ from urllib.parse import quote
 import pytest
 
 from support.browser import (
+    BUT_COLOURS,
+    COLOURS,
     FAMILIES,
+    Tab,
     broken_rules,
     chapter_page,
     eventually,
     in_every_family,
+    in_its_own_family,
     open_page,
-    refuse_remote,
     settle,
 )
 from support.pages import HTML
@@ -26,7 +29,22 @@ PAGES = [page for page in PAGES if not page.startswith("_static")] or ["index.ht
 API = [page for page in PAGES if page.startswith("generated/")]
 # Pages of the API are all made in one way, of docstrings: the longest have whatever one can have.
 LONGEST = sorted(API, key=lambda page: (HTML / page).stat().st_size)[-6:]
-PAGES = [page for page in PAGES if page not in API or page in LONGEST]
+SAMPLE = [  # one page of each kind, and the longest: axe looks at these
+    "index.html",
+    "explore.html",
+    chapter_page("vector_labelling"),
+    chapter_page("theorem_2"),
+    chapter_page("every_region"),
+    chapter_page("what_holds"),
+    "notation.html",
+    "traceability.html",
+    "commands.html",
+    "cite.html",
+    "generated/qbound.forms.circle.html",
+]
+# These first: pytest tells a page by its place in the list, and opens those of one place once.
+OTHERS = [page for page in PAGES if page not in API or page in LONGEST]
+PAGES = SAMPLE + [page for page in OTHERS if page not in SAMPLE]
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
@@ -58,50 +76,74 @@ class Seen:
     images: list[str] = field(default_factory=list)
     layout: dict[tuple[str, str], list[str]] = field(default_factory=dict)
     faint: dict[str, list[str]] = field(default_factory=dict)
-
-
-@dataclass
-class Tab:
-    """A page that goes from one to the next: a new one for each would take longer than they do."""
-
-    page: Any
-    requests: list[str] = field(default_factory=list)
-    console: list[str] = field(default_factory=list)
+    broken: dict[str, list[Any]] = field(default_factory=dict)
 
 
 @pytest.fixture(scope="module")
-def tab(browser: Any) -> Iterator[Tab]:
-    tab = Tab(browser.new_page(reduced_motion="reduce"))
-    refuse_remote(tab.page, tab.requests)
-    tab.page.on("pageerror", lambda error: tab.console.append(str(error)))
-    tab.page.on("console", lambda m: m.type == "error" and tab.console.append(m.text))
-    yield tab
-    tab.page.close()
+def tab(tabs: Any) -> Iterator[Tab]:
+    with tabs.lent(reduced_motion="reduce") as tab:
+        yield tab
 
 
 @pytest.fixture(scope="module", params=PAGES)
 def seen(tab: Tab, request: pytest.FixtureRequest) -> Seen:
     """Open one page once; look at it at both widths, in every family, and in both themes."""
     tab.requests.clear()
-    tab.console.clear()
+    tab.complaints.clear()
     seen, page = Seen(), tab.page
-    page.set_viewport_size({"width": WIDTHS["wide screen"], "height": 900})
+    look(page, "light", "wide screen")
     open_page(page, request.param)
     page.add_script_tag(content=QUESTIONS)
     page.evaluate("openEverything()")
-    for name, width in WIDTHS.items():
-        page.set_viewport_size({"width": width, "height": 900})
+    seen.formulas = page.evaluate("unshownFormulas()")
+    seen.images = page.evaluate("badImages()")
+    page.evaluate("emptyFormulas()")
+    for name in WIDTHS:
+        look(page, "light", name)
         for family in in_every_family(page):
             for question in LAYOUT:
                 answers = page.evaluate(f"{question}()")
                 found = seen.layout.setdefault((question, name), [])
                 found += [f"{family}: {answer}" for answer in answers]
-    seen.formulas = page.evaluate("unshownFormulas()")
-    seen.images = page.evaluate("badImages()")
     for theme in THEMES:
         seen.faint[theme] = page.evaluate("faintText", theme)
-    seen.requests, seen.console = [*tab.requests], [*tab.console]
+    if request.param in SAMPLE:
+        seen.broken = ask_axe(page)
+    seen.requests, seen.console = [*tab.requests], tab.said("error")
     return seen
+
+
+def look(page: Any, theme: str, width: str) -> None:
+    page.emulate_media(color_scheme=theme)
+    page.set_viewport_size({"width": WIDTHS[width], "height": 900})
+
+
+# axe takes a table's head for empty when its words are a formula: it does not read MathML.
+FORMULA_HEADS = {"exclude": [["th:has(mjx-container)"]]}
+
+LOOKS: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "wide screen": ("light", "wide screen", BUT_COLOURS),
+    "phone": ("light", "phone", BUT_COLOURS),
+    # Each colour is looked at once in each theme; those of a phone are, on every page above.
+    "colours": ("light", "wide screen", {"runOnly": COLOURS}),
+    "colours in the dark": ("dark", "wide screen", {"runOnly": COLOURS}),
+}
+
+
+def ask_axe(page: Any) -> dict[str, list[Any]]:
+    """Ask axe about a page that has been asked all else: parts of it are taken away."""
+    in_its_own_family(page)
+    page.evaluate("document.documentElement.dataset.theme = 'light'")
+    page.evaluate("keepOneOfEachRow()")
+    found = {}
+    for name, (theme, width, rules) in LOOKS.items():
+        if name == "colours":
+            page.evaluate("keepThreeOfEachKind()")
+        look(page, theme, width)
+        settle(page)
+        assert page.evaluate("document.documentElement.dataset.theme") == theme
+        found[name] = broken_rules(page, FORMULA_HEADS, **rules)
+    return found
 
 
 def test_a_page_asks_nothing_of_the_network(seen):
@@ -159,6 +201,12 @@ def test_text_stands_out_from_its_ground(seen, theme):
     assert seen.faint[theme] == []
 
 
+@pytest.mark.parametrize("name", LOOKS)
+@pytest.mark.parametrize("seen", SAMPLE, indirect=True, scope="module")
+def test_a_page_breaks_no_rule_of_accessibility(seen, name):
+    assert seen.broken[name] == []
+
+
 def test_all_but_code_is_set_in_families_of_three_widths(tab):
     open_page(tab.page, "index.html")
     tab.page.add_script_tag(content=QUESTIONS)
@@ -171,10 +219,9 @@ def test_all_but_code_is_set_in_families_of_three_widths(tab):
 
 
 @pytest.fixture
-def page(browser: Any) -> Iterator[Any]:
-    page = browser.new_page(color_scheme="dark")
-    yield page
-    page.close()
+def page(tabs: Any) -> Iterator[Any]:
+    with tabs.lent(color_scheme="dark") as tab:
+        yield tab.page
 
 
 def test_a_reader_who_prefers_the_dark_gets_it(page):
@@ -250,67 +297,8 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     inside.get_by_text("There. On the way you crossed").wait_for()
 
 
-# axe takes a table's head for empty when its words are a formula: it does not read MathML.
-FORMULA_HEADS = {"exclude": [["th:has(mjx-container)"]]}
-
-SAMPLE = [  # one page of each kind, and the longest
-    "index.html",
-    "explore.html",
-    chapter_page("vector_labelling"),
-    chapter_page("theorem_2"),
-    chapter_page("every_region"),
-    chapter_page("what_holds"),
-    "notation.html",
-    "traceability.html",
-    "commands.html",
-    "cite.html",
-    "generated/qbound.forms.circle.html",
-]
-
-
-# Axe looks at every part of a page: of what is made alike many times, a few stand for all.
-THIN = """() => {
-  const kinds = new Set();
-  for (const row of document.querySelectorAll(".ledger-table tbody tr")) {
-    const { kind, verdict } = row.dataset;
-    if (kinds.has(kind) && kinds.has(verdict)) row.remove();
-    kinds.add(kind).add(verdict);
-  }
-  for (const formula of [...document.querySelectorAll("mjx-container")].slice(5))
-    formula.replaceChildren("x");
-}"""
-
-COLOURS = ["color-contrast", "link-in-text-block"]
-LOOKS = {  # each colour is looked at once in each theme; those of a phone are, on every page above
-    "wide screen": ("light", {}),
-    "phone": ("light", {"rules": {rule: {"enabled": False} for rule in COLOURS}}),
-    "wide screen in the dark": ("dark", {"runOnly": COLOURS}),
-}
-
-
-@pytest.fixture(scope="module", params=SAMPLE)
-def broken(tab: Tab, request: pytest.FixtureRequest) -> dict[str, list[Any]]:
-    """Open one page once; ask axe at both widths and in the dark."""
-    found, page = {}, tab.page
-    page.set_viewport_size({"width": WIDTHS["wide screen"], "height": 900})
-    open_page(page, request.param)
-    page.evaluate(THIN)
-    for look, (theme, rules) in LOOKS.items():
-        page.emulate_media(color_scheme=theme)
-        page.set_viewport_size({"width": WIDTHS[look.split(" in ")[0]], "height": 900})
-        settle(page)
-        assert page.evaluate("document.documentElement.dataset.theme") == theme
-        found[look] = broken_rules(page, FORMULA_HEADS, **rules)
-    return found
-
-
-@pytest.mark.parametrize("look", LOOKS)
-def test_a_page_breaks_no_rule_of_accessibility(broken, look):
-    assert broken[look] == []
-
-
 def test_a_solution_is_folded_until_a_reader_asks(page):
-    open_page(page, chapter_page("theorem_2"))
+    open_page(page, chapter_page("introduction"))
     solution = page.locator("#exercises .admonition.dropdown").first
     words = solution.locator("p:not(.admonition-title)").first
     assert not words.is_visible()
@@ -320,7 +308,8 @@ def test_a_solution_is_folded_until_a_reader_asks(page):
 
 # --- cards ----------------------------------------------------------------------------------------
 
-THEOREM_2 = chapter_page("theorem_2")
+# A page that links much and has few formulas: it is soon open.
+LINKING = chapter_page("introduction")
 TO_EQUATION = "article p > a[href*='#equation-eq-29']"
 CARD = "#hover-card"
 
@@ -341,7 +330,7 @@ def is_in_window(page: Any) -> bool:
 
 
 def test_a_pointer_on_a_reference_shows_the_formula_and_may_move_into_it(page):
-    open_page(page, THEOREM_2)
+    open_page(page, LINKING)
     page.locator(TO_EQUATION).first.hover()
     page.locator(CARD).wait_for()
     eventually(page, lambda: typeset(page))
@@ -354,7 +343,7 @@ def test_a_pointer_on_a_reference_shows_the_formula_and_may_move_into_it(page):
 
 
 def test_the_keyboard_shows_a_card_escape_takes_it_away_and_enter_leads_on(page):
-    open_page(page, THEOREM_2)
+    open_page(page, LINKING)
     page.keyboard.press("Tab")
     link = page.locator(TO_EQUATION).first
     link.focus()
@@ -368,7 +357,7 @@ def test_the_keyboard_shows_a_card_escape_takes_it_away_and_enter_leads_on(page)
 
 
 def test_a_card_goes_when_the_focus_goes(page):
-    open_page(page, THEOREM_2)
+    open_page(page, LINKING)
     page.keyboard.press("Tab")
     page.locator(TO_EQUATION).first.focus()
     page.locator(CARD).wait_for()
@@ -379,7 +368,7 @@ def test_a_card_goes_when_the_focus_goes(page):
 def test_a_page_without_formulas_sets_that_of_a_card(page):
     open_page(page, "commands.html")
     assert page.evaluate("window.MathJax") is None
-    link = f"<p><a href='{THEOREM_2}#equation-eq-31'>(31)</a></p>"
+    link = f"<p><a href='{chapter_page('theorem_2')}#equation-eq-31'>(31)</a></p>"
     page.evaluate(
         "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link
     )
@@ -388,7 +377,7 @@ def test_a_page_without_formulas_sets_that_of_a_card(page):
 
 
 def test_a_card_is_not_printed(page):
-    open_page(page, THEOREM_2)
+    open_page(page, LINKING)
     page.locator(TO_EQUATION).first.hover()
     page.locator(CARD).wait_for()
     page.emulate_media(media="print")
@@ -398,8 +387,7 @@ def test_a_card_is_not_printed(page):
 @pytest.mark.parametrize("theme", THEMES)
 def test_a_card_breaks_no_rule_of_accessibility(page, theme):
     page.emulate_media(color_scheme=theme)
-    open_page(page, THEOREM_2)
-    page.evaluate(THIN)
+    open_page(page, LINKING)
     page.locator("article p > a[href$='#tab-6']").first.hover()
     page.locator(CARD).wait_for()
     eventually(page, lambda: typeset(page))
@@ -408,16 +396,14 @@ def test_a_card_breaks_no_rule_of_accessibility(page, theme):
 
 
 @pytest.fixture
-def phone(browser: Any) -> Iterator[Any]:
-    context = browser.new_context(
-        viewport={"width": WIDTHS["phone"], "height": 800}, has_touch=True, is_mobile=True
-    )
-    yield context.new_page()
-    context.close()
+def phone(tabs: Any) -> Iterator[Any]:
+    size = {"width": WIDTHS["phone"], "height": 800}
+    with tabs.lent(viewport=size, has_touch=True, is_mobile=True) as tab:
+        yield tab.page
 
 
 def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
-    open_page(phone, THEOREM_2)
+    open_page(phone, LINKING)
     phone.locator(TO_EQUATION).first.tap()
     phone.locator(CARD).wait_for()
     eventually(phone, lambda: typeset(phone))
@@ -431,7 +417,7 @@ def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
 
 
 def test_a_second_tap_follows_the_link(phone):
-    open_page(phone, THEOREM_2)
+    open_page(phone, LINKING)
     phone.locator(TO_EQUATION).first.tap()
     phone.locator(CARD).wait_for()
     phone.locator(TO_EQUATION).first.tap()
@@ -439,7 +425,7 @@ def test_a_second_tap_follows_the_link(phone):
 
 
 def test_a_link_without_a_card_leads_on_at_the_first_tap(phone):
-    open_page(phone, THEOREM_2)
+    open_page(phone, LINKING)
     link = "<p><a href='#exercises'>to the exercises</a></p>"
     phone.evaluate(
         "(link) => document.querySelector('article h1').insertAdjacentHTML('afterend', link)", link

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from copy import copy
 from functools import cache
 from pathlib import Path
@@ -17,7 +18,7 @@ from lizarraga2025.ledger.claims import counts, from_content
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
-from support.browser import chapter_page, open_page, refuse_remote
+from support.browser import chapter_page, open_page
 from support.pages import HTML, read
 
 LEDGER = [from_content(content) for content in recorded.claims()]
@@ -133,12 +134,10 @@ def test_the_table_of_verdicts_counts_entries_and_findings() -> None:
 
 
 @pytest.fixture
-def page(browser) -> Any:
-    page = browser.new_page()
-    refuse_remote(page, type("Seen", (), {"requests": []})())
-    open_page(page, PAGE)
-    yield page
-    page.close()
+def page(tabs) -> Iterator[Any]:
+    with tabs.lent() as tab:
+        open_page(tab.page, PAGE)
+        yield tab.page
 
 
 def shown(page: Any) -> list[str]:
@@ -146,14 +145,13 @@ def shown(page: Any) -> list[str]:
     return page.evaluate(f"{script}.map(r => r.querySelector('th').textContent)")
 
 
-@pytest.mark.parametrize("verdict", VERDICTS)
-def test_the_reader_filters_by_verdict(page, verdict) -> None:
-    page.get_by_label("Verdict", exact=True).select_option(verdict)
-    wanted = [one.id for one in LEDGER if one.verdict == verdict]
-    assert shown(page) == wanted
-    assert page.locator(".ledger-count").text_content() == (
-        f"{len(wanted)} of {len(LEDGER)} entries"
-    )
+def test_the_reader_filters_by_each_verdict(page) -> None:
+    for verdict in VERDICTS:
+        page.get_by_label("Verdict", exact=True).select_option(verdict)
+        wanted = [one.id for one in LEDGER if one.verdict == verdict]
+        assert shown(page) == wanted
+        count = page.locator(".ledger-count").text_content()
+        assert count == f"{len(wanted)} of {len(LEDGER)} entries"
 
 
 def test_the_reader_combines_kind_and_words_and_shows_all_again(page) -> None:
@@ -182,14 +180,13 @@ def test_on_paper_the_whole_table_is_there_without_its_controls(page) -> None:
     assert not page.locator(".ledger-controls").is_visible()
 
 
-def test_without_a_script_the_whole_table_is_shown(browser) -> None:
-    context = browser.new_context(java_script_enabled=False)
-    page = context.new_page()
-    page.goto((HTML / PAGE).as_uri())
-    assert page.locator(".ledger tbody tr").count() == len(LEDGER)
-    assert page.locator(f"#{LEDGER[-1].anchor}").is_visible()
-    assert not page.locator(".ledger-controls").is_visible()
-    context.close()
+def test_without_a_script_the_whole_table_is_shown(tabs) -> None:
+    with tabs.lent(java_script_enabled=False) as tab:
+        page = tab.page
+        page.goto((HTML / PAGE).as_uri())
+        assert page.locator(".ledger tbody tr").count() == len(LEDGER)
+        assert page.locator(f"#{LEDGER[-1].anchor}").is_visible()
+        assert not page.locator(".ledger-controls").is_visible()
 
 
 def test_the_citation_unfolds_by_keyboard(page) -> None:

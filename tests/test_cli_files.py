@@ -367,24 +367,35 @@ at = [5, 0, 0]
 # --- the same bytes twice, whole or not at all ---------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "draw minervabot-v2 -o {}.svg",
-        "draw minervabot-v2 -o {}.png",
-        "region minervabot-v2 --npz {}.npz",
-        "region minervabot-v2 --svg {}.svg",
-        "sample minervabot-v2 -n 50 --seed 1 --npz {}.npz",
-        "traverse minervabot-v2 1 2 3 --scale 0.8 --svg {}.svg",
-    ],
-)
-def test_a_second_run_writes_the_same_bytes(capsys, line) -> None:
-    """The second in another process and under another file name."""
-    assert run(capsys, line.format("one"))[0] == 0
-    command = [sys.executable, "-m", "qbound", *shlex.split(line.format("two"))]
-    subprocess.run(command, check=True, capture_output=True)
-    (one,), (two,) = Path().glob("one.*"), Path().glob("two.*")
-    assert one.read_bytes() == two.read_bytes()
+WRITING = [
+    "draw minervabot-v2 -o {}.svg",
+    "draw minervabot-v2 -o {}.png",
+    "region minervabot-v2 --npz {}-region.npz",
+    "region minervabot-v2 --svg {}-region.svg",
+    "sample minervabot-v2 -n 50 --seed 1 --npz {}-sample.npz",
+    "traverse minervabot-v2 1 2 3 --scale 0.8 --svg {}-path.svg",
+]
+ALL_OF_THEM = """
+import shlex, sys
+from qbound.cli import main
+for line in sys.argv[1:]:
+    assert main(shlex.split(line)) == 0, line
+"""
+
+
+def test_a_second_run_writes_the_same_bytes(capsys) -> None:
+    """The second in another process, in another order, and under other file names."""
+    for line in WRITING:
+        assert run(capsys, line.format("one"))[0] == 0
+    others = [line.format("two") for line in reversed(WRITING)]
+    command = [sys.executable, "-c", ALL_OF_THEM, *others]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    written = {file.name: file.read_bytes() for file in Path().iterdir()}
+    first = {name: content for name, content in written.items() if name.startswith("one")}
+    assert len(first) == len(WRITING)
+    for name, content in first.items():
+        assert written[name.replace("one", "two")] == content, name
 
 
 def test_several_files_appear_together_or_not_at_all(monkeypatch) -> None:

@@ -16,7 +16,7 @@ from qbound import find_region, find_slices, load_robot
 from qbound.explorer.page import explore, explorer_page
 from qbound.region import violated
 from support.arms import ROBOTS, SPATIAL, three_joints
-from support.browser import broken_rules, drag, in_every_family, settle, wait_until
+from support.browser import broken_rules, drag, in_every_family, rules_in, settle, wait_until
 
 WALLS = {
     "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
@@ -373,7 +373,7 @@ def test_it_prints_both_pictures_and_the_margins_on_one_page(open_explorer):
 def test_the_accessibility_rules_find_nothing(open_explorer, name, width, theme):
     page = open_explorer(name, viewport={"width": WIDTHS[width], "height": 850}, color_scheme=theme)
     page.fill("#value-0", "80")
-    assert broken_rules(page) == []
+    assert broken_rules(page, **rules_in(theme)) == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)
@@ -449,13 +449,12 @@ def test_the_letters_of_all_three_families_are_drawn(open_explorer):
     assert narrow < usual < wide
 
 
-def test_without_scripts_the_page_says_what_it_would_show(browser, files):
-    page = browser.new_page(java_script_enabled=False)
-    page.goto(files["paper"].as_uri())
-    words = page.inner_text("noscript")
+def test_without_scripts_the_page_says_what_it_would_show(tabs, files):
+    with tabs.lent(java_script_enabled=False) as tab:
+        tab.page.goto(files["paper"].as_uri())
+        words = tab.page.inner_text("noscript")
     assert "needs JavaScript" in words
     assert "5 pieces" in words
-    page.close()
 
 
 def test_a_script_in_a_robots_name_does_not_run(open_explorer, files, tmp_path):

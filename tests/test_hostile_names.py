@@ -323,15 +323,14 @@ def test_in_the_browser_names_stay_text(open_quietly, region, tmp_path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_a_picture_within_a_page_runs_nothing_in_the_browser(browser, region, tmp_path) -> None:
+def test_a_picture_within_a_page_runs_nothing_in_the_browser(tabs, region, tmp_path) -> None:
     """As Jupyter shows a region."""
     svg, file = region._repr_svg_(), tmp_path / "p.html"
     file.write_text(f"<!doctype html><body>{svg[svg.index('<svg') :]}", encoding="utf-8")
-    page = browser.new_page()
-    page.goto(file.as_uri())
-    assert page.evaluate("window.hit") is None
-    assert page.evaluate("document.body.children.length") == 1
-    page.close()
+    with tabs.lent() as tab:
+        tab.page.goto(file.as_uri())
+        assert tab.page.evaluate("window.hit") is None
+        assert tab.page.evaluate("document.body.children.length") == 1
 
 
 # --- names that the user types: files, keys, values, options -------------------------------------

@@ -231,12 +231,11 @@ def test_the_figure_stands_for_its_picture_and_the_picture_is_printed(open_site)
     assert page.locator(".play").nth(1).is_visible()  # it replaces no picture
 
 
-def test_without_scripts_the_picture_stays(browser, site):
-    page = browser.new_page(java_script_enabled=False)
-    page.goto((site[0] / "index.html").as_uri())
-    assert page.locator("#fig-6 img").is_visible()
-    assert page.locator(".play *").count() == 0
-    page.close()
+def test_without_scripts_the_picture_stays(tabs, site):
+    with tabs.lent(java_script_enabled=False) as tab:
+        tab.page.goto((site[0] / "index.html").as_uri())
+        assert tab.page.locator("#fig-6 img").is_visible()
+        assert tab.page.locator(".play *").count() == 0
 
 
 def test_a_figure_that_fails_leaves_the_picture(browser, site):

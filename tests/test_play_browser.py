@@ -13,7 +13,7 @@ from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule
 from qbound.sampling import keeps_clear
-from support.browser import broken_rules, drag, in_every_family, settle
+from support.browser import broken_rules, drag, in_every_family, rules_in, settle
 from support.play import WIDTHS, open_play
 
 __all__ = ["open_play"]
@@ -63,7 +63,7 @@ def test_a_figure_is_accessible_and_fits(open_figure, kind, theme, width):
         lost = page.evaluate(LOST)
         assert lost == []
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    assert broken_rules(page) == []
+    assert broken_rules(page, **rules_in(theme)) == []
 
 
 @pytest.mark.parametrize("kind", ["circle", "scale", "bodies"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from support.browser import broken_rules, drag, eventually, settle
+from support.browser import broken_rules, drag, eventually, rules_in, settle
 from support.play import WIDTHS, open_play, region
 
 __all__ = ["open_play"]
@@ -78,7 +78,7 @@ def test_a_figure_is_accessible_and_fits(open_figure, name, theme, width):
       .map((e) => e.outerHTML)""")
     assert lost == []
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    assert broken_rules(page) == []
+    assert broken_rules(page, **rules_in(theme)) == []
 
 
 @pytest.mark.parametrize("name", HOOKS)

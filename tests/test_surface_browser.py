@@ -9,7 +9,7 @@ from matplotlib.image import imread
 
 from qbound.arms.surfaces import find_surface
 from qbound.explorer.surface_page import surface_page
-from support.browser import broken_rules, drag, in_every_family, refuse_remote, settle, wait_until
+from support.browser import broken_rules, drag, in_every_family, opening, settle, wait_until
 from support.portals import NAMES, dice
 
 VIEW = "surface.view"
@@ -23,28 +23,10 @@ def file(tmp_path_factory):
 
 
 @pytest.fixture
-def open_page(browser):
+def open_page(tabs):
     """Open pages as `open_quietly`, but for what drivers say of their own speed."""
-    pages, complaints, requests = [], [], []
-
-    def note(message) -> None:
-        if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
-            complaints.append(message.text)
-
-    def open_one(address, **options):
-        page = browser.new_page(**options)
-        refuse_remote(page, requests)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", note)
-        page.goto(address)
-        settle(page)
-        pages.append(page)
-        return page
-
-    yield open_one
-    for page in pages:
-        page.close()
-    assert (complaints, requests) == ([], [])
+    with opening(tabs, "GL Driver Message") as open_one:
+        yield open_one
 
 
 def told(page, x=0.5, y=0.5) -> str:

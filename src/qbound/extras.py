@@ -23,6 +23,7 @@ EXTRAS: Final = {
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "mpl_toolkits": Extra("drawing in space", "matplotlib", "figures"),
+    "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
     "skimage": Extra("a surface", "scikit-image", "arms"),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.boundary.compiled import compiled_feasible
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
 from qbound.model.robot import Robot
@@ -102,6 +103,28 @@ def joint_ranges(robot: Robot) -> Floats:
     return np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
 
 
-def keeps_clear(robot: Robot, q: Floats) -> Bools:
-    """Every boundary in use keeps its clearance: eqs. (11) and (12)."""
+def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int = 1) -> Bools:
+    """Every boundary in use keeps its clearance: eqs. (11) and (12).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., joints)
+    compiled : bool
+        Whether by machine code (`qbound.boundary.compiled`), with the same answers; takes Numba.
+    threads : int
+        Of machine code, that may work on many configurations.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+
+    Raises
+    ------
+    ValueError
+        If the last axis has not one value a joint, or one is NaN or infinite.
+    ModuleNotFoundError
+        If it is to be machine code, and there is no Numba.
+    """
+    if compiled:
+        return compiled_feasible(robot, limits=False, threads=threads)(q)
     return evaluator(robot, limits=False).feasible(q)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.chain import Chain, Pose
-from qbound.boundary.evaluator import denominators, lengths
+from qbound.boundary.lengths import denominators, lengths
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.tolerances import ROUNDING

@@ -2,25 +2,27 @@
 
 All forms, and the joint limits as two more rows a joint, are one table over the monomials that
 occur in any of them. A configuration costs a sine and a cosine a joint, a product a monomial, and
-its share of one matrix product. Boundaries about bodies have no such row: their columns come from
-`separation`.
+its share of one matrix product. Whether one is feasible is asked in single precision first, of many
+(`screen`), and once more where that is too near to say. Boundaries about bodies have no such row:
+their columns come from `separation`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.functions import clearance
+from qbound.boundary.lengths import Denominator, denominators, lengths
+from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.screen import SINES, Screen, reaches, screen
 from qbound.boundary.separation import Separation
-from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import ROUNDING
@@ -29,18 +31,18 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Range = tuple[float, float] | None
-Array = NDArray[Any]
-Index = tuple[int, ...]
-Denominator = tuple[Floats, Floats, Floats]
-Monomial = tuple[Callable[[float], float], Callable[[Floats], Floats]]
 
 BLOCK = 8192
-"""Configurations a block: their monomials stay in the cache between the two passes."""
+"""Configurations a block at most: their monomials stay in the cache between the two passes."""
+
+PRODUCTS = 2**17
+"""Products of a block's matrix product, if it can be: a larger one is cut by the library over all
+cores, at a cost above its own."""
+
+COUNT_SCREENED = 256
+"""Fewer configurations than these are as quick without the screen."""
 
 NO_COLUMNS = np.empty(0, dtype=np.intp)
-
-NO_DISTANCE = 2.0**-1000
-"""Stands for the distance 0 in a denominator: 0 / 0 would be NaN where two points meet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +60,9 @@ class Evaluator:
         One a column.
     table : ndarray, shape (rows, monomials)
         One row for each column that is not about bodies.
-    products : tuple of (int, int)
-        The two earlier monomials, by index, that each one after the factors is the product of.
-    factors : tuple of (joint, monomial)
-        The first monomials after the constant, of one joint each.
-    joints : int
+    monomials : Monomials
+    reach : ndarray, shape (joints,)
+        Absolute values of the joints up to which single precision is asked first.
     distance : ndarray, shape (rows,)
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
     rounding : ndarray, shape (rows,)
@@ -75,9 +75,8 @@ class Evaluator:
 
     names: tuple[str, ...]
     table: Floats
-    factors: tuple[tuple[int, Monomial], ...]
-    products: tuple[tuple[int, int], ...]
-    joints: int
+    monomials: Monomials
+    reach: Floats
     distance: Floats
     rounding: Floats
     bodies: Separation | None = None
@@ -117,25 +116,86 @@ class Evaluator:
 
     def feasible(self, q: ArrayLike) -> Bools:
         """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
-        q = self._checked(q)
-        flat = q.reshape(-1, self.joints)
-        result = np.empty(len(flat), dtype=np.bool_)
-        for start in range(0, len(flat), BLOCK):
-            values = self._lifted @ self._monomials(flat[start : start + BLOCK])
-            result[start : start + BLOCK] = (values >= 0).all(axis=0)
+        q = np.asarray(q, dtype=float)
+        if q.ndim == 1 and self.bodies is None:
+            return self._one_feasible(self.shaped(q))
+        flat = self.shaped(q).reshape(-1, self.joints)
+        return self.completed(flat, *self._screened(flat)).reshape(q.shape[:-1])
+
+    def completed(self, q: Floats, result: Bools, near: Indices) -> Bools:
+        """Return a screen's answers with those that it left open, and with bodies, if there are.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, joints)
+        result : ndarray of bool, shape (n,)
+            Who is feasible; it is changed.
+        near : ndarray of int
+            Which configurations the screen did not decide.
+
+        Raises
+        ------
+        ValueError
+            If one of these has a value that is NaN or infinite.
+        """
+        if len(near):
+            result[near] = self.settled(q[near])
         if self.bodies is not None:
-            result[result] = self.bodies.all_separated(flat[result], -self.bodies.rounding)
-        return result.reshape(q.shape[:-1])
+            result[result] = self.bodies.all_separated(q[result], -self.bodies.rounding)
+        return result
+
+    def settled(self, q: Floats) -> Bools:
+        """Tell where no row of the table is negative, in double precision, (n, joints) to (n,).
+
+        Every other way to `feasible` is quicker, and comes here with what it cannot decide. All
+        are taken by matrix products of one shape, so that a sign does not depend on how many are
+        asked at once.
+
+        Raises
+        ------
+        ValueError
+            If a joint value is NaN or infinite.
+        """
+        self._checked(q)
+        result = np.empty(len(q), dtype=np.bool_)
+        for start in range(0, len(q), BLOCK):
+            here = q[start : start + BLOCK]
+            rows = self.monomials.of_columns(padded(here, self._width))
+            parts = rows.reshape(len(rows), -1, self._width).transpose(1, 0, 2)
+            safe = (self._lifted @ parts >= 0).all(axis=1).reshape(-1)
+            result[start : start + BLOCK] = safe[: len(here)]
+        return result
+
+    def _screened(self, q: Floats) -> tuple[Bools, Indices]:
+        """Return who is feasible by single precision, and the indices of those too near to say."""
+        screen = self._screen
+        if screen is None or len(q) < COUNT_SCREENED:
+            return np.empty(len(q), dtype=np.bool_), np.arange(len(q))
+        result, undecided = np.empty(len(q), dtype=np.bool_), []
+        for start in range(0, len(q), screen.block):
+            here = slice(start, start + screen.block)
+            result[here], near = screen.judge(q[here])
+            undecided.append(start + np.flatnonzero(near))
+        return result, np.concatenate(undecided)
+
+    def _one_feasible(self, q: Floats) -> Bools:
+        values = q.tolist()
+        if all(-r <= x <= r for x, r in zip(values, self._reach, strict=True)):
+            least = min(self._certain.dot(self.monomials.of_one(values)).tolist(), default=2.0)
+            if abs(least) > 1:
+                return np.array(least > 0)
+        return self.settled(q[None]).reshape(())
 
     def _of_forms(self, q: Floats) -> Floats:
         """Return the margins that are not about bodies, shape (..., rows)."""
         if q.ndim == 1:
-            return self._lengths(self.table.dot(self._one(q.tolist())))
+            return self._lengths(self.table.dot(self.monomials.of_one(q.tolist())))
         flat = q.reshape(-1, self.joints)
         result = np.empty((len(flat), len(self.table)))
-        for start in range(0, len(flat), BLOCK):
-            values = self.table @ self._monomials(flat[start : start + BLOCK])
-            result[start : start + BLOCK] = self._lengths(values.T)
+        for start in range(0, len(flat), self._block):
+            columns = np.ascontiguousarray(flat[start : start + self._block].T)
+            values = self.table @ self.monomials.of_columns(columns)
+            result[start : start + self._block] = self._lengths(values.T)
         return result.reshape(*q.shape[:-1], len(self.table))
 
     def _columns(self, rows: Floats, bodies: Floats) -> Floats:
@@ -145,11 +205,20 @@ class Evaluator:
         result[..., self.columns[1]] = bodies
         return result
 
-    def _checked(self, q: ArrayLike) -> Floats:
-        q = np.asarray(q, dtype=float)
+    @property
+    def joints(self) -> int:
+        """How many values a configuration has."""
+        return self.monomials.joints
+
+    def shaped(self, q: Floats) -> Floats:
+        """Return configurations, unless the last axis has not one value a joint (ValueError)."""
         if q.shape[-1:] != (self.joints,):
             found = q.shape[-1] if q.ndim else "a bare number"
             raise ValueError(f"expected {self.joints} joint values on the last axis, found {found}")
+        return q
+
+    def _checked(self, q: ArrayLike) -> Floats:
+        q = self.shaped(np.asarray(q, dtype=float))
         finite = all(map(math.isfinite, q.tolist())) if q.ndim == 1 else np.isfinite(q).all()
         if not finite:
             raise ValueError("a joint value is NaN or infinite")
@@ -184,34 +253,41 @@ class Evaluator:
     def _lengths(self, values: Floats) -> Floats:
         return lengths(values, self.rounding, self._denominator)
 
-    def _one(self, q: Sequence[float]) -> list[float]:
-        row = [1.0]
-        row += [of_float(q[joint]) for joint, (of_float, _) in self.factors]
-        for i, j in self.products:
-            row.append(row[i] * row[j])
-        return row
+    @cached_property
+    def _screen(self) -> Screen | None:
+        return self.screen()
 
-    def _monomials(self, q: Floats) -> Floats:
-        rows = np.empty((self.table.shape[1], len(q)))
-        rows[0] = 1
-        columns = np.ascontiguousarray(q.T)
-        for row, (joint, (_, of_array)) in enumerate(self.factors, 1):
-            rows[row] = of_array(columns[joint])
-        for row, (i, j) in enumerate(self.products, 1 + len(self.factors)):
-            np.multiply(rows[i], rows[j], out=rows[row])
-        return rows
+    def screen(self, sines: float = SINES) -> Screen | None:
+        """Return the table in single precision; None where lengths are beyond it.
 
+        Parameters
+        ----------
+        sines : float
+            Error of the sines and cosines that will be taken (`qbound.boundary.screen.UNIT`).
+        """
+        return screen(self._lifted, self.monomials, self.reach, sines)
 
-MONOMIALS: dict[tuple[Kind, int], Monomial] = {
-    ("revolute", 1): (math.cos, np.cos),
-    ("revolute", 2): (math.sin, np.sin),
-    ("prismatic", 1): (float, np.asarray),
-    ("prismatic", 2): (lambda q: q * q, np.square),
-}
-"""The functions of `FACTORS` one by one, of a float and of an array."""
+    @cached_property
+    def _certain(self) -> Floats:
+        """The lifted table in units of its rounding: beyond 1 or -1 that changes no sign."""
+        sizes = self.monomials.sizes(self._reach)
+        bounds = len(sizes) * ROUNDING * (np.abs(self._lifted) @ sizes)
+        return np.asarray(self._lifted[bounds > 0] / bounds[bounds > 0, None])
 
-VALUE: tuple[Kind, int] = ("prismatic", 1)
-"""The value of a joint itself: what a limit bounds, of a revolute joint too."""
+    @cached_property
+    def _reach(self) -> list[float]:
+        return [float(reach) for reach in self.reach]
+
+    @cached_property
+    def _width(self) -> int:
+        """Configurations of one matrix product whose rounding is to be always the same."""
+        most = PRODUCTS // max(1, self.table.size)
+        return 1 << min(9, max(3, most.bit_length() - 1))
+
+    @cached_property
+    def _block(self) -> int:
+        """Configurations a block, where rounding need not be always the same."""
+        return max(256, min(BLOCK, PRODUCTS // max(1, self.table.size)))
 
 
 def compiled(
@@ -220,6 +296,7 @@ def compiled(
     distances: Sequence[float | None],
     ranges: Sequence[Range],
     limits: Sequence[tuple[str, str]],
+    spans: Sequence[Range] | None = None,
 ) -> Evaluator:
     r"""Compile forms and the limits of their joints.
 
@@ -234,34 +311,27 @@ def compiled(
         One a joint.
     limits : sequence of (str, str)
         Names of both ends of each range.
+    spans : sequence of (low, high) or None, optional
+        Where the values of each joint will lie, mostly; default: the ranges.
     """
     n = len(forms.kinds)
     bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
-    singles, products = _monomials(forms.coefficients)
-    factors = [(j, (forms.kinds[j], i)) for j, i in map(_last, singles)]
-    factors += [(j, VALUE) for j, *_ in bounded if (j, VALUE) not in factors]
-    place = {(0,) * n: 0} | {index: row for row, index in enumerate(singles, 1)}
-    place |= {index: row for row, index in enumerate(products, 1 + len(factors))}
+    monomials, place = occurring(forms.coefficients, forms.kinds, [j for j, *_ in bounded])
     coefficients = forms.coefficients.reshape(len(names), 3**n)
-    table = np.zeros((len(names) + 2 * len(bounded), 1 + len(factors) + len(products)))
+    table = np.zeros((len(names) + 2 * len(bounded), len(monomials)))
     for index, row in place.items():
         table[: len(names), row] = coefficients[:, np.ravel_multi_index(index, (3,) * n)]
     for k, (j, low, high) in enumerate(bounded):
-        q, at = 1 + factors.index((j, VALUE)), len(names) + 2 * k
+        q, at = 1 + monomials.factors.index((j, VALUE)), len(names) + 2 * k
         table[at : at + 2, [0, q]] = [[-low, 1], [high, -1]]
-    pairs = tuple((place[_head(index)], place[_tail(index)]) for index in products)
     reach = [1.0 if ends is None else max(map(abs, ends)) for ends in ranges]
-    sizes = [1.0] + [float(FACTORS[kind].largest(reach[j])[i]) for j, (kind, i) in factors]
-    for one, other in pairs:
-        sizes.append(sizes[one] * sizes[other])
     return Evaluator(
         names=(*names, *(name for j, *_ in bounded for name in limits[j])),
         table=table,
-        factors=tuple((j, MONOMIALS[which]) for j, which in factors),
-        products=pairs,
-        joints=n,
+        monomials=monomials,
+        reach=reaches(forms.kinds, spans or ranges),
         distance=np.array([*distances, *[None] * 2 * len(bounded)], dtype=float),
-        rounding=ROUNDING * np.abs(table) @ sizes,
+        rounding=ROUNDING * np.abs(table) @ monomials.sizes(reach),
     )
 
 
@@ -310,6 +380,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
         [robot.least_distance(boundary) for boundary in formed],
         [joint.limits if limits else None for joint in robot.joints],
         [limit_names(joint.name) for joint in robot.joints],
+        [joint.limits for joint in robot.joints],
     )
     if len(formed) == len(robot.used):
         return forms
@@ -322,63 +393,6 @@ def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:
     return HarmonicForm(forms.reshape(-1, *(3,) * len(robot.joints)), robot.kinds)
 
 
-def denominators(distance: Floats) -> Denominator:
-    r"""Return (a, b, d) of ``sqrt(a value + b) + d``: :math:`|B| + d_{\min}`, or 1 without one.
-
-    Parameters
-    ----------
-    distance : ndarray
-        :math:`d_{\min}` of the pairs; NaN where the value is a length.
-    """
-    pair = ~np.isnan(distance)
-    d = np.where(pair, np.maximum(distance, NO_DISTANCE), 0.0)
-    return pair.astype(float), np.where(pair, d * d, 1.0), d
-
-
-def lengths(values: Floats, rounding: Floats, denominator: Denominator) -> Floats:
-    """Return the margins of values of forms, shape (..., m); what rounding makes negative is 0.
-
-    The values may be changed.
-    """
-    if values.size and values.min() < 0:
-        values[(values < 0) & (values >= -rounding)] = 0
-    a, b, d = denominator
-    return np.asarray(values / (np.sqrt(np.maximum(a * values + b, 0)) + d))
-
-
 def limit_names(joint: str) -> tuple[str, str]:
     """Return the names of a joint's lower and upper limit, as boundaries."""
     return f"{joint}.lower", f"{joint}.upper"
-
-
-def _monomials(coefficients: Array) -> tuple[list[Index], list[Index]]:
-    """Return the monomials that occur, and those they are made from: of one joint, of several.
-
-    A monomial is the index of its coefficient; the zeroth of a joint's factors is 1.
-    """
-    found = set[Index]()
-    for occurring in np.argwhere((coefficients != 0).any(axis=0)).tolist():
-        index = tuple(occurring)
-        while any(index):
-            found |= {index, _tail(index)}
-            index = _head(index)
-    one, several = ([i for i in found if (np.count_nonzero(i) > 1) == many] for many in (0, 1))
-    return sorted(one), sorted(several, key=lambda i: (np.count_nonzero(i), i))
-
-
-def _last(index: Index) -> tuple[int, int]:
-    """Return the last joint on which a monomial depends, and which of its factors it has."""
-    joint = max(j for j, i in enumerate(index) if i)
-    return joint, index[joint]
-
-
-def _head(index: Index) -> Index:
-    """Return a monomial without the factor of its last joint."""
-    joint, _ = _last(index)
-    return (*index[:joint], 0, *index[joint + 1 :])
-
-
-def _tail(index: Index) -> Index:
-    """Return the factor of the last joint alone."""
-    joint, factor = _last(index)
-    return (*[0] * joint, factor, *[0] * (len(index) - joint - 1))
