@@ -50,6 +50,7 @@ def robot(name: str) -> Robot:
         "hundred": lambda: boundaries(100),
         "obstacles10": lambda: among(10, SEED),
         "ur5": lambda: load_robot("ur5"),
+        "three": three,
     }
     return makers[name]()
 
@@ -75,6 +76,31 @@ def walls() -> Robot:
         for name, x in (("right wall", -1.0), ("left wall", 1.0))
     )
     return Robot("Between walls", joints, (ball,), sides, np.zeros(2), "ball", "m", "rad")
+
+
+def three() -> Robot:
+    """Return three turning links of 1, 0.8 and 0.5 between two posts, above a floor.
+
+    Balls on elbow, wrist and tip keep off the posts and the floor; every joint within 2.5 rad.
+    """
+    axis, mount, ends = np.array([0.0, 1.0, 0.0]), np.eye(3), (-2.5, 2.5)
+    frames = ("base", "upper", "fore", "hand")
+    lengths = (0.0, 1.0, 0.8)
+    joints = tuple(
+        Revolute(f"q{i + 1}", frames[i], frames[i + 1], np.array([0.0, 0.0, z]), mount, axis, ends)
+        for i, z in enumerate(lengths)
+    )
+    arm = (("elbow", "upper", 1.0), ("wrist", "fore", 0.8), ("tip", "hand", 0.5))
+    points = [Point(name, frame, np.array([0.0, 0.0, z]), 0.1) for name, frame, z in arm]
+    points += [
+        Point("left post", "base", np.array([-0.9, 0.0, 0.6]), 0.25),
+        Point("right post", "base", np.array([1.1, 0.0, 0.9]), 0.3),
+    ]
+    names = ("elbow", "wrist", "tip")
+    pairs = [Pair(f"{n}, {post.name}", (post.name, n), 0.0) for n in names for post in points[3:]]
+    floor = [HalfSpace(f"{n}, floor", n, np.array([0.0, 0.0, 1.0]), -0.3) for n in names]
+    home, bounds = np.zeros(3), (*pairs, *floor)
+    return Robot("Three links", joints, tuple(points), bounds, home, "tip", "m", "rad")
 
 
 def chain(count: int) -> Robot:

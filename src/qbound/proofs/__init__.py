@@ -7,6 +7,8 @@
   `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
   `exact_windows` (the paper's rule, Table 6);
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
+  `columns` (pavings of which one joint is solved for), `sectors` (of that joint, over cells),
+  `trigonometry` (cosines and sines of arrays, with a proved error),
   `connection` (what is joined, and what is not), `blocked` (ranges of one joint that nothing
   passes);
 - bodies: `parts` (of outlines), `features` (what separates them), `separating` (the search for one

@@ -1,0 +1,50 @@
+"""Our own certified pavings: by columns, and by cells."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import scenes
+from serve import Timed, serve, timed
+
+from qbound.proofs.columns import pave_columns
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.paving import pave
+
+
+@lru_cache(maxsize=8)
+def prepared(scene: str) -> Any:
+    """Return the exact problem of a scene."""
+    return exact_problem(exact_robot(scenes.robot(scene)))
+
+
+def paving(scene: str, undecided: float, eps: float = 0) -> Timed:
+    """Pave by columns until at most a part of the box is undecided."""
+    problem = prepared(scene)
+    wall, processor, found = timed(lambda: pave_columns(problem, undecided))
+    answer = {
+        "undecided": found.undecided_fraction,
+        "inner": found.bracket[0] / found.volume,
+        "boxes": len(found.columns),
+        "enough": found.undecided_fraction <= undecided,
+    }
+    return wall, processor, answer
+
+
+def cells(scene: str, undecided: float) -> Timed:
+    """Pave by cells, as `qbound pave` does."""
+    problem = prepared(scene)
+    wall, processor, found = timed(lambda: pave(problem, undecided))
+    answer = {
+        "undecided": float(found.undecided_fraction),
+        "inner": float(found.inner_fraction),
+        "boxes": found.cells,
+        "enough": found.undecided_fraction <= undecided,
+    }
+    return wall, processor, answer
+
+
+if __name__ == "__main__":
+    needs = {"numpy": "numpy", "flint": "python-flint"}
+    serve("qbound, paving", needs, {"paving": paving, "cells": cells})

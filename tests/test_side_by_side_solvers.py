@@ -1,0 +1,64 @@
+"""What the solvers are asked in the comparison: the same scene for all, and our answers to it."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from qbound.boundary.evaluator import evaluator
+from qbound.model.robotfile import parse_robot
+from support.scripts import ROOT, importable
+
+HERE = ROOT / "benchmarks" / "side_by_side"
+with importable(HERE.parent), importable(HERE), importable(HERE / "peers"):
+    import certified
+    import goals
+    import qbound_certificate
+    import qbound_paving
+    import scenes
+    import solvers_plan
+    from serve import Refused
+
+
+def test_the_robot_file_between_the_walls_is_the_scene() -> None:
+    q = scenes.configurations("walls", 2000, 4)
+    file, scene = parse_robot(tomllib.loads(certified.WALLS)), scenes.robot("walls")
+    written, drawn = evaluator(file), evaluator(scene)
+    assert np.array_equal(written.feasible(q), drawn.feasible(q))
+    for one, other in zip(file.joints, scene.joints, strict=True):
+        assert np.array_equal(one.axis, other.axis)
+    assert 0 < drawn.feasible(q).mean() < 1
+
+
+def test_the_goals_ask_for_what_is_planned() -> None:
+    planned = {job.id_of(peer) for job in solvers_plan.JOBS for peer in job.peers}
+    asked = {name for goal in goals.GOALS if goal.part == "certified" for name in (goal.ours,)}
+    asked |= {goal.theirs for goal in goals.GOALS if goal.part == "certified" and goal.theirs}
+    assert asked <= planned
+    assert len(asked) == 4
+
+
+@pytest.mark.parametrize("scene", ["walls", "paper", "three"])
+def test_our_pavings_leave_as_little_open_as_is_asked(scene: str) -> None:
+    _, _, columns = qbound_paving.paving(scene, 0.2)
+    _, _, cells = qbound_paving.cells(scene, 0.2)
+    assert columns["enough"]
+    assert cells["enough"]
+    # Both bracket the same part of the range.
+    assert columns["inner"] <= cells["inner"] + cells["undecided"]
+    assert cells["inner"] <= columns["inner"] + columns["undecided"]
+
+
+def test_our_certificate_holds_most_of_the_region_and_nothing_beyond() -> None:
+    _, _, answer = qbound_certificate.check("walls")
+    found = certified.with_share("walls")({"ours": answer})["ours"]
+    assert 0.9 < found["share"] < 1
+    assert found["beyond"] < 1e-9
+    assert "rings" not in found
+
+
+def test_a_scene_without_a_certificate_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = certified.WALLS.replace("offset = -1.83", "offset = 1.0")
+    monkeypatch.setattr(qbound_certificate, "text_of", lambda scene: text)
+    with pytest.raises((Refused, ValueError)):
+        qbound_certificate.certify("nowhere")
