@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from qbound.model.robot import Robot
 from qbound.printable import printable
 from qbound.units import joint_units
-from qbound.version import __version__
 
 FORMULA = tuple("=+-@＝＋－＠")
 """What a formula of a spreadsheet begins with; tab and return, others, are escaped as it is."""
@@ -22,6 +21,8 @@ FORMULA = tuple("=+-@＝＋－＠")
 
 def heading(schema: str, robot: Robot) -> dict[str, Any]:
     """Return what every JSON begins with: what it is, of which robot, by which version."""
+    from qbound.version import __version__  # slow to find, and few commands say it
+
     return {"schema": schema, "robot": robot.name, "version": __version__}
 
 
