@@ -48,7 +48,9 @@ def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
     content = configuration_facts(robot, configuration(robot, options.values), options.weights)
-    deliver([(options.json, lambda: json_text(with_version(robot, content)))], _lines(robot, content))
+    deliver(
+        [(options.json, lambda: json_text(with_version(robot, content)))], _lines(robot, content)
+    )
     return 0 if content["feasible"] else 1
 
 

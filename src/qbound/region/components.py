@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from qbound.region.problem import Problem
 from qbound.tolerances import QUADRATURE
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +119,14 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     return found
 
 
+def windings_of(cells: CellComplex, found: Sequence[Found]) -> Ints:
+    """Return the winding of every cell, shape (cells, 2), zero of those in no component."""
+    table = np.zeros((len(cells.slabs), 2), dtype=np.int64)
+    for one in found:
+        table[list(one.windings)] = list(one.windings.values())
+    return table
+
+
 def bounded(found: Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
     """Return a component with its boundary; each loop begins at its lowest vertex."""
     centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
@@ -135,7 +145,7 @@ def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
     closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
     if not starts or not closes:
         return loop
-    k = min(starts, key=lambda i: tuple(np.round(loop[i].start[::-1], 9)))
+    k = min(starts, key=lambda i: [round(x, 9) for x in loop[i].start[::-1].tolist()])
     return loop[k:] + loop[:k]
 
 
@@ -152,10 +162,10 @@ def _cell_moments(cells: CellComplex) -> Floats:
     Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
     those cells whose moments still change.
     """
-    result = np.full((len(cells.cells), 3), np.inf)
-    left = np.arange(len(cells.cells))
+    result = np.full((len(cells.slabs), 3), np.inf)
+    left = np.arange(len(cells.slabs))
     for n in NODES:
-        now = _moments(cells, left.tolist(), n)
+        now = _moments(cells, left, n)
         settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
         result[left] = now
         left = left[~settled.all(axis=1)]
@@ -164,12 +174,20 @@ def _cell_moments(cells: CellComplex) -> Floats:
     return result
 
 
-def _moments(cells: CellComplex, chosen: list[int], n: int) -> Floats:
-    nodes, weights = legendre(n)
+def _moments(cells: CellComplex, chosen: Ints, n: int) -> Floats:
+    sines, weights = _smooth_rule(n)
     start, end = cells.spans(chosen).T[:, :, None]
-    half, angle = (end - start) / 2, nodes * math.pi / 2
-    t = (start + end) / 2 + half * np.sin(angle)
+    half = (end - start) / 2
+    t = (start + end) / 2 + half * sines
     low, high = cells.interval(chosen, t)
-    strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
-    moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)
-    return np.asarray(moments.sum(axis=1))
+    height = high - low
+    moments = np.array([height, height * t, height * (low + high) / 2])
+    return np.asarray((moments @ weights).T * half)
+
+
+@cache
+def _smooth_rule(n: int) -> tuple[Floats, Floats]:
+    """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1]."""
+    nodes, weights = legendre(n)
+    angle = nodes * math.pi / 2
+    return np.sin(angle), weights * math.pi / 2 * np.cos(angle)

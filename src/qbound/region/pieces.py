@@ -210,7 +210,7 @@ def _sides_at(plane: Plane, feature: Ints, t: Floats) -> Floats:
     """
     tables = plane.table[plane.count :][feature]
     c = np.einsum("ni,nij->nj", basis(plane.base_kind, t), tables)
-    lift = basis(plane.lift_kind, plane.roots_of(c).T / plane.lift_unit)
+    lift = basis(plane.lift_kind, plane.roots_of(c.T).T / plane.lift_unit)
     factors = basis(plane.base_kind, t / plane.base_unit)
     over = np.einsum("ni,nsij->nsj", factors, plane.sides[feature])
     return np.asarray(np.einsum("nsj,nrj->nrs", over, lift))
