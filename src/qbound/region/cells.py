@@ -131,7 +131,7 @@ class CellComplex:
 
     def _roots(self, chosen: Sequence[int] | Ints, t: Floats) -> Floats:
         bounding = self.roots[np.asarray(chosen, dtype=np.int64)].swapaxes(0, 1)
-        return self.plane.follow(bounding, np.concatenate([t, t])).reshape(2, *t.shape)
+        return self.plane.follow(bounding, t)
 
     def spans(self, chosen: Sequence[int] | Ints) -> Floats:
         """Return the base values between which chosen cells lie, shape (k, 2)."""
@@ -147,7 +147,9 @@ class CellComplex:
         bases = [t]
         if self.wrapped:  # beyond the cut of the circle, too
             t = float(first_from(self.plane.ends[0], t))
-            bases = [t, t - TURN, t + TURN]
+            low, high = self.plane.ends
+            near = TOUCH * self.plane.base_unit
+            bases = [t, *[t - TURN] * (t >= high - near), *[t + TURN] * (t <= low + near)]
         found = [one for t in bases for one in self._placed(t, v)]
         return sorted(found, key=lambda one: float(np.abs(one.off).max()))
 
@@ -191,8 +193,7 @@ class CellComplex:
         at, near = values[..., 0], values[..., 1]
         if self.plane.lift_kind == "revolute":
             at = at + TURN * whole_turns(near - at)
-        forms = self.roots[:, :, 0].T.ravel()
-        blank = self.plane.blank(forms, np.concatenate([t[:, ::4], t[:, ::4]])).reshape(at.shape)
+        blank = self.plane.blank(self.roots[:, :, 0].T, t[:, ::4])
         if blank.any():
             at = np.where(blank, 3 * near - 3 * values[..., 2] + values[..., 3], at)
         return np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
@@ -309,22 +310,20 @@ class CellComplex:
         half-edge is the way past it: what is left are the loops. A hole shorter round than TOUCH is
         a point at which a form touches zero: it bounds nothing.
         """
-        chosen = np.array(list(cells), dtype=np.int64)
-        start = self._first_edges[chosen]
-        _, rows = ranges(start, self._first_edges[chosen + 1])
-        bounding = rows[self.half_edges.twin[rows] < 0]
-        after, left = self._after_joined, dict.fromkeys(bounding.tolist())
+        first, (after, bounding, lengths) = self._first_edges, self._boundary
+        rows = (row for k in cells for row in range(first[k], first[k + 1]))
+        left = {row: None for row in rows if bounding[row]}
         loops = []
         while left:
-            first = step = next(iter(left))
-            loop: list[int] = []
-            while not loop or step != first:
-                loop.append(step)
-                del left[step]
-                step = after[step]
-            loops.append(np.array(loop))
-        tiny = bool((self._sizes[chosen] <= TOUCH).all())
-        return [loop for loop in loops if tiny or self._lengths[loop].sum() > TOUCH]
+            loop = [next(iter(left))]
+            while (row := after[loop[-1]]) != loop[0]:
+                loop.append(row)
+            for row in loop:
+                del left[row]
+            loops.append(loop)
+        long = [sum(lengths[row] for row in loop) > TOUCH for loop in loops]
+        tiny = not all(long) and bool((self._sizes(cells) <= TOUCH).all())
+        return [np.array(loop) for loop, kept in zip(loops, long, strict=True) if kept or tiny]
 
     @cached_property
     def half_edges(self) -> HalfEdges:
@@ -364,35 +363,35 @@ class CellComplex:
         return np.where(kind == DOWN, -middle, middle)
 
     @cached_property
-    def _first_edges(self) -> Ints:
+    def _first_edges(self) -> list[int]:
         """Where the half-edges of each cell begin, and where those of the last end."""
-        return np.searchsorted(self.half_edges.cell, np.arange(len(self.slabs) + 1))
+        cell, every = self.half_edges.cell, np.arange(len(self.slabs) + 1)
+        found: list[int] = np.searchsorted(cell, every).tolist()
+        return found
 
     @cached_property
-    def _after_joined(self) -> list[int]:
-        """What follows each half-edge on the boundary, past joined elements."""
+    def _boundary(self) -> tuple[list[int], list[bool], list[float]]:
+        """Of each half-edge: what follows past joined elements; whether it bounds; its length."""
         edges = self.half_edges
         bounding = edges.twin < 0  # round a point inside a component one would go for ever
         after = np.where(bounding, edges.after, 0)
         while len(inner := np.flatnonzero(bounding & (edges.twin[after] >= 0))):
             after[inner] = edges.after[edges.twin[after[inner]]]
-        found: list[int] = after.tolist()
-        return found
+        return after.tolist(), bounding.tolist(), self._lengths().tolist()
 
-    @cached_property
-    def _sizes(self) -> Floats:
-        """Width or height of each cell, whichever is more, in the units of base and lift."""
-        widths = np.diff(self.abscissae)[self.slabs] / self.plane.base_unit
-        heights = np.diff(self.ends, axis=2).max(axis=(1, 2), initial=0.0) / self.plane.lift_unit
+    def _sizes(self, chosen: Collection[int]) -> Floats:
+        """Width or height of cells, whichever is more, in the units of base and lift."""
+        k = np.array(list(chosen), dtype=np.int64)
+        widths = np.diff(self.spans(k))[:, 0] / self.plane.base_unit
+        heights = np.diff(self.ends[k], axis=2).max(axis=(1, 2)) / self.plane.lift_unit
         return np.asarray(np.maximum(widths, heights))
 
-    @cached_property
     def _lengths(self) -> Floats:
         """Length of each half-edge between its ends, in the units of base and lift together."""
         edges, found = self.half_edges, self.elements
-        on_line, side = edges.element >= 0, (edges.kind == UPPER).astype(int)
+        side = (edges.kind == UPPER).astype(int)
         heights = np.append(found.high - found.low, 0.0)[edges.element]
         widths = np.diff(self.abscissae)[self.slabs[edges.cell]] / self.plane.base_unit
         rise = np.abs(self.ends[edges.cell, 1, side] - self.ends[edges.cell, 0, side])
         lift = self.plane.lift_unit
-        return np.where(on_line, heights / lift, widths + rise / lift)
+        return np.where(edges.element >= 0, heights / lift, widths + rise / lift)

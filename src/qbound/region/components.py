@@ -104,26 +104,30 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     at_home = {one.cell: one for one in closures(problem, cells, base, home)}
     home = ordered(home, base)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
+    parts = cells.components()
+    table = winding_table(cells, [windings for windings, _ in parts])
+    count = [len(windings) for windings, _ in parts]
+    owner, order = np.repeat(np.arange(len(parts)), count), [k for one, _ in parts for k in one]
+    moments[:, 1:] += moments[:, :1] * TURN * table
+    sums = np.array([np.bincount(owner, column[order], len(parts)) for column in moments.T])
+    middles = (sums[1:] / sums[0]).T
     found = []
-    for windings, wraps in cells.components():
-        turns = TURN * np.array(list(windings.values()), dtype=float)
-        areas, firsts = moments[list(windings), 0], moments[list(windings), 1:]
-        middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
+    for (windings, wraps), area, middle in zip(parts, sums[0].tolist(), middles, strict=True):
         own = next((one for cell, one in at_home.items() if cell in windings), None)
         shift = np.zeros(2)
         if own is not None:
             shift = home - own.place - TURN * np.array(windings[own.cell])
         elif not any(wraps):
             shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(Found(windings, wraps, float(areas.sum()), middle, shift, own is not None))
+        found.append(Found(windings, wraps, area, middle, shift, own is not None))
     return found
 
 
-def windings_of(cells: CellComplex, found: Sequence[Found]) -> Ints:
-    """Return the winding of every cell, shape (cells, 2), zero of those in no component."""
+def winding_table(cells: CellComplex, windings: Sequence[Windings]) -> Ints:
+    """Return the winding of every cell, shape (cells, 2), of those of all components."""
     table = np.zeros((len(cells.slabs), 2), dtype=np.int64)
-    for one in found:
-        table[list(one.windings)] = list(one.windings.values())
+    for one in windings:
+        table[list(one)] = list(one.values())
     return table
 
 
@@ -142,8 +146,8 @@ def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
     One that goes round a joint is left alone.
     """
     starts = [i for i, arc in enumerate(loop) if loop[i - 1].label != arc.label]
-    closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
-    if not starts or not closes:
+    (q1, q2), (p1, p2) = loop[-1].end.tolist(), loop[0].start.tolist()
+    if not starts or max(abs(q1 - p1), abs(q2 - p2)) >= math.pi:
         return loop
     k = min(starts, key=lambda i: [round(x, 9) for x in loop[i].start[::-1].tolist()])
     return loop[k:] + loop[:k]

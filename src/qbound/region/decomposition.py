@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -130,12 +131,8 @@ def _of_forms(plane: Plane) -> Floats:
     lifts = table[:, :, 1:].any(axis=(1, 2))
     fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
     i, j = np.triu_indices(len(c), k=1)
-    found = [
-        iter([(np.arange(len(fixed)), fixed)]),
-        own_events(plane, c),
-        meetings(plane, c[i], c[j]),
-    ]
-    return np.concatenate([base_values(plane, events)[1] for events in found])
+    alone = iter([(np.arange(len(fixed)), fixed)])
+    return base_values(plane, chain(alone, own_events(plane, c), meetings(plane, c[i], c[j])))[1]
 
 
 # --- lifting --------------------------------------------------------------------------------------
@@ -381,18 +378,17 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
 
 def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
-    plane, lines, n = found.plane, found.lines, len(at)
-    zero = np.zeros(n)
-    widths = np.array([lines[at] - lines[at - 1], zero, lines[at + 1] - lines[at]]).T
+    plane, lines = found.plane, found.lines
+    widths = np.array([lines[at] - lines[at - 1], np.zeros(len(at)), lines[at + 1] - lines[at]]).T
     step = np.maximum(UNCHANGED**2 * widths, np.minimum(widths / 2, BEYOND_JUMP))
     t = lines[at][:, None] + step * np.array([-1, 0, 1])
-    own = roots.swapaxes(0, 1).reshape(-1, 3)  # all lower ones, then all upper
+    own = roots.swapaxes(0, 1)  # all lower ones, then all upper
     twins = own * np.array([1, -1, 1])  # of the other branch
-    values = plane.follow(np.concatenate([own, twins]), np.tile(t, (4, 1))).reshape(4, n, 3)
+    values = plane.follow(np.concatenate([own, twins]), t)
     (lower, upper), height = values[:2], (values[1] - values[0]).min(axis=1)
     smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
-    going &= _simple(plane, own[:, 0], values[:2] - values[2:]).all(axis=0)
+    going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
     going[going] = found.joined(at[going], lower[going, 1], upper[going, 1])
     return np.asarray(going)
 
@@ -400,8 +396,8 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
 def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
     """Tell whether roots keep away from the other root of their form: where both meet is a kink.
 
-    Of forms (2 n,) and gaps (2, n, places); (2, n).
+    Of forms (2, n) and gaps (2, n, places); (2, n).
     """
     gap = np.sin(gap / 2) if plane.lift_kind == "revolute" else gap
     alone = (form < 0) | plane.affine[np.maximum(form, 0)] if len(plane.affine) else form < 0
-    return np.asarray(alone.reshape(2, -1) | (np.abs(gap).min(axis=2) > UNCHANGED))
+    return np.asarray(alone | (np.abs(gap).min(axis=2) > UNCHANGED))

@@ -105,8 +105,9 @@ class Plane:
         rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
         self._columns: Floats = rows.transpose(1, 2, 0).copy()
         self._column_sizes: Floats = np.concatenate([self.sizes, np.zeros((2, 3))]).T.copy()
-        bent = self.table[:, :, 2].any(axis=1)
-        self.affine: Bools = ~bent if self.lift_kind == "prismatic" else np.zeros_like(bent)
+        self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
+        if self.lift_kind == "revolute":
+            self.affine[:] = False
 
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
@@ -209,25 +210,27 @@ class Plane:
         return np.asarray(values.argmin(axis=1))
 
     def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
-        """Evaluate roots, each over its own row of base values inside its slab, shape as t (k, n).
+        """Evaluate roots, each over its own row of base values inside its slab, shape (..., k, n).
 
-        A root that leaves its form just there (at a fold, but for rounding) stays at the fold.
+        Of roots, shape (..., k, 3), several may be over the same values, (k, n). One that leaves
+        its form just there (at a fold, but for rounding) stays at the fold.
         """
-        form, branch, turns = np.asarray(roots, dtype=np.int64).reshape(-1, 3).T
+        rows = np.asarray(roots, dtype=np.int64)
+        form, branch, turns = rows[..., 0], rows[..., 1], rows[..., 2]
         columns, sizes = self._columns[:, :, form, None], self._column_sizes[:, form, None]
         c = self._over(t, columns)
         if self.lift_kind == "revolute":
             theta, alpha, _ = _polar(c, sizes)
-            values = theta + branch[:, None] * alpha + (TURN * turns)[:, None]
+            values = theta + branch[..., None] * alpha + (TURN * turns)[..., None]
         else:
             lower, upper = _quadratic_roots(*_settled(c, sizes), folds=True)
-            values = np.clip(np.where(branch[:, None] < 0, lower, upper), *self.lift_ends)
+            values = np.clip(np.where(branch[..., None] < 0, lower, upper), *self.lift_ends)
         for end, value in zip((LOWEST, HIGHEST), self.lift_ends, strict=True):
             values[form == end.form] = value
         return np.asarray(values)
 
     def blank(self, form: Ints, t: Floats) -> Bools:
-        """Tell where forms vanish on the whole fibre, shape as t (k, n)."""
+        """Tell where forms, (..., k), vanish on whole fibres over base values, (k, n)."""
         c, size = self._over(t, self._columns[:, :, form, None]), self._column_sizes[:, form, None]
         return np.asarray((np.abs(c) <= BLANK * size).all(axis=0) & (size > 0).any(axis=0))
 

@@ -16,7 +16,7 @@ from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
-from qbound.region.components import Component, bounded, closures, measured, windings_of
+from qbound.region.components import Component, bounded, closures, measured, winding_table
 from qbound.region.decomposition import Decomposition, decompose
 from qbound.region.emptiness import irreducible
 from qbound.region.loops import BoundaryLoop, Layout
@@ -413,7 +413,9 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
     bounding = [[BoundaryLoop(edges, f.shift) for edges in cells.loops(f.windings)] for f in found]
     layout = Layout(cells, base, inner.names, inner.limits)
-    loops = iter(layout.arcs(list(chain(*bounding)), windings_of(cells, found)))
+    loops = iter(
+        layout.arcs(list(chain(*bounding)), winding_table(cells, [f.windings for f in found]))
+    )
     components = [
         (bounded(f, base, list(islice(loops, len(own)))), f.windings)
         for f, own in zip(found, bounding, strict=True)
