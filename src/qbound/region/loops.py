@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
-from qbound.forms.factors import FACTORS, Kind
+from qbound.forms.factors import basis_and_slope
 from qbound.region.arcs import FIBRE, Arc, Pieces
 from qbound.region.cells import DOWN, UP, UPPER, CellComplex
 from qbound.region.plane import Plane
@@ -237,20 +237,12 @@ def _newton(plane: Plane, pairs: Ints, q: Floats) -> Floats:
     """Two steps of Newton on pairs of forms, (k, 2), from base and lift values near, (k, 2)."""
     table = plane.table[pairs]
     for _ in range(2):
-        base, lift = _factors(plane.base_kind, q[:, 0]), _factors(plane.lift_kind, q[:, 1])
+        base = basis_and_slope(plane.base_kind, q[:, 0])
+        lift = basis_and_slope(plane.lift_kind, q[:, 1])
         both = base[:, None] @ table @ lift[:, None].swapaxes(2, 3)  # values and slopes
         value, slopes = both[:, :, 0, 0], np.array([both[:, :, 1, 0], both[:, :, 0, 1]])
         q = q - _least_step(slopes.transpose(1, 2, 0), value)
     return q
-
-
-def _factors(kind: Kind, q: Floats) -> Floats:
-    """Return a joint's three factors and their slopes, shape (k, 2, 3)."""
-    found = np.zeros((len(q), 2, 3))
-    found[:, 0, 0] = 1.0
-    found[:, 0, 1], found[:, 0, 2] = FACTORS[kind].functions(q)
-    found[:, 1] = found[:, 0] @ FACTORS[kind].slope.T
-    return found
 
 
 def _least_step(slopes: Floats, value: Floats) -> Floats:
