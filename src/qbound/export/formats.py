@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import io
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -38,6 +36,8 @@ def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
 
 def json_text(content: Mapping[str, object], indent: int | None = 1) -> str:
     """Return JSON, a line an entry; on one line where `indent` is None."""
+    import json  # as the next, only where it is written: commands start sooner
+
     return json.dumps(content, indent=indent) + "\n"
 
 
@@ -46,6 +46,8 @@ def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
 
     Spreadsheets compute a text that begins as a formula does, so an apostrophe goes before it.
     """
+    import csv
+
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(map(_cell, header))

@@ -285,7 +285,9 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     doubtful[fibres.slab[rows[back]]] = True
     doubtful[fibres.slab[rows[again & (gap > THIN * plane.lift_unit)]]] = True
     dropped = rows[again & ~doubtful[fibres.slab[rows]]]
-    return fibres.only(np.setdiff1d(np.arange(len(fibres.slab)), dropped)), doubtful
+    kept = np.ones(len(fibres.slab), dtype=np.bool_)
+    kept[dropped] = False
+    return fibres.only(np.flatnonzero(kept)), doubtful
 
 
 def _apart(
