@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from qbound.region.cells import CellComplex, Placed
 from qbound.region.loops import Windings, behind
 from qbound.region.problem import Problem
 from qbound.tolerances import QUADRATURE
+
+CELL_NODES: Final = (NODES[0], 32, *NODES[1:])
+"""Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -111,15 +115,17 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     moments[:, 1:] += moments[:, :1] * TURN * table
     sums = np.array([np.bincount(owner, column[order], len(parts)) for column in moments.T])
     middles = (sums[1:] / sums[0]).T
+    nearest = (nearest_turn(middles, 0) - middles) * circles
     found = []
-    for (windings, wraps), area, middle in zip(parts, sums[0].tolist(), middles, strict=True):
+    for k, (windings, wraps) in enumerate(parts):
         own = next((one for cell, one in at_home.items() if cell in windings), None)
         shift = np.zeros(2)
         if own is not None:
             shift = home - own.place - TURN * np.array(windings[own.cell])
         elif not any(wraps):
-            shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(Found(windings, wraps, area, middle, shift, own is not None))
+            shift = nearest[k]
+        area = float(sums[0, k])
+        found.append(Found(windings, wraps, area, middles[k], shift, own is not None))
     return found
 
 
@@ -163,12 +169,12 @@ def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
 def _cell_moments(cells: CellComplex) -> Floats:
     """Return area and first moments about base and lift of each cell, shape (k, 3).
 
-    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
+    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n raised for
     those cells whose moments still change.
     """
     result = np.full((len(cells.slabs), 3), np.inf)
     left = np.arange(len(cells.slabs))
-    for n in NODES:
+    for n in CELL_NODES:
         now = _moments(cells, left, n)
         settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
         result[left] = now

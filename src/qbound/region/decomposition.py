@@ -130,7 +130,8 @@ def _of_forms(plane: Plane) -> Floats:
     c = univariate(plane, table)
     lifts = table[:, :, 1:].any(axis=(1, 2))
     fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
-    i, j = np.triu_indices(len(c), k=1)
+    every = np.arange(len(c))
+    i, j = np.nonzero(every[:, None] < every)
     alone = iter([(np.arange(len(fixed)), fixed)])
     return base_values(plane, chain(alone, own_events(plane, c), meetings(plane, c[i], c[j])))[1]
 
