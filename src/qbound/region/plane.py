@@ -264,7 +264,8 @@ class Separation:
         self.plane, self.pairs = plane, np.flatnonzero(chosen)
         self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
         self.corners: Ints = np.flatnonzero(contacts.corners[rows])
-        self.sides: Floats = (plane.sides[rows][self.corners] / plane.powers).reshape(-1, 9)
+        sides = plane.sides[rows][self.corners] / plane.powers
+        self.sides: Floats = sides.swapaxes(0, 1).reshape(-1, 9)  # all first ones first
         clause, pair = contacts.clause[rows], contacts.pair[rows]
         self.clauses: Ints = np.flatnonzero(np.diff(clause, prepend=-1))
         self.starts: Ints = np.flatnonzero(np.diff(pair[self.clauses], prepend=-1))
@@ -282,7 +283,7 @@ class Separation:
             products = self.plane.products(t[k : k + step], v[k : k + step])
             values = products @ self.forms.T
             if len(self.corners):
-                sides = (products @ self.sides.T).reshape(len(products), -1, SIDES).min(axis=2)
+                sides = (products @ self.sides.T).reshape(len(products), SIDES, -1).min(axis=1)
                 corners = values[:, self.corners]
                 values[:, self.corners] = np.where(sides >= -NEGLIGIBLE, corners, -np.inf)
             parted = np.minimum.reduceat(values, self.clauses, axis=1)
