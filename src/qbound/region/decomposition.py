@@ -166,14 +166,8 @@ class _Fibres:
 
     def only(self, rows: Ints) -> _Fibres:
         """Return some of the rows."""
-        return _Fibres(
-            self.t,
-            self.slab[rows],
-            self.values[rows],
-            self.roots[rows],
-            self.piece[rows],
-            self.circle,
-        )
+        slab, values, roots = self.slab[rows], self.values[rows], self.roots[rows]
+        return _Fibres(self.t, slab, values, roots, self.piece[rows], self.circle)
 
     def gaps(self) -> tuple[Ints, Floats]:
         """Return of each row the next one, and its value; NaN above the last of a range."""
