@@ -19,7 +19,7 @@ from qbound import find_region, load_robot
 from qbound.model.robot import Body, Disc, Polygon, Robot
 from qbound.region import clearance_problem, solve
 
-COUNTS = (5, 10, 30, 100)
+COUNTS = (5, 10, 30, 100, 300)
 
 
 def among(count: int, seed: int) -> Robot:

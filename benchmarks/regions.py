@@ -1,14 +1,19 @@
 """How long a region takes: the paper's robot from its file, and robots with many boundaries.
 
 Run with ``python benchmarks/regions.py``. Medians of processor time in one run, each beside that of
-judging one grid of the same joint space: machines differ, ratios less so.
+judging one grid of the same joint space: machines differ, ratios less so. Then how long a command
+takes from the shell, beside NumPy alone: processor time of a process of its own.
 """
 
 from __future__ import annotations
 
 import argparse
+import resource
+import subprocess
+import sys
 from collections.abc import Callable
 from itertools import cycle, islice, product
+from math import log
 from statistics import median
 from time import process_time
 
@@ -17,6 +22,16 @@ import numpy as np
 from qbound import find_region, load_robot
 from qbound.model.robot import HalfSpace, Pair, Point, Revolute, Robot
 from qbound.sampling import keeps_clear
+
+COUNTS = (10, 30, 100, 300)
+
+COMMANDS = {
+    "`import numpy`": ["-c", "import numpy"],
+    "`import qbound`": ["-c", "import qbound"],
+    "`qbound contains minervabot-v2 20deg -45deg`": (
+        ["-m", "qbound", "contains", "minervabot-v2", "20deg", "-45deg"]
+    ),
+}
 
 GRID = 1000
 """Places a side of the grid: its cells are 0.36 degrees wide."""
@@ -64,28 +79,49 @@ def grid_of(robot: Robot) -> Callable[[], object]:
     return lambda: keeps_clear(robot, q)
 
 
+def started(words: list[str], repeats: int) -> float:
+    """Return the median processor time of a Python process of its own, ms."""
+    times = []
+    for _ in range(repeats + 1):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, *words], check=True, stdout=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        times.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return 1e3 * median(times[1:])  # the first may compile
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=21)
     repeats = parser.parse_args().repeats
     paper = load_robot("minervabot-v2")
     print(f"| task | median / ms | of a grid of {GRID} x {GRID} |\n| --- | --- | --- |")
+    others = iter([load_robot("minervabot-v2") for _ in range(repeats + 1)])
     grid = milliseconds(grid_of(paper), max(3, repeats // 7))
     for name, task in {
         "read the paper's robot": lambda: load_robot("minervabot-v2"),
         "its regions": lambda: find_region(paper),
+        "its regions, of a robot not seen before": lambda: find_region(next(others)),
         "both, from file to components, arcs, area and centroid": lambda: find_region(
             load_robot("minervabot-v2")
         ),
     }.items():
         took = milliseconds(task, repeats)
         print(f"| {name} | {took:.2f} | {took / grid:.4f} |")
-    for count in (10, 30, 100):
+    before: tuple[int, float] | None = None
+    for count in COUNTS:
         robots = [many_boundaries(count, seed) for seed in range(5)]
         took = median(milliseconds(lambda r=robot: find_region(r), 3) for robot in robots)
         grid = milliseconds(grid_of(robots[0]), 1)
-        name = f"{count} boundaries, median of {len(robots)} robots"
+        growth = f", k^{log(took / before[1]) / log(count / before[0]):.1f}" if before else ""
+        name = f"k = {count} boundaries, median of {len(robots)} robots{growth}"
         print(f"| {name} | {took:.2f} | {took / grid:.4f} |")
+        before = count, took
+    print("\n| from the shell | median / ms | of NumPy alone |\n| --- | --- | --- |")
+    alone = started(COMMANDS["`import numpy`"], repeats)
+    for name, words in COMMANDS.items():
+        took = started(words, repeats)
+        print(f"| {name} | {took:.0f} | {took / alone:.2f} |")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 
 from qbound import find_region
 from qbound.boundary.nearest import nearest_features
-from qbound.export.document import configuration_document, region_document
+from qbound.export.configuration import configuration_document
+from qbound.export.document import region_document
 from qbound.forms.angles import nearest_turn
 from qbound.geometry import polygon
 from qbound.measures.nearest import moments, nearest_boundary

@@ -8,7 +8,6 @@ it leads to is written.
 from __future__ import annotations
 
 import os
-import secrets
 import stat
 from collections.abc import Iterable
 from pathlib import Path
@@ -36,7 +35,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
     try:
         for name, path, content in named:
             try:
-                drafts.append((draft := path.with_name(f".{secrets.token_hex(8)}.part"), path))
+                drafts.append((draft := path.with_name(f".{os.urandom(8).hex()}.part"), path))
                 _fill(draft, content, path)
             except OSError as error:
                 reason = error.strerror or error

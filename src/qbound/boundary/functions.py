@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
+from qbound.model.frames import cross
 from qbound.model.robot import (
     BodyPair,
     Boundary,
@@ -313,11 +314,17 @@ def _steps(robot: Robot, point: Point, observer: str) -> list[tuple[int, Joint]]
     return found
 
 
+def _dot(matrix: Array, u: Array) -> Array:
+    """Contract the last axis of a vector or matrix with the first of u, as `tensordot` does."""
+    product = np.dot(matrix.reshape(-1, 3), u.reshape(3, -1))
+    return np.asarray(product.reshape(matrix.shape[:-1] + u.shape[1:]))
+
+
 def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
     moved, squared = MOTIONS[joint.type_name](joint, j, u, squared)
-    moved = np.tensordot(joint.mount, moved, axes=1)
-    squared = squared + 2 * np.tensordot(joint.origin, moved, axes=1)
+    moved = _dot(joint.mount, moved)
+    squared = squared + 2 * _dot(joint.origin, moved)
     squared = add_constant(squared, joint.origin @ joint.origin)
     return add_constant(moved, joint.origin), squared
 
@@ -325,8 +332,8 @@ def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, 
 def _turn(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Turn u about a unit axis by Rodrigues' formula: constant, cosine and sine part."""
     axis, u = joint.axis, np.take(u, 0, axis=j + 1)
-    along = np.multiply.outer(axis, np.tensordot(axis, u, axes=1))
-    across = np.cross(axis, u, axisb=0, axisc=0)
+    along = np.multiply.outer(axis, _dot(axis, u))
+    across = cross(axis, u)
     return np.stack([along, u - along, across], axis=j + 1), squared
 
 
@@ -334,9 +341,9 @@ def _circle(joint: Parallelogram, j: int, u: Array, squared: Array) -> tuple[Arr
     """Add the turned crank c to u; |u|^2 gains 2 c . u + |c|^2."""
     axis, crank = joint.axis, joint.crank
     along = axis * (axis @ crank)
-    parts = [along, crank - along, np.cross(axis, crank)]
+    parts = [along, crank - along, cross(axis, crank)]
     still = np.take(u, 0, axis=j + 1)
-    gains = [2 * np.tensordot(part, still, axes=1) for part in parts]
+    gains = [2 * _dot(part, still) for part in parts]
     gains[0] = add_constant(np.take(squared, 0, axis=j) + gains[0], crank @ crank)
     moved = [
         add_constant(x, part) for x, part in zip((still, 0 * still, 0 * still), parts, strict=True)
@@ -347,7 +354,7 @@ def _circle(joint: Parallelogram, j: int, u: Array, squared: Array) -> tuple[Arr
 def _slide(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
     """Add q times a unit axis to u; |u|^2 gains 2 q axis . u + q^2."""
     axis = joint.axis
-    along = np.take(np.tensordot(axis, u, axes=1), 0, axis=j)
+    along = np.take(_dot(axis, u), 0, axis=j)
     constant = np.take(squared, 0, axis=j)
     square = add_constant(np.zeros_like(along), 1)
     squared = np.stack([constant, 2 * along, square], axis=j)

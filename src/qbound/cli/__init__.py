@@ -13,61 +13,40 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-import traceback
 from collections.abc import Mapping, Sequence
-from importlib.metadata import entry_points
+from importlib import import_module
 from itertools import pairwise
 from typing import Any, NoReturn
 
-from qbound import __version__
-from qbound.cli import (
-    allowed,
-    certify,
-    check,
-    connected,
-    contains,
-    draw,
-    explore,
-    fibre,
-    import_urdf,
-    pave,
-    reach,
-    region,
-    robots,
-    sample,
-    surface,
-    sweep,
-    traverse,
-    why,
-    workspace,
-)
 from qbound.cli.files import check_targets
 from qbound.cli.terminal import complain, finish_output, plain_terminal
 from qbound.extras import explained
 from qbound.printable import printable
 
-COMMANDS = (
-    region,
-    workspace,
-    contains,
-    connected,
-    why,
-    traverse,
-    fibre,
-    reach,
-    sample,
-    sweep,
-    pave,
-    allowed,
-    surface,
-    certify,
-    check,
-    draw,
-    explore,
-    import_urdf,
-    robots,
-)
-"""In the order of the help; after them come those of the entry-point group."""
+COMMANDS = {
+    "region": "region",
+    "workspace": "workspace",
+    "contains": "contains",
+    "connected": "connected",
+    "why": "why",
+    "traverse": "traverse",
+    "fibre": "fibre",
+    "reach": "reach",
+    "sample": "sample",
+    "sweep": "sweep",
+    "pave": "pave",
+    "allowed": "allowed",
+    "surface": "surface",
+    "certify": "certify",
+    "check": "check",
+    "draw": "draw",
+    "explore": "explore",
+    "import": "import_urdf",
+    "robots": "robots",
+}
+"""Module of each command, in the order of the help; then come those of the entry-point group.
+
+Only the command that is asked for is imported: all of them together take half a second."""
 
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
@@ -95,6 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             complain("stopped")
             return STOPPED
         except Exception:  # a fault of ours must not look like an answer: Python's status is 1
+            import traceback
+
             for line in traceback.format_exc().splitlines():
                 complain(line)
         return 2
@@ -103,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(words: Sequence[str]) -> int:
     _refuse_empty(words)
     try:
-        options = command_line().parse_args(words)
+        options = command_line(words[0] if words else None).parse_args(words)
         _check_files(vars(options))
         return int(options.run(options))
     finally:
@@ -127,9 +108,9 @@ def _check_files(options: Mapping[str, Any]) -> None:
     )
 
 
-def command_line() -> argparse.ArgumentParser:
-    """Return the parser of the whole command."""
-    return _parsers()[0]
+def command_line(name: str | None = None) -> argparse.ArgumentParser:
+    """Return the parser of the whole command; of `name` alone where it is one of ours."""
+    return _parsers({name: COMMANDS[name]} if name in COMMANDS else None)[0]
 
 
 def command_parsers() -> dict[str, argparse.ArgumentParser]:
@@ -137,16 +118,33 @@ def command_parsers() -> dict[str, argparse.ArgumentParser]:
     return _parsers()[1]
 
 
-def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
+def _parsers(
+    chosen: Mapping[str, str] | None = None,
+) -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
     parser = _Parser(prog="qbound", description="Feasible workspaces of robots.")
-    parser.add_argument("--version", action="version", version=f"qbound {__version__}")
+    # Of one command: it comes first on the line, so that nobody reads the version.
+    version = _version() if chosen is None else ""
+    parser.add_argument("--version", action="version", version=f"qbound {version}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    others = [found.load() for found in sorted(entry_points(group=GROUP), key=lambda e: e.name)]
-    for command in (*COMMANDS, *others):
+    modules = [import_module(f"qbound.cli.{name}") for name in (chosen or COMMANDS).values()]
+    for command in (*modules, *(_others() if chosen is None else ())):
         command.add_to(commands)
     for subparser in commands.choices.values():
         subparser.formatter_class = argparse.RawDescriptionHelpFormatter  # examples stay in line
     return parser, dict(commands.choices)
+
+
+def _version() -> str:
+    from qbound.version import __version__
+
+    return __version__
+
+
+def _others() -> list[Any]:
+    """Load the commands of the entry-point group, in the order of their names."""
+    from importlib.metadata import entry_points  # slow: it reads mail
+
+    return [found.load() for found in sorted(entry_points(group=GROUP), key=lambda e: e.name)]
 
 
 class _Parser(argparse.ArgumentParser):

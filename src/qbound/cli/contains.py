@@ -10,7 +10,7 @@ from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
 from qbound.cli.values import configuration
-from qbound.export.document import configuration_document
+from qbound.export.configuration import configuration_facts, with_version
 from qbound.export.formats import json_text
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
@@ -47,8 +47,10 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
-    content = configuration_document(robot, configuration(robot, options.values), options.weights)
-    deliver([(options.json, lambda: json_text(content))], _lines(robot, content))
+    content = configuration_facts(robot, configuration(robot, options.values), options.weights)
+    deliver(
+        [(options.json, lambda: json_text(with_version(robot, content)))], _lines(robot, content)
+    )
     return 0 if content["feasible"] else 1
 
 

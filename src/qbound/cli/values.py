@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
-from qbound.proofs.points import joint_decimal, limits_as_decimals
 from qbound.units import counted, parse_joint_value
 
 MOST_PANELS = 100
@@ -63,6 +62,8 @@ def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
 
     Decimals of the robot file's units; a joint that is not named has its limits.
     """
+    from qbound.proofs.points import limits_as_decimals  # with the grammar of certificates
+
     found = {}
     for text in texts:
         j, number = _assigned(robot, "--box", text)
@@ -113,6 +114,8 @@ def _whole_range(robot: Robot, name: str) -> str:
 
 
 def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:
+    from qbound.proofs.points import joint_decimal
+
     if len(texts) != 2:
         raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
     low, high = (joint_decimal(robot, j, text) for text in texts)

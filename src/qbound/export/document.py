@@ -1,20 +1,14 @@
-"""Regions and configurations as plain data, for JSON."""
+"""Regions as plain data, for JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from numpy.typing import ArrayLike
-
-from qbound.boundary.nearest import nearest_features
-from qbound.boundary.parts import bounds_bodies
+from qbound.export.configuration import feature_content
 from qbound.export.formats import heading
-from qbound.measures.nearest import nearest_boundary
-from qbound.model.robot import Robot
-from qbound.region import Component, NoHomeError, Region, Slices, Vertex, find_region, margins
+from qbound.region import Component, NoHomeError, Region, Slices, Vertex
 from qbound.region.arcs import Arc
-from qbound.version import __version__
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
@@ -62,59 +56,10 @@ def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
 def _arc_content(arc: Arc) -> dict[str, Any]:
     return {
         "boundary": arc.boundary,
-        **_feature(arc.feature),
+        **feature_content(arc.feature),
         "branch": arc.branch,
         "from": arc.start.tolist(),
         "to": arc.end.tolist(),
-    }
-
-
-def _feature(feature: str) -> dict[str, str]:
-    """Return what touches, where it is known."""
-    return {"feature": feature} if feature else {}
-
-
-def configuration_document(
-    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
-) -> dict[str, Any]:
-    """Return what is known of a configuration; with two joints its component and the boundary.
-
-    Parameters
-    ----------
-    q : sequence of float
-        One value a joint, rad or length.
-    weights : sequence of two float
-        Of the two joints, in the distance to the boundary.
-    """
-    found = sorted(margins(robot, q), key=lambda item: item[1])
-    content: dict[str, Any] = {
-        "robot": robot.name,
-        "version": __version__,
-        "q": list(q),
-        "feasible": all(margin >= 0 for _, margin in found),
-        "component": None,
-        "components": None,
-        "contains_home": None,
-        "margins": [_margin_content(robot, q, name, margin) for name, margin in found],
-        "nearest": None,
-    }
-    if len(robot.joints) == 2:
-        content |= _place_content(find_region(robot), q, weights)
-    return content
-
-
-def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) -> dict[str, Any]:
-    """Return a margin, and of bodies which of their corners and edges are nearest, and where."""
-    content: dict[str, Any] = {"boundary": name, "margin": margin}
-    boundary = next((each for each in robot.used if each.name == name), None)
-    if boundary is None or not bounds_bodies(boundary):
-        return content
-    near = nearest_features(robot, boundary, q)
-    return content | {
-        "between": list(near.names),
-        "features": list(near.features),
-        "places": near.places.tolist(),
-        "distance": near.distance,
     }
 
 
@@ -157,25 +102,4 @@ def _component_content(component: Component) -> dict[str, Any]:
         "wraps": list(component.wraps),
         "vertices": [vertex_content(vertex) for vertex in component.vertices],
         "loops": [loop_content(loop) for loop in component.loops],
-    }
-
-
-def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> dict[str, Any]:
-    where = region.component_of(q)
-    nearest = None
-    if any(component.loops for component in region.components):
-        found = nearest_boundary(region, q, where, weights)
-        nearest = {
-            "q": found.q.tolist(),
-            "boundary": found.boundary,
-            **_feature(found.feature),
-            "component": found.component,
-            "distance": found.distance,
-            "weights": list(weights),
-        }
-    return {
-        "component": where,
-        "components": len(region.components),
-        "contains_home": None if where is None else region.components[where].contains_home,
-        "nearest": nearest,
     }

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import io
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -14,7 +12,6 @@ from numpy.typing import ArrayLike
 from qbound.model.robot import Robot
 from qbound.printable import printable
 from qbound.units import joint_units
-from qbound.version import __version__
 
 FORMULA = tuple("=+-@＝＋－＠")
 """What a formula of a spreadsheet begins with; tab and return, others, are escaped as it is."""
@@ -22,6 +19,8 @@ FORMULA = tuple("=+-@＝＋－＠")
 
 def heading(schema: str, robot: Robot) -> dict[str, Any]:
     """Return what every JSON begins with: what it is, of which robot, by which version."""
+    from qbound.version import __version__  # slow to find, and few commands say it
+
     return {"schema": schema, "robot": robot.name, "version": __version__}
 
 
@@ -37,6 +36,8 @@ def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
 
 def json_text(content: Mapping[str, object], indent: int | None = 1) -> str:
     """Return JSON, a line an entry; on one line where `indent` is None."""
+    import json  # as the next, only where it is written: commands start sooner
+
     return json.dumps(content, indent=indent) + "\n"
 
 
@@ -45,6 +46,8 @@ def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
 
     Spreadsheets compute a text that begins as a formula does, so an apostrophe goes before it.
     """
+    import csv
+
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(map(_cell, header))

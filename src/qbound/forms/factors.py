@@ -122,3 +122,12 @@ def basis(kind: Kind, q: ArrayLike) -> Array:
 def basis_slope(kind: Kind, q: ArrayLike) -> Array:
     """Return the derivative of `basis`, shape (..., 3)."""
     return np.asarray(basis(kind, q) @ FACTORS[kind].slope.T)
+
+
+def basis_and_slope(kind: Kind, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return `basis` and `basis_slope` of floats in one array, shape (..., 2, 3)."""
+    found = np.empty((*q.shape, 2, 3))
+    found[..., 0, 0] = 1.0
+    found[..., 0, 1], found[..., 0, 2] = FACTORS[kind].functions(q)
+    found[..., 1, :] = found[..., 0, :] @ FACTORS[kind].slope.T
+    return found

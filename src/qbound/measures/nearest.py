@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.angles import TURN, nearest_turn
+from qbound.forms.factors import basis_and_slope
+from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
 
@@ -95,16 +97,24 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
     """Points and derivatives as in `along`, over chords (n, 2) at fractions (n, m)."""
     chord = (end - start)[:, None]
     q = start[:, None] + u[..., None] * chord
-    if arc.form is None:  # a limit is straight
-        return q, np.broadcast_to(chord, q.shape)
     form = arc.form
-    normal = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
+    if form is None:  # a limit is straight
+        return q, np.broadcast_to(chord, q.shape)
+    normal = chord[..., ::-1] * np.array([-1.0, 1.0])
     for _ in range(3):
-        rise = _quotient(form(q), _dot(form.gradient(q), normal))
-        q = q - np.clip(rise, -0.5, 0.5)[..., None] * normal
-    gradient = form.gradient(q)
+        value, gradient = _value_and_gradient(form, q)
+        rise = _quotient(value, _dot(gradient, normal))
+        q = q - np.minimum(np.maximum(rise, -0.5), 0.5)[..., None] * normal
+    _, gradient = _value_and_gradient(form, q)
     turn = _quotient(_dot(gradient, chord), _dot(gradient, normal))
     return q, chord - turn[..., None] * normal
+
+
+def _value_and_gradient(form: HarmonicForm, q: Floats) -> tuple[Floats, Floats]:
+    """Return values of a form of two joints, shape (...), and its gradients, (..., 2)."""
+    one, other = (basis_and_slope(kind, q[..., j]) for j, kind in enumerate(form.kinds))
+    both = one @ form.coefficients @ other.swapaxes(-1, -2)
+    return both[..., 0, 0], np.stack([both[..., 1, 0], both[..., 0, 1]], axis=-1)
 
 
 def _quotient(a: Floats, b: Floats) -> Floats:
@@ -285,10 +295,12 @@ def _flat(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
     ends = np.broadcast_to([[0.0, 1.0]], (len(start), 2))
     below, above = np.split(_slope(arc, start, end, ends, q, w)[1], 2, axis=1)
     falls = above < below  # nowhere
+    # The slope is a product of two such lengths, and no nearer to zero than that is rounded.
+    rounding = 2.0**-50 * np.hypot(*(w * (end - start)).T) * np.hypot(*(w * (start - q)).T)
     for _ in range(60):
         u = (low * above - high * below) / (above - below)
         p, slope = _slope(arc, start, end, u, q, w)
-        if (np.abs(slope) <= 2.0**-50 * (above - below)).all():
+        if (np.abs(slope) <= np.maximum(2.0**-50 * (above - below), rounding[:, None])).all():
             break
         before, falls = falls, slope < 0  # an end that stays twice loses half its weight
         below = np.where(falls, slope, np.where(~falls & ~before, below / 2, below))

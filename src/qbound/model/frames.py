@@ -171,6 +171,13 @@ def transpose(matrix: Array) -> Array:
     return np.swapaxes(matrix, -1, -2)
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Return cross products of vectors whose coordinates are the first axis, (3, ...)."""
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
 def apply(matrix: Array, vector: Array) -> Array:
     """Matrix times vector over leading axes: (..., 3, 3), (..., 3) -> (..., 3)."""
     return np.asarray((matrix @ vector[..., None])[..., 0])

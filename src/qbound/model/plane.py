@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.model.frames import Frames
+from qbound.model.frames import Frames, cross
 from qbound.model.joints import Joint
 from qbound.model.schema import one_line
 from qbound.tolerances import ZERO_AMPLITUDE
@@ -77,8 +77,8 @@ class PlaneOfMotion:
         None: the normal is along no axis of the frame.
         """
         normal = np.abs(self.normal_seen_from(frame))
-        along = int(np.argmax(normal))
-        return along if np.delete(normal, along).max() <= ZERO_AMPLITUDE else None
+        second = sorted(normal.tolist())[1]
+        return int(np.argmax(normal)) if second <= ZERO_AMPLITUDE else None
 
 
 class Chain(Protocol):
@@ -123,7 +123,7 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
     axes = [np.asarray(m @ j.axis, dtype=float) for m, j in zip(mounts, robot.joints, strict=True)]
     normal = _normal(robot.joints, axes)
     for joint, axis in zip(robot.joints, axes, strict=True):
-        if joint.turns and np.linalg.norm(np.cross(axis, normal)) > ZERO_AMPLITUDE:
+        if joint.turns and np.linalg.norm(cross(axis, normal)) > ZERO_AMPLITUDE:
             fault = "turns about an axis that is not parallel to the others'"
         elif not joint.turns and abs(axis @ normal) > ZERO_AMPLITUDE:
             fault = "slides out of the plane in which the others move"
@@ -132,7 +132,7 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
         text = f"joint {one_line(repr(joint.name))} {fault}: there is no plane of motion"
         raise ValueError(text)
     across = _across(normal)
-    over = np.cross(*across)
+    over = cross(*across)
     senses = [round(float(a @ over)) * j.turns for a, j in zip(axes, robot.joints, strict=True)]
     return PlaneOfMotion(across, normal, tuple(senses), frames)
 
@@ -140,9 +140,9 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
 def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:
     """Return a normal that the first joint to settle it allows; its largest coordinate is > 0."""
     turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
-    candidates = [*turning, *(np.cross(axes[0], axis) for axis in axes[1:])]
+    candidates = [*turning, *(cross(axes[0], axis) for axis in axes[1:])]
     candidates += [axis for axis in np.eye(3)[[1, 2, 0]] if abs(axis @ axes[0]) <= ZERO_AMPLITUDE]
-    candidates.append(np.cross(axes[0], np.eye(3)[np.argmin(np.abs(axes[0]))]))
+    candidates.append(cross(axes[0], np.eye(3)[np.argmin(np.abs(axes[0]))]))
     normal = next(axis for axis in candidates if np.linalg.norm(axis) > ZERO_AMPLITUDE)
     normal = normal / np.linalg.norm(normal)
     largest = normal[np.argmax(np.abs(normal))]
@@ -154,6 +154,6 @@ def _across(normal: Array) -> Array:
     one, other = COORDINATES[int(np.argmax(np.abs(normal)))]
     first = np.eye(3)[one] - normal[one] * normal
     first /= np.linalg.norm(first)
-    second = np.cross(normal, first)
+    second = cross(normal, first)
     second *= np.sign(second[other])
     return np.array([first, second]) + 0.0

@@ -341,8 +341,9 @@ def default_names(frames: Sequence[str]) -> list[str]:
 
 def _place(numbers: Sequence[float], flat: int) -> Array:
     """Return a place of the frame, shape (3,)."""
-    place = np.array(numbers, dtype=float)
-    return place if len(place) == 3 else np.insert(place, flat, 0.0)
+    if len(numbers) < 3:
+        numbers = [*numbers[:flat], 0.0, *numbers[flat:]]
+    return np.array(numbers, dtype=float)
 
 
 def _written(place: Array, flat: int | None) -> list[float]:

@@ -18,10 +18,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm
 from qbound.printable import printable
-from qbound.region.plane import Plane, Root
+from qbound.region.plane import Plane
 from qbound.tolerances import QUADRATURE, SAME_POINT
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FIBRE: Final = -3
+"""Stands for the form of a root where a piece follows none."""
 
 NODES: Final = (24, 48, 96, 192, 384, 768)
 """Numbers of Gauss-Legendre nodes that are tried in turn."""
@@ -36,8 +40,9 @@ class Pieces:
     plane : Plane
     base : int
         Which joint is the base; places are given in the order of the joints.
-    roots : list of (Root or None)
-        What each piece follows; None for a piece of a fibre, straight along the lift.
+    roots : ndarray of int, shape (k, 3)
+        What each piece follows, as `Root`; its form is `FIBRE` for a piece of a fibre, straight
+        along the lift.
     start, end : ndarray, shape (k, 2)
         Base and lift value at both ends.
     turns : ndarray, shape (k, 2)
@@ -46,7 +51,7 @@ class Pieces:
 
     plane: Plane
     base: int
-    roots: list[Root | None]
+    roots: Ints
     start: Floats
     end: Floats
     turns: Floats
@@ -64,17 +69,19 @@ class Pieces:
 
     def straight(self) -> list[bool]:
         """Tell of each piece whether it is straight: along a fibre, or at an end."""
-        return [root is None or root.form < 0 for root in self.roots]
+        found: list[bool] = (self.roots[:, 0] < 0).tolist()
+        return found
 
     def places(self, angle: Floats) -> Floats:
         """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
         part = (1 + np.sin(angle))[:, None] / 2
         start, end = self.start[:, None], self.end[:, None]
         q = np.where(part < 1, start + (end - start) * part, end)
-        curved = [k for k, root in enumerate(self.roots) if root is not None]
-        roots = [root for root in self.roots if root is not None]
+        curved = np.flatnonzero(self.roots[:, 0] != FIBRE)
         turns = self.turns[curved][:, None]
-        values = self.plane.follow(roots, q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
+        values = (
+            self.plane.follow(self.roots[curved], q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
+        )
         inside = np.abs(angle) < math.pi / 2  # the ends are given
         q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
         return ordered(q, self.base)
@@ -215,9 +222,21 @@ def converged(sums: Callable[[int], Floats], smallest: float | None = None) -> F
 
 @cache
 def legendre(n: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights of Gauss-Legendre quadrature on [-1, 1]."""
-    nodes, weights = np.polynomial.legendre.leggauss(n)
-    return nodes, weights
+    """Return nodes and weights of Gauss-Legendre quadrature on [-1, 1].
+
+    Newton on the angles of the nodes, from Tricomi's: no library is loaded and no matrix solved.
+    """
+    angle = np.pi * (np.arange(1, (n + 1) // 2 + 1) - 0.25) / (n + 0.5)
+    for last in (False, False, False, True):
+        x, before = np.cos(angle), np.ones(len(angle))
+        value = x
+        for k in range(2, n + 1):  # the recurrence of Legendre's polynomials
+            before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
+        slope = n * (before - x * value)  # times the square of the sine; level at a node
+        angle = angle if last else angle + value * np.sin(angle) / slope
+    weights = 2 * (np.sin(angle) / slope) ** 2
+    mirrored = slice(None, None, -1) if n % 2 == 0 else slice(-2, None, -1)
+    return np.concatenate([-x, x[mirrored]]), np.concatenate([weights, weights[mirrored]])
 
 
 @cache

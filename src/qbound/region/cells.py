@@ -9,41 +9,29 @@ joined, back along the upper root.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from itertools import chain
-from typing import Final, Literal, NamedTuple
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.decomposition import Cell, Decomposition
-from qbound.region.plane import Plane, Root
+from qbound.region.plane import Plane, ranges
 from qbound.tolerances import SAME_POINT, TOUCH
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
-SIDES: Final = ("lower", "upper")
+INSET = 1e-4 * np.arange(4)
+"""Where cells are looked at beside their lines, in parts of their width."""
 
 
-class Step(NamedTuple):
-    """One piece of a boundary: along a root of a cell, or along an element of a critical line.
-
-    Attributes
-    ----------
-    kind : {"lower", "upper", "up", "down"}
-    cell : int
-        The cell on its left.
-    line, element : int
-        Of a vertical piece; -1 otherwise.
-    """
-
-    kind: Literal["lower", "upper", "up", "down"]
-    cell: int
-    line: int = -1
-    element: int = -1
+LOWER, UP, UPPER, DOWN = range(4)
+"""Half-edges round a cell, in the order of the loop: along a root, or along a critical line."""
 
 
 class Placed(NamedTuple):
@@ -63,24 +51,53 @@ class Placed(NamedTuple):
     off: Floats
 
 
-@dataclass(eq=False)
-class Line:
-    """What meets at one critical line.
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """Pieces of critical lines between ends of cells, one a row, by line and upwards.
 
     Attributes
     ----------
-    points : list of float
-        Ends of cells on the line, ascending (within one turn where the lift is a circle).
-    left, right : list of (int or None)
-        For the element above each point: the cell on that side that owns it.
-    joined : list of bool
-        Whether the two owners hang together over that element.
+    line : ndarray of int, shape (n,)
+    low, high : ndarray, shape (n,)
+        Where it lies; within one turn, but for the last, where the lift is a circle.
+    cell : ndarray of int, shape (2, n)
+        The cells to its left and to its right; -1 where there is none.
+    turns : ndarray of int, shape (2, n)
+        Full turns that bring it into these cells.
+    joined : ndarray of bool, shape (n,)
+        Whether the two cells hang together over it.
     """
 
-    points: list[float] = field(default_factory=list)
-    left: list[int | None] = field(default_factory=list)
-    right: list[int | None] = field(default_factory=list)
-    joined: list[bool] = field(default_factory=list)
+    line: Ints
+    low: Floats
+    high: Floats
+    cell: Ints
+    turns: Ints
+    joined: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class HalfEdges:
+    """What bounds cells, each with its cell on the left, one a row.
+
+    Attributes
+    ----------
+    kind : ndarray of int, shape (n,)
+        `LOWER`, `UP`, `UPPER` or `DOWN`.
+    cell : ndarray of int, shape (n,)
+    element : ndarray of int, shape (n,)
+        Of those along a critical line; -1 along a root.
+    after : ndarray of int, shape (n,)
+        The half-edge that follows round the cell.
+    twin : ndarray of int, shape (n,)
+        The half-edge on the other side of a joined element; -1 where nothing is joined.
+    """
+
+    kind: Ints
+    cell: Ints
+    element: Ints
+    after: Ints
+    twin: Ints
 
 
 class CellComplex:
@@ -90,80 +107,77 @@ class CellComplex:
         self.decomposition = decomposition
         self.plane: Plane = decomposition.plane
         self.abscissae = decomposition.lines
-        self.cells: list[Cell] = decomposition.cells
+        self.slabs, self.roots = decomposition.slabs, decomposition.roots
         self.wrapped = self.plane.base_range is None
         self.circle = self.plane.lift_range is None
         self.touch = TOUCH * self.plane.lift_unit
         self.n_lines = len(self.abscissae) - (1 if self.wrapped else 0)
-        self.whole = [self.circle and cell.lower.form < 0 for cell in self.cells]
-        self.ends: list[list[list[float]]] = self._ends().tolist()
-        self.lines = self._lines()
+        self.whole: Bools = self.circle & (self.roots[:, 0, 0] < 0)
+        self.ends: Floats = self._ends()
+        self.elements: Elements = self._elements()
+
+    @property
+    def cells(self) -> list[Cell]:
+        """The cells, one by one."""
+        return self.decomposition.cells
 
     # --- places ---------------------------------------------------------------------------------
 
-    def left_line(self, cell: int) -> int:
-        """Return the critical line at which a cell begins."""
-        return self.cells[cell].slab
-
-    def right_line(self, cell: int) -> int:
-        """Return the critical line at which a cell ends; a base that turns round closes."""
-        after = self.cells[cell].slab + 1
-        return after % self.n_lines if self.wrapped else after
-
-    def interval(self, chosen: Sequence[int], t: Floats) -> Floats:
+    def interval(self, chosen: Sequence[int] | Ints, t: Floats) -> Floats:
         """Return lower and upper root of chosen cells, each over its own row of t; (2, k, n)."""
-        lower, upper = self._roots(chosen, t)
-        return np.stack([lower, np.maximum(lower, upper)])
+        values = self._roots(chosen, t)
+        np.maximum(values[0], values[1], out=values[1])
+        return values
 
-    def _roots(self, chosen: Sequence[int], t: Floats) -> Floats:
-        return self.plane.follow(self._bounding(chosen), np.tile(t, (2, 1))).reshape(2, *t.shape)
+    def _roots(self, chosen: Sequence[int] | Ints, t: Floats) -> Floats:
+        bounding = self.roots[np.asarray(chosen, dtype=np.int64)].swapaxes(0, 1)
+        return self.plane.follow(bounding, t)
 
-    def _bounding(self, chosen: Sequence[int]) -> list[Root]:
-        return [self.cells[k].lower for k in chosen] + [self.cells[k].upper for k in chosen]
-
-    def spans(self, chosen: Sequence[int]) -> Floats:
+    def spans(self, chosen: Sequence[int] | Ints) -> Floats:
         """Return the base values between which chosen cells lie, shape (k, 2)."""
-        slabs = np.array([self.cells[k].slab for k in chosen], dtype=np.int64)
-        return np.stack([self.abscissae[slabs], self.abscissae[slabs + 1]], axis=-1)
+        slabs = self.slabs[np.asarray(chosen, dtype=np.int64)]
+        return np.asarray(self.abscissae[np.array([slabs, slabs + 1]).T])
 
     def placed(self, place: Floats) -> list[Placed]:
         """Return the cells within reach of base and lift values, those that hold them first.
 
         Reach is `TOUCH` in the units of base and lift.
         """
-        t, v = place
-        bases = [float(t)]
+        t, v = map(float, place)
+        bases = [t]
         if self.wrapped:  # beyond the cut of the circle, too
             t = float(first_from(self.plane.ends[0], t))
-            bases = [t, t - TURN, t + TURN]
-        found = [one for t in bases for one in self._placed(t, float(v))]
+            low, high = self.plane.ends
+            near = TOUCH * self.plane.base_unit
+            bases = [t, *[t - TURN] * (t >= high - near), *[t + TURN] * (t <= low + near)]
+        found = [one for t in bases for one in self._placed(t, v)]
         return sorted(found, key=lambda one: float(np.abs(one.off).max()))
 
     def _placed(self, t: float, v: float) -> list[Placed]:
         units = np.array([self.plane.base_unit, self.plane.lift_unit])
-        start, end = self.spans(range(len(self.cells))).T
         near = TOUCH * self.plane.base_unit
-        chosen = np.flatnonzero((start - near <= t) & (t <= end + near))
+        first, last = np.searchsorted(self.abscissae, [t - near, t + near])
+        begin, stop = np.searchsorted(self.slabs, [first - 1, last])
+        chosen = np.arange(begin, stop)
         if not len(chosen):
             return []
-        low, high = self._interval_at(chosen, t)
+        start, end = self.spans(chosen).T
+        low, high = self._interval_at(chosen, start, end, t)
         turns = TURN * turns_up_to(low - self.touch, v) * self.circle
-        inside = np.clip(v + turns, low, high)
-        inside = np.where(np.array(self.whole)[chosen], v + turns, inside)
-        off = np.stack([np.clip(t, start[chosen], end[chosen]) - t, inside - v - turns], axis=-1)
+        inside = np.minimum(np.maximum(v + turns, low), high)
+        inside = np.where(self.whole[chosen], v + turns, inside)
+        off = np.array([np.minimum(np.maximum(t, start), end) - t, inside - v - turns]).T
         reached = (np.abs(off) <= TOUCH * units).all(axis=-1)
         return [
             Placed(int(chosen[k]), np.array([t, v + turns[k]]), off[k])
             for k in np.flatnonzero(reached)
         ]
 
-    def _interval_at(self, chosen: Ints, t: float) -> Floats:
+    def _interval_at(self, chosen: Ints, start: Floats, end: Floats, t: float) -> Floats:
         """Lower and upper root of cells at one base value; on a line what is meant is `ends`."""
-        start, end = self.spans(chosen.tolist()).T
         inset = SAME_POINT * (end - start)
-        inside = np.clip(t, start + inset, end - inset)
-        found = self.interval(chosen.tolist(), inside[:, None])[..., 0]
-        ends = np.array([self.ends[k] for k in chosen]).reshape(-1, 2, 2)
+        inside = np.minimum(np.maximum(t, start + inset), end - inset)
+        found, ends = self.interval(chosen, inside[:, None])[..., 0], self.ends[chosen]
         found = np.where(t <= start + inset, ends[:, 0].T, found)
         return np.where(t >= end - inset, ends[:, 1].T, found)
 
@@ -173,94 +187,92 @@ class CellComplex:
         There an angle may jump by a turn, and where a form vanishes on a whole fibre it has no
         roots to speak of: their limit from inside the slab is meant.
         """
-        chosen = range(len(self.cells))
-        spans = self.spans(chosen)
-        start, width = spans[:, :1], np.diff(spans)
-        inset = 1e-4 * np.array([0, 1, 2, 3])
-        t = start + width * np.concatenate([inset, 1 - inset])
-        values = self._roots(chosen, t).reshape(2, -1, 2, 4)
-        at, near, far, farther = np.moveaxis(values, -1, 0)
+        start, end = self.abscissae[:-1][self.slabs, None], self.abscissae[1:][self.slabs, None]
+        t = np.concatenate([start + (end - start) * INSET, end - (end - start) * INSET], axis=1)
+        values = self._roots(np.arange(len(self.slabs)), t).reshape(2, -1, 2, 4)
+        at, near = values[..., 0], values[..., 1]
         if self.plane.lift_kind == "revolute":
             at = at + TURN * whole_turns(near - at)
-        blank = self.plane.blank(self._bounding(chosen), np.tile(t[:, [0, 4]], (2, 1)))
-        lower, upper = np.where(blank.reshape(at.shape), 3 * near - 3 * far + farther, at)
-        return np.stack([lower, np.maximum(lower, upper)], axis=-1)
+        blank = self.plane.blank(self.roots[:, :, 0].T, t[:, ::4])
+        if blank.any():
+            at = np.where(blank, 3 * near - 3 * values[..., 2] + values[..., 3], at)
+        return np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
 
     # --- lines ----------------------------------------------------------------------------------
 
-    def _lines(self) -> list[Line]:
-        left: list[list[int]] = [[] for _ in range(self.n_lines)]
-        right: list[list[int]] = [[] for _ in range(self.n_lines)]
-        for k in range(len(self.cells)):
-            left[self.right_line(k)].append(k)
-            right[self.left_line(k)].append(k)
-        lines = [self._line(*sides) for sides in zip(left, right, strict=True)]
-        self._join(lines)
-        return lines
+    def _elements(self) -> Elements:
+        line, low, high = self._cut_lines()
+        middle = (low + high) / 2
+        sides = [self._owner(line, middle, side) for side in (0, 1)]
+        cell, turns = np.array([own for own, _ in sides]), np.array([turn for _, turn in sides])
+        joined: Bools = np.asarray((cell >= 0).all(axis=0))
+        free = self.decomposition.joined(line[joined], low[joined], high[joined])
+        joined[joined] = free
+        return Elements(line, low, high, cell, turns, joined)
 
-    def _line(self, left: list[int], right: list[int]) -> Line:
-        places = [self.ends[k][1] for k in left if not self.whole[k]]
-        places += [self.ends[k][0] for k in right if not self.whole[k]]
-        line = Line(_clustered(chain.from_iterable(places), self.circle, self.touch))
-        for e in range(self.n_elements(line)):
-            middle = self._middle(line, e)
-            line.left.append(self._owner(left, 1, middle))
-            line.right.append(self._owner(right, 0, middle))
-            line.joined.append(False)
-        return line
+    def _cut_lines(self) -> tuple[Ints, Floats, Floats]:
+        """Cut critical lines where cells end: line, lower and upper end of each element.
 
-    def _join(self, lines: list[Line]) -> None:
-        """Join owners over elements on an open part of which every form is positive."""
-        shared = [
-            (i, e, *self.bounds(line, e))
-            for i, line in enumerate(lines)
-            for e in range(len(line.joined))
-            if line.left[e] is not None and line.right[e] is not None
-        ]
-        where, low, high = np.array([(i, a, b) for i, _, a, b in shared]).reshape(-1, 3).T
-        free = self.decomposition.joined(where.astype(np.int64), low, high)
-        for (i, e, *_), joined in zip(shared, free.tolist(), strict=True):
-            lines[i].joined[e] = joined
+        A circle closes, and without ends of cells it is one element.
+        """
+        kept = ~self.whole
+        at = self.slabs[kept, None] + np.array([0, 1])
+        at = at % self.n_lines if self.wrapped else at
+        line, v = np.repeat(at.ravel(), 2), self.ends[kept].ravel()
+        v = math.pi - (math.pi - v) % TURN if self.circle else v
+        order = np.lexsort([v, line])
+        line, v = line[order], v[order]
+        new = (np.diff(line, prepend=-1) > 0) | (np.diff(v, prepend=0.0) > self.touch)
+        line, v = line[new], v[new]
+        first = np.flatnonzero(np.diff(line, prepend=-1))
+        last = np.concatenate([first[1:], [len(line)]])[: len(first)] - 1
+        if not self.circle:
+            inner = np.ones(len(line), dtype=np.bool_)
+            inner[last] = False
+            k = np.flatnonzero(inner)
+            return line[k], v[k], v[k + 1]
+        high = np.append(v[1:], 0.0)[: len(v)]
+        high[last] = v[first] + TURN
+        double = (last > first) & (high[last] - v[last] <= self.touch)
+        high[last[double] - 1] = high[last[double]]
+        left = np.ones(len(line), dtype=np.bool_)
+        left[last[double]] = False
+        without = np.flatnonzero(np.bincount(line, minlength=self.n_lines) == 0)
+        line = np.concatenate([line[left], without])
+        low = np.concatenate([v[left], np.full(len(without), -math.pi)])
+        high = np.concatenate([high[left], np.full(len(without), math.pi)])
+        order = np.argsort(line, kind="stable")
+        return line[order], low[order], high[order]
 
-    def n_elements(self, line: Line) -> int:
-        """Elements between points; a circle closes, and without points is one element."""
-        return max(len(line.points), 1) if self.circle else max(len(line.points) - 1, 0)
+    def _owner(self, line: Ints, middle: Floats, side: int) -> tuple[Ints, Ints]:
+        """Return the first cell on the left (0) or right (1) of each place, -1 for none, and turns.
 
-    def bounds(self, line: Line, e: int) -> tuple[float, float]:
-        """Lower and upper end of an element."""
-        if not line.points:
-            return -math.pi, math.pi
-        low = line.points[e]
-        return low, line.points[e + 1] if e + 1 < len(line.points) else line.points[0] + TURN
-
-    def _middle(self, line: Line, e: int) -> float:
-        return sum(self.bounds(line, e)) / 2
-
-    def _owner(self, cells: list[int], side: int, v: float) -> int | None:
-        return next((k for k in cells if self.turns_into(k, side, v) is not None), None)
-
-    def turns_into(self, cell: int, side: int, v: float) -> int | None:
-        """Full turns that bring v into a cell's interval at its left (0) or right (1) line."""
-        low, high = self.ends[cell][side]
-        turns = math.ceil((low - v) / TURN) if self.circle else 0
-        if self.whole[cell]:  # a full circle holds every v
-            return turns
-        return turns if low < v + TURN * turns < high else None
+        The turns bring the place into the cell's own interval at that line.
+        """
+        owner, turns = np.full(len(line), -1), np.zeros(len(line), dtype=np.int64)
+        slab = line - 1 if side == 0 else line
+        slab = slab % self.n_lines if self.wrapped else slab
+        element, k = ranges(*np.searchsorted(self.slabs, [slab, slab + 1]))
+        low, high = self.ends[k, 1 - side].T
+        v = middle[element]
+        turn = turns_up_to(low, v) * self.circle
+        v = v + TURN * turn
+        held = np.flatnonzero(((low < v) & (v < high)) | self.whole[k])[::-1]
+        owner[element[held]], turns[element[held]] = k[held], turn[held]  # the first comes last
+        return owner, turns
 
     # --- components -----------------------------------------------------------------------------
 
     def joins(self) -> Iterator[tuple[int, int, int, int]]:
         """Yield left cell, right cell, and the base and lift turns between their windings."""
-        for i, line in enumerate(self.lines):
-            for e, joined in enumerate(line.joined):
-                a, b, v = line.left[e], line.right[e], self._middle(line, e)
-                if joined and a is not None and b is not None:
-                    lift = (self.turns_into(a, 1, v) or 0) - (self.turns_into(b, 0, v) or 0)
-                    yield a, b, int(self.wrapped and i == 0), lift
+        k, found = np.flatnonzero(self.elements.joined), self.elements
+        base = (found.line[k] == 0) & self.wrapped
+        lift = found.turns[0, k] - found.turns[1, k]
+        yield from zip(*found.cell[:, k].tolist(), base.tolist(), lift.tolist(), strict=True)
 
     def components(self) -> list[tuple[dict[int, tuple[int, int]], tuple[bool, bool]]]:
         """Return each component: every cell's winding (turns), and which joints it goes round."""
-        neighbours: dict[int, list[tuple[int, int, int]]] = {k: [] for k in range(len(self.cells))}
+        neighbours: dict[int, list[tuple[int, int, int]]] = {k: [] for k in range(len(self.slabs))}
         for a, b, base, lift in self.joins():
             neighbours[a].append((b, base, lift))
             neighbours[b].append((a, -base, -lift))
@@ -279,7 +291,7 @@ class CellComplex:
         queue = [start]
         while queue:
             a = queue.pop()
-            lift_goes_round |= self.whole[a]
+            lift_goes_round |= bool(self.whole[a])
             for b, base, lift in neighbours[a]:
                 winding = windings[a][0] + base, windings[a][1] + lift
                 if b not in windings:
@@ -291,92 +303,95 @@ class CellComplex:
 
     # --- boundaries -----------------------------------------------------------------------------
 
-    def loops(self, cells: Collection[int]) -> list[list[Step]]:
+    def loops(self, cells: Collection[int]) -> list[Ints]:
         """Return the closed loops that bound a component, the component on the left.
 
-        The half-edges round each cell are a cycle. Where two cells are joined over an element of a
-        line, each other's half-edge is the way past it: what is left are the loops. A hole shorter
-        round than TOUCH is a point at which a form touches zero: it bounds nothing.
+        Rows of `half_edges`. Where two cells are joined over an element of a line, each other's
+        half-edge is the way past it: what is left are the loops. A hole shorter round than TOUCH is
+        a point at which a form touches zero: it bounds nothing.
         """
-        after = {
-            one: other for k in cells for cycle in self._cycles(k) for one, other in _ring(cycle)
-        }
-        left_over = {step: None for step in after if not self._joined(step)}
+        first, (after, bounding, lengths) = self._first_edges, self._boundary
+        rows = (row for k in cells for row in range(first[k], first[k + 1]))
+        left = {row: None for row in rows if bounding[row]}
         loops = []
-        while left_over:
-            loop = [next(iter(left_over))]
-            while (step := self._past_joined(after, loop[-1])) != loop[0]:
-                loop.append(step)
+        while left:
+            loop = [next(iter(left))]
+            while (row := after[loop[-1]]) != loop[0]:
+                loop.append(row)
+            for row in loop:
+                del left[row]
             loops.append(loop)
-            for step in loop:
-                del left_over[step]
-        tiny = all(self._size(k) <= TOUCH for k in cells)
-        return [loop for loop in loops if tiny or sum(map(self._length, loop)) > TOUCH]
+        long = [sum(lengths[row] for row in loop) > TOUCH for loop in loops]
+        tiny = not all(long) and bool((self._sizes(cells) <= TOUCH).all())
+        return [np.array(loop) for loop, kept in zip(loops, long, strict=True) if kept or tiny]
 
-    def _cycles(self, k: int) -> list[list[Step]]:
-        """Return the half-edges round a cell, the cell on the left; a whole one has two cycles."""
-        i, j = self.left_line(k), self.right_line(k)
-        up = [Step("up", k, j, e) for e in self._elements(j, k, 1)]
-        down = [Step("down", k, i, e) for e in reversed(self._elements(i, k, 0))]
-        if self.whole[k]:
-            return [up, down]
-        return [[Step("lower", k), *up, Step("upper", k), *down]]
+    @cached_property
+    def half_edges(self) -> HalfEdges:
+        """All half-edges, those of a cell together, in their order round it.
 
-    def _elements(self, i: int, k: int, side: int) -> list[int]:
-        """Return the elements of a line that are a cell's right (1) or left (0) side, upwards."""
-        line = self.lines[i]
-        owned = [e for e, cell in enumerate(line.left if side else line.right) if cell == k]
-        if self.whole[k] or not owned:
-            return owned
-        low = self.ends[k][side][0] - self.touch
-        return sorted(
-            owned, key=lambda e: (self._middle(line, e) - low) % TURN if self.circle else e
-        )
+        A cell that is a whole circle has two cycles of them; any other has one.
+        """
+        found = self.elements
+        right, left = (np.flatnonzero(found.cell[side] >= 0) for side in (0, 1))
+        along = np.flatnonzero(~self.whole)
+        kind = np.repeat([LOWER, UP, UPPER, DOWN], [len(along), len(right), len(along), len(left)])
+        cell = np.concatenate([along, found.cell[0, right], along, found.cell[1, left]])
+        element = np.full(len(kind), -1)
+        element[kind == UP], element[kind == DOWN] = right, left
+        order = np.lexsort([self._heights(kind, cell, element), kind, cell])
+        kind, cell, element = kind[order], cell[order], element[order]
+        cycle = 2 * cell + (self.whole[cell] & (kind == DOWN))
+        first = np.flatnonzero(np.diff(cycle, prepend=-1))
+        after = np.arange(1, len(cycle) + 1)
+        after[np.concatenate([first[1:], [len(cycle)]])[: len(first)] - 1] = first
+        place = np.full((2, len(found.line) + 1), -1)  # of each element's half-edges
+        for row, way in enumerate((UP, DOWN)):
+            here = np.flatnonzero(kind == way)
+            place[row, element[here]] = here
+        joined = (element >= 0) & np.append(found.joined, False)[element]
+        twin = np.where(joined, place[(kind == UP).astype(int), element], -1)
+        return HalfEdges(kind, cell, element, after, twin)
 
-    def _joined(self, step: Step) -> bool:
-        return step.line >= 0 and self.lines[step.line].joined[step.element]
+    def _heights(self, kind: Ints, cell: Ints, element: Ints) -> Floats:
+        """Return numbers that put the half-edges on either side of a cell in order."""
+        found = self.elements
+        middle = np.append((found.low + found.high) / 2, 0.0)[element]
+        if self.circle:
+            side = (kind == UP).astype(int)
+            turned = (middle - self.ends[cell, side, 0] + self.touch) % TURN
+            middle = np.where(self.whole[cell], middle, turned)
+        return np.where(kind == DOWN, -middle, middle)
 
-    def _past_joined(self, after: Mapping[Step, Step], step: Step) -> Step:
-        """Return what follows a half-edge on the boundary, past joined elements."""
-        step = after[step]
-        while self._joined(step):
-            line = self.lines[step.line]
-            up = step.kind == "up"
-            other = (line.right if up else line.left)[step.element]
-            twin = Step("down" if up else "up", other or 0, step.line, step.element)
-            step = after[twin]
-        return step
+    @cached_property
+    def _first_edges(self) -> list[int]:
+        """Where the half-edges of each cell begin, and where those of the last end."""
+        cell, every = self.half_edges.cell, np.arange(len(self.slabs) + 1)
+        found: list[int] = np.searchsorted(cell, every).tolist()
+        return found
 
-    def _size(self, k: int) -> float:
-        """Width or height of a cell, whichever is more, in the units of base and lift."""
-        left, right = self.abscissae[self.cells[k].slab :][:2]
-        height = max(high - low for low, high in self.ends[k])
-        return float(max((right - left) / self.plane.base_unit, height / self.plane.lift_unit))
+    @cached_property
+    def _boundary(self) -> tuple[list[int], list[bool], list[float]]:
+        """Of each half-edge: what follows past joined elements; whether it bounds; its length."""
+        edges = self.half_edges
+        bounding = edges.twin < 0  # round a point inside a component one would go for ever
+        after = np.where(bounding, edges.after, 0)
+        while len(inner := np.flatnonzero(bounding & (edges.twin[after] >= 0))):
+            after[inner] = edges.after[edges.twin[after[inner]]]
+        return after.tolist(), bounding.tolist(), self._lengths().tolist()
 
-    def _length(self, step: Step) -> float:
-        """Length of a step between its ends, in the units of base and lift together."""
-        if step.line >= 0:
-            low, high = self.bounds(self.lines[step.line], step.element)
-            return (high - low) / self.plane.lift_unit
-        slab, k = self.cells[step.cell].slab, SIDES.index(step.kind)
-        (left, right), ends = self.abscissae[slab : slab + 2], self.ends[step.cell]
-        along = (right - left) / self.plane.base_unit
-        return float(along + abs(ends[1][k] - ends[0][k]) / self.plane.lift_unit)
+    def _sizes(self, chosen: Collection[int]) -> Floats:
+        """Width or height of cells, whichever is more, in the units of base and lift."""
+        k = np.array(list(chosen), dtype=np.int64)
+        widths = np.diff(self.spans(k))[:, 0] / self.plane.base_unit
+        heights = np.diff(self.ends[k], axis=2).max(axis=(1, 2)) / self.plane.lift_unit
+        return np.asarray(np.maximum(widths, heights))
 
-
-def _ring(cycle: Sequence[Step]) -> Iterator[tuple[Step, Step]]:
-    """Yield each half-edge of a cycle with the one after it."""
-    return zip(cycle, [*cycle[1:], *cycle[:1]], strict=True)
-
-
-def _clustered(values: Iterable[float], circle: bool, touch: float) -> list[float]:
-    """Sort values and keep one of each group closer than `touch`; on a circle within (-pi, pi]."""
-    kept: list[float] = []
-    before = -math.inf
-    for v in sorted(math.pi - (math.pi - v) % TURN for v in values) if circle else sorted(values):
-        if v - before > touch:
-            kept.append(v)
-        before = v
-    if circle and len(kept) > 1 and kept[0] + TURN - kept[-1] <= touch:
-        kept.pop()
-    return kept
+    def _lengths(self) -> Floats:
+        """Length of each half-edge between its ends, in the units of base and lift together."""
+        edges, found = self.half_edges, self.elements
+        side = (edges.kind == UPPER).astype(int)
+        heights = np.append(found.high - found.low, 0.0)[edges.element]
+        widths = np.diff(self.abscissae)[self.slabs[edges.cell]] / self.plane.base_unit
+        rise = np.abs(self.ends[edges.cell, 1, side] - self.ends[edges.cell, 0, side])
+        lift = self.plane.lift_unit
+        return np.where(edges.element >= 0, heights / lift, widths + rise / lift)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,11 @@ from qbound.region.loops import Windings, behind
 from qbound.region.problem import Problem
 from qbound.tolerances import QUADRATURE
 
+CELL_NODES: Final = (NODES[0], 32, *NODES[1:])
+"""Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
+
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,19 +108,33 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     at_home = {one.cell: one for one in closures(problem, cells, base, home)}
     home = ordered(home, base)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
+    parts = cells.components()
+    table = winding_table(cells, [windings for windings, _ in parts])
+    count = [len(windings) for windings, _ in parts]
+    owner, order = np.repeat(np.arange(len(parts)), count), [k for one, _ in parts for k in one]
+    moments[:, 1:] += moments[:, :1] * TURN * table
+    sums = np.array([np.bincount(owner, column[order], len(parts)) for column in moments.T])
+    middles = (sums[1:] / sums[0]).T
+    nearest = (nearest_turn(middles, 0) - middles) * circles
     found = []
-    for windings, wraps in cells.components():
-        turns = TURN * np.array(list(windings.values()), dtype=float)
-        areas, firsts = moments[list(windings), 0], moments[list(windings), 1:]
-        middle = (firsts + areas[:, None] * turns).sum(axis=0) / areas.sum()
+    for k, (windings, wraps) in enumerate(parts):
         own = next((one for cell, one in at_home.items() if cell in windings), None)
         shift = np.zeros(2)
         if own is not None:
             shift = home - own.place - TURN * np.array(windings[own.cell])
         elif not any(wraps):
-            shift = (nearest_turn(middle, 0) - middle) * circles
-        found.append(Found(windings, wraps, float(areas.sum()), middle, shift, own is not None))
+            shift = nearest[k]
+        area = float(sums[0, k])
+        found.append(Found(windings, wraps, area, middles[k], shift, own is not None))
     return found
+
+
+def winding_table(cells: CellComplex, windings: Sequence[Windings]) -> Ints:
+    """Return the winding of every cell, shape (cells, 2), of those of all components."""
+    table = np.zeros((len(cells.slabs), 2), dtype=np.int64)
+    for one in windings:
+        table[list(one)] = list(one.values())
+    return table
 
 
 def bounded(found: Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
@@ -132,10 +152,10 @@ def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
     One that goes round a joint is left alone.
     """
     starts = [i for i, arc in enumerate(loop) if loop[i - 1].label != arc.label]
-    closes = np.abs(loop[-1].end - loop[0].start).max() < math.pi
-    if not starts or not closes:
+    (q1, q2), (p1, p2) = loop[-1].end.tolist(), loop[0].start.tolist()
+    if not starts or max(abs(q1 - p1), abs(q2 - p2)) >= math.pi:
         return loop
-    k = min(starts, key=lambda i: tuple(np.round(loop[i].start[::-1], 9)))
+    k = min(starts, key=lambda i: [round(x, 9) for x in loop[i].start[::-1].tolist()])
     return loop[k:] + loop[:k]
 
 
@@ -149,13 +169,13 @@ def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
 def _cell_moments(cells: CellComplex) -> Floats:
     """Return area and first moments about base and lift of each cell, shape (k, 3).
 
-    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n doubled for
+    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n raised for
     those cells whose moments still change.
     """
-    result = np.full((len(cells.cells), 3), np.inf)
-    left = np.arange(len(cells.cells))
-    for n in NODES:
-        now = _moments(cells, left.tolist(), n)
+    result = np.full((len(cells.slabs), 3), np.inf)
+    left = np.arange(len(cells.slabs))
+    for n in CELL_NODES:
+        now = _moments(cells, left, n)
         settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
         result[left] = now
         left = left[~settled.all(axis=1)]
@@ -164,12 +184,20 @@ def _cell_moments(cells: CellComplex) -> Floats:
     return result
 
 
-def _moments(cells: CellComplex, chosen: list[int], n: int) -> Floats:
-    nodes, weights = legendre(n)
+def _moments(cells: CellComplex, chosen: Ints, n: int) -> Floats:
+    sines, weights = _smooth_rule(n)
     start, end = cells.spans(chosen).T[:, :, None]
-    half, angle = (end - start) / 2, nodes * math.pi / 2
-    t = (start + end) / 2 + half * np.sin(angle)
+    half = (end - start) / 2
+    t = (start + end) / 2 + half * sines
     low, high = cells.interval(chosen, t)
-    strip = weights * math.pi / 2 * half * np.cos(angle) * (high - low)
-    moments = np.stack([strip, strip * t, strip * (low + high) / 2], axis=-1)
-    return np.asarray(moments.sum(axis=1))
+    height = high - low
+    moments = np.array([height, height * t, height * (low + high) / 2])
+    return np.asarray((moments @ weights).T * half)
+
+
+@cache
+def _smooth_rule(n: int) -> tuple[Floats, Floats]:
+    """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1]."""
+    nodes, weights = legendre(n)
+    angle = nodes * math.pi / 2
+    return np.sin(angle), weights * math.pi / 2 * np.cos(angle)

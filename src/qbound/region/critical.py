@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ Complexes = NDArray[np.complex128]
 
 BLOCK = 2**14
 """Polynomials that are solved at once: fast enough, small enough for any memory."""
+
+FEW = 2**9
+"""Polynomials of a kind up to which they are solved with others: one call costs more than they."""
 
 Events = Iterator[tuple[Ints, Complexes]]
 """Rows and their polynomials, stacks of equal length; a row may occur in several."""
@@ -121,10 +125,21 @@ def _line(a: Complexes, b: Complexes) -> Events:
 
 def _times(p: Complexes, q: Complexes) -> Complexes:
     """Multiply stacked polynomials, coefficients on the last axis."""
-    product = np.zeros((*p.shape[:-1], p.shape[-1] + q.shape[-1] - 1), dtype=complex)
-    for k in range(p.shape[-1]):
-        product[..., k : k + q.shape[-1]] += p[..., k : k + 1] * q
-    return product
+    m, n = p.shape[-1], q.shape[-1]
+    if p.size > FEW:
+        product = np.zeros((*p.shape[:-1], m + n - 1), dtype=complex)
+        for k in range(m):
+            product[..., k : k + n] += p[..., k : k + 1] * q
+        return product
+    products = (p[..., :, None] * q[..., None, :]).reshape(*p.shape[:-1], m * n)
+    return np.asarray(products @ _degrees(m, n))
+
+
+@cache
+def _degrees(m: int, n: int) -> Complexes:
+    """Return the matrix that adds up products of coefficients, (m n, m + n - 1), by degree."""
+    degree = np.arange(m)[:, None] + np.arange(n)
+    return np.asarray(degree.reshape(-1, 1) == np.arange(m + n - 1), dtype=complex)
 
 
 def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
@@ -133,11 +148,28 @@ def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
     A block at a time: of thousands of boundaries there are millions of pairs.
     """
     found = [(np.zeros(0, dtype=np.int64), np.zeros(0))]
-    for rows, stack in events:
-        for k in range(0, len(stack), BLOCK):
-            where, t = _real(plane, stack[k : k + BLOCK])
-            found.append((rows[k : k + BLOCK][where], t))
+    for rows, stack in _blocks(events):
+        where, t = _real(plane, stack)
+        found.append((rows[where], t))
     return np.concatenate([rows for rows, _ in found]), np.concatenate([t for _, t in found])
+
+
+def _blocks(events: Events) -> Events:
+    """Yield the same polynomials with few of them together, padded to one length, many in parts."""
+    few: list[tuple[Ints, Complexes]] = []
+    for rows, stack in events:
+        if len(stack) > FEW:
+            yield from (
+                (rows[k : k + BLOCK], stack[k : k + BLOCK]) for k in range(0, len(stack), BLOCK)
+            )
+        elif len(stack):
+            few.append((rows, stack))
+    if few:
+        length = np.array([len(rows) for rows, _ in few])
+        padded = np.zeros((length.sum(), max(stack.shape[1] for _, stack in few)), dtype=complex)
+        for at, (_, stack) in zip(np.cumsum(length) - length, few, strict=True):
+            padded[at : at + len(stack), : stack.shape[1]] = stack
+        yield np.concatenate([rows for rows, _ in few]), padded
 
 
 def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:

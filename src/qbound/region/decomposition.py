@@ -9,8 +9,9 @@ number of pairs in collision goes up or down by one at each. No grid, no sample,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -54,15 +55,25 @@ class Decomposition:
     ----------
     lines : ndarray, shape (s + 1,)
         Critical base values, ascending; slab i lies between lines i and i + 1.
-    cells : list of Cell
+    slabs : ndarray of int, shape (k,)
+        Slab of each cell, ascending.
+    roots : ndarray of int, shape (k, 2, 3)
+        Lower and upper root of each cell, as `Root`.
     walls : ndarray
         Base values at which bodies may touch along a fibre.
     """
 
     plane: Plane
     lines: Floats
-    cells: list[Cell]
+    slabs: Ints
+    roots: Ints
     walls: Floats
+
+    @cached_property
+    def cells(self) -> list[Cell]:
+        """The cells one by one."""
+        rows = zip(self.slabs.tolist(), self.roots.tolist(), strict=True)
+        return [Cell(slab, Root(*lower), Root(*upper)) for slab, (lower, upper) in rows]
 
     def joined(self, line: Ints, low: Floats, high: Floats) -> Bools:
         """Tell whether what is free on both sides of lines is so on them, between lift values."""
@@ -86,10 +97,10 @@ def decompose(plane: Plane) -> Decomposition:
     while True:
         # Off the middle where bodies touch: it may be a place of symmetry.
         part = INSIDE if plane.contacts.pairs else 0.5
-        cells, doubtful = _cells(plane, lines[:-1] + part * np.diff(lines), pieces)
+        slabs, roots, doubtful = _cells(plane, lines[:-1] + part * np.diff(lines), pieces)
         unreal = np.flatnonzero(doubtful & (np.diff(lines) < BEYOND_JUMP))
         if not len(unreal):
-            return _without_idle_lines(Decomposition(plane, lines, cells, pieces.walls))
+            return _without_idle_lines(Decomposition(plane, lines, slabs, roots, pieces.walls))
         last = len(lines) - 1
         lines = np.delete(
             lines, np.where(unreal + 1 == last, unreal, unreal + 1) if last > 1 else []
@@ -105,12 +116,12 @@ def critical_values(plane: Plane, pieces: Pieces | None = None) -> Floats:
     Some are spurious, which costs time; none is missing, which would cost the answer.
     """
     found = [_of_forms(plane)]
-    if pieces is not None:
+    if pieces is not None and plane.contacts.pairs:
         found += [pieces.lines, pieces.walls, crossings(plane, pieces)]
     values, (low, high) = np.concatenate(found), plane.ends
     inner = values[(values > low + SAME_CRITICAL) & (values < high - SAME_CRITICAL)]
     lines = np.sort(np.concatenate([[low, high], inner]))
-    return np.asarray(lines[np.concatenate([[True], np.diff(lines) > SAME_CRITICAL])])
+    return np.asarray(lines[np.diff(lines, prepend=-np.inf) > SAME_CRITICAL])
 
 
 def _of_forms(plane: Plane) -> Floats:
@@ -119,13 +130,10 @@ def _of_forms(plane: Plane) -> Floats:
     c = univariate(plane, table)
     lifts = table[:, :, 1:].any(axis=(1, 2))
     fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
-    i, j = np.triu_indices(len(c), k=1)
-    found = [
-        iter([(np.arange(len(fixed)), fixed)]),
-        own_events(plane, c),
-        meetings(plane, c[i], c[j]),
-    ]
-    return np.concatenate([base_values(plane, events)[1] for events in found])
+    every = np.arange(len(c))
+    i, j = np.nonzero(every[:, None] < every)
+    alone = iter([(np.arange(len(fixed)), fixed)])
+    return base_values(plane, chain(alone, own_events(plane, c), meetings(plane, c[i], c[j])))[1]
 
 
 # --- lifting --------------------------------------------------------------------------------------
@@ -158,18 +166,14 @@ class _Fibres:
 
     def only(self, rows: Ints) -> _Fibres:
         """Return some of the rows."""
-        return _Fibres(
-            self.t,
-            self.slab[rows],
-            self.values[rows],
-            self.roots[rows],
-            self.piece[rows],
-            self.circle,
-        )
+        slab, values, roots = self.slab[rows], self.values[rows], self.roots[rows]
+        return _Fibres(self.t, slab, values, roots, self.piece[rows], self.circle)
 
     def gaps(self) -> tuple[Ints, Floats]:
         """Return of each row the next one, and its value; NaN above the last of a range."""
-        after, tops = np.arange(1, len(self.slab) + 1), np.append(self.values[1:], np.nan)
+        n = len(self.slab)
+        after, tops = np.arange(1, n + 1), np.full(n, np.nan)
+        tops[:-1] = self.values[1:]
         edges = np.flatnonzero(np.diff(self.slab, prepend=-1, append=len(self.t)))
         first, last = edges[:-1], edges[1:] - 1
         if self.circle:
@@ -179,8 +183,11 @@ class _Fibres:
         return after, tops
 
 
-def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[list[Cell], Bools]:
-    """Return the feasible cells over one base value in each slab, and which slabs are doubtful."""
+def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[Ints, Ints, Bools]:
+    """Return the feasible cells over one base value in each slab, and which slabs are doubtful.
+
+    Of the cells there are slab and both roots, shape (k,) and (k, 2, 3).
+    """
     fibres = _fibres(plane, middles, pieces)
     doubtful = np.zeros(len(middles), dtype=np.bool_)
     if plane.contacts.pairs:
@@ -192,13 +199,10 @@ def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[list[Cell], B
         wide = wide[apart[wide]]
     t, low, high = middles[fibres.slab[wide]], fibres.values[wide], tops[wide]
     free = wide[plane.open(t, low, high, NEGLIGIBLE)]
-    cells = []
-    for k in free.tolist():
-        lower, upper = (Root(*map(int, fibres.roots[i])) for i in (k, after[k]))
-        upper = upper if after[k] > k else upper._replace(turns=upper.turns + 1)
-        slab = int(fibres.slab[k])
-        cells.append(Cell(slab, lower, upper if upper.form >= 0 else HIGHEST))
-    return cells, doubtful
+    roots = fibres.roots[np.array([free, after[free]]).T]
+    roots[after[free] <= free, 1, 2] += 1  # past the cut of the circle
+    roots[roots[:, 1, 0] < 0, 1] = HIGHEST
+    return fibres.slab[free], roots, doubtful
 
 
 def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
@@ -206,35 +210,36 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
     found = plane.roots(t)
     branch, slab, form = np.nonzero(np.isfinite(found))
     values, (low, high) = found[branch, slab, form], plane.lift_ends
-    k, over = ranges(np.searchsorted(t, pieces.start), np.searchsorted(t, pieces.end))
-    touching = pieces.roots(plane, k)
-    values = np.concatenate([values, plane.follow(touching, t[over][:, None])[:, 0]])
-    alone = np.stack([form, 2 * branch - 1, np.zeros_like(form)], axis=-1)
-    roots = np.concatenate([alone, touching])
-    slab, piece = np.concatenate([slab, over]), np.concatenate([np.full(len(form), -1), k])
+    roots, piece = np.zeros((len(form), 3), dtype=np.int64), np.full(len(form), -1)
+    roots[:, 0], roots[:, 1] = form, 2 * branch - 1
+    if plane.contacts.pairs:
+        k, over = ranges(np.searchsorted(t, pieces.start), np.searchsorted(t, pieces.end))
+        touching = pieces.roots(plane, k)
+        values = np.concatenate([values, plane.follow(touching, t[over][:, None])[:, 0]])
+        roots = np.concatenate([roots, touching])
+        slab, piece = np.concatenate([slab, over]), np.concatenate([piece, k])
     if plane.lift_kind == "revolute":
-        first, end = (turns_up_to(x, values).astype(np.int64) for x in (low, high))
-        end = first + 1 if plane.lift_range is None else end  # by rounding a root could have none
-        pick, turns = ranges(first, end)
-        values, slab, roots, piece = (
-            values[pick] + TURN * turns,
-            slab[pick],
-            roots[pick],
-            piece[pick],
-        )
-        roots[:, 2] = turns
+        first = turns_up_to(low, values).astype(np.int64)
+        if plane.lift_range is None:  # by rounding a root could have no place, or two
+            values, roots[:, 2] = values + TURN * first, first
+        else:
+            pick, turns = ranges(first, turns_up_to(high, values).astype(np.int64))
+            values = values[pick] + TURN * turns
+            slab, roots, piece = slab[pick], roots[pick], piece[pick]
+            roots[:, 2] = turns
     every = np.arange(len(t))
     if plane.lift_range is None:
-        cut = np.setdiff1d(every, slab)
-        ends = [(cut, low, LOWEST)]
+        ends = [(np.flatnonzero(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
     else:
         inside = (values > low) & (values < high)
         slab, values, roots, piece = slab[inside], values[inside], roots[inside], piece[inside]
         ends = [(every, low, LOWEST), (every, high, HIGHEST)]
-    slab = np.concatenate([slab, *(where for where, _, _ in ends)])
-    values = np.concatenate([values, *(np.full(len(where), v) for where, v, _ in ends)])
-    roots = np.concatenate([roots, *(np.tile(root, (len(where), 1)) for where, _, root in ends)])
-    piece = np.append(piece, np.full(len(slab) - len(piece), -1))
+    for where, value, root in ends:
+        if len(where):
+            slab = np.concatenate([slab, where])
+            values = np.concatenate([values, np.full(len(where), value)])
+            roots = np.concatenate([roots, np.tile(root, (len(where), 1))])
+    piece = np.concatenate([piece, np.full(len(slab) - len(piece), -1)])
     order = np.lexsort([values, slab])
     circle = plane.lift_range is None
     return _Fibres(t, slab, values, roots, piece, circle).only(order)
@@ -275,7 +280,9 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     doubtful[fibres.slab[rows[back]]] = True
     doubtful[fibres.slab[rows[again & (gap > THIN * plane.lift_unit)]]] = True
     dropped = rows[again & ~doubtful[fibres.slab[rows]]]
-    return fibres.only(np.setdiff1d(np.arange(len(fibres.slab)), dropped)), doubtful
+    kept = np.ones(len(fibres.slab), dtype=np.bool_)
+    kept[dropped] = False
+    return fibres.only(np.flatnonzero(kept)), doubtful
 
 
 def _apart(
@@ -349,37 +356,45 @@ def _changes(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
 
 def _without_idle_lines(found: Decomposition) -> Decomposition:
     """Drop the critical lines at which no feasible cell changes, and join the cells across."""
-    plane, lines = found.plane, found.lines
-    over: list[list[tuple[Root, Root]]] = [[] for _ in lines[1:]]
-    for slab, lower, upper in found.cells:
-        over[slab].append((lower, upper))
-    same = [i for i in range(1, len(over)) if over[i - 1] == over[i]]
-    at = np.repeat(same, [len(over[i]) for i in same]).astype(np.int64)
-    changed = at[~_goes_on(found, at, [pair for i in same for pair in over[i]])]
-    idle = np.setdiff1d(same, changed).astype(np.int64)
-    kept = np.setdiff1d(np.arange(len(lines)), idle)
-    cells = [Cell(i, *pair) for i, slab in enumerate(kept[:-1]) for pair in over[slab]]
-    return Decomposition(plane, lines[kept], cells, found.walls)
+    plane, lines, slabs, roots = found.plane, found.lines, found.slabs, found.roots
+    count = np.bincount(slabs, minlength=len(lines) - 1)
+    # Cell by cell: is there the same, in its turn, over the slab before?
+    number = np.arange(len(slabs)) - (np.cumsum(count) - count)[slabs]
+    back = np.concatenate([[0], count])[slabs]
+    there = number < back
+    there[there] = (roots[there] == roots[np.flatnonzero(there) - back[there]]).all(axis=(1, 2))
+    same = np.zeros(len(lines), dtype=np.bool_)
+    same[1:-1] = count[1:] == count[:-1]
+    same[slabs[~there]] = False
+    k = np.flatnonzero(same[slabs])
+    same[slabs[k[~_goes_on(found, slabs[k], roots[k])]]] = False
+    kept = ~same
+    renumbered, left = np.cumsum(kept) - 1, kept[slabs]
+    return Decomposition(plane, lines[kept], renumbered[slabs[left]], roots[left], found.walls)
 
 
-def _goes_on(found: Decomposition, at: Ints, pairs: Sequence[tuple[Root, Root]]) -> Bools:
+def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
     plane, lines = found.plane, found.lines
-    zero = np.zeros(len(at))
-    widths = np.stack([lines[at] - lines[at - 1], zero, lines[at + 1] - lines[at]], axis=-1)
+    widths = np.array([lines[at] - lines[at - 1], np.zeros(len(at)), lines[at + 1] - lines[at]]).T
     step = np.maximum(UNCHANGED**2 * widths, np.minimum(widths / 2, BEYOND_JUMP))
     t = lines[at][:, None] + step * np.array([-1, 0, 1])
-    bottoms, tops = [lower for lower, _ in pairs], [upper for _, upper in pairs]
-    lower, upper = plane.follow(bottoms, t), plane.follow(tops, t)
-    smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * (upper - lower).min(axis=1)
-    wide = (upper - lower).min(axis=1) > SAME_POINT * plane.lift_unit
-    going = smooth & wide & found.joined(at, lower[:, 1], upper[:, 1])
-    return np.asarray(going & _simple(plane, bottoms, t) & _simple(plane, tops, t))
+    own = roots.swapaxes(0, 1)  # all lower ones, then all upper
+    twins = own * np.array([1, -1, 1])  # of the other branch
+    values = plane.follow(np.concatenate([own, twins]), t)
+    (lower, upper), height = values[:2], (values[1] - values[0]).min(axis=1)
+    smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * height
+    going = smooth & (height > SAME_POINT * plane.lift_unit)
+    going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
+    going[going] = found.joined(at[going], lower[going, 1], upper[going, 1])
+    return np.asarray(going)
 
 
-def _simple(plane: Plane, roots: Sequence[Root], t: Floats) -> Bools:
-    """Tell whether roots keep away from the other root of their form: where both meet is a kink."""
-    gap = plane.follow(roots, t) - plane.follow([r._replace(branch=-r.branch) for r in roots], t)
+def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
+    """Tell whether roots keep away from the other root of their form: where both meet is a kink.
+
+    Of forms (2, n) and gaps (2, n, places); (2, n).
+    """
     gap = np.sin(gap / 2) if plane.lift_kind == "revolute" else gap
-    alone = np.array([r.form < 0 or plane.affine[r.form] for r in roots], dtype=np.bool_)
-    return np.asarray(alone | (np.abs(gap).min(axis=1) > UNCHANGED))
+    alone = (form < 0) | plane.affine[np.maximum(form, 0)] if len(plane.affine) else form < 0
+    return np.asarray(alone | (np.abs(gap).min(axis=2) > UNCHANGED))

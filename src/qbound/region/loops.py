@@ -1,59 +1,73 @@
 """From loops round components to labelled arcs, in the order of the joints.
 
-A loop's steps are laid one behind the other, those on one branch of one boundary are merged to an
-arc, and the corners where two forms meet are brought onto both.
+A loop's half-edges are laid one behind the other, those on one branch of one boundary are merged to
+an arc, and the corners where two forms meet are brought onto both. All loops are laid at once.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
-from qbound.forms.harmonic import basis, basis_slope
-from qbound.region.arcs import Arc, Pieces
-from qbound.region.cells import CellComplex, Step
-from qbound.region.plane import Plane, Root
+from qbound.forms.factors import basis_and_slope
+from qbound.region.arcs import FIBRE, Arc, Pieces
+from qbound.region.cells import DOWN, UP, UPPER, CellComplex
+from qbound.region.plane import Plane
 from qbound.tolerances import TRANSVERSAL
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 Item = TypeVar("Item")
-Label = tuple[str, int | None, int]
-"""Boundary, branch, and which form; -1 of an end of a range."""
 
-BaseLift = tuple[float, float]
 Windings = Mapping[int, tuple[int, int]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BoundaryLoop:
-    """A closed loop round a component, and where the component's cells lie.
+    """A closed loop round a component, and where the component is shown.
 
     Attributes
     ----------
-    steps : list of Step
-    windings : mapping of cell to (base turns, lift turns)
+    edges : ndarray of int, shape (n,)
+        Rows of the cells' half-edges.
     shift : ndarray, shape (2,)
-        Added to base and lift values of all cells, rad.
+        Added to base and lift values of all its cells, rad.
     """
 
-    steps: list[Step]
-    windings: Windings
+    edges: Ints
     shift: Floats
 
 
 @dataclass(frozen=True, eq=False)
-class _Ring:
-    """A loop laid out: its pieces, and which of them make an arc of which label."""
+class _Laid:
+    """Half-edges of all loops, one behind the other, one a row.
 
-    pieces: Pieces
-    spans: list[slice]
-    labels: list[Label]
+    Attributes
+    ----------
+    edges : ndarray of int, shape (n,)
+    turns : ndarray, shape (n, 2)
+        Added to base and lift values of its cell, rad.
+    first : ndarray of bool, shape (n,)
+        Whether it begins a loop.
+    before, after : ndarray of int, shape (n,)
+        The one before and the one after it in its loop.
+    label : ndarray of int, shape (n, 3)
+        Form, branch, and which end of a range; equal along an arc.
+    """
+
+    edges: Ints
+    turns: Floats
+    first: Bools
+    before: Ints
+    after: Ints
+    label: Ints
 
 
 class Layout:
@@ -77,114 +91,141 @@ class Layout:
         contacts = cells.plane.contacts
         self.names = [*names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
         self.features = [*[""] * len(names), *contacts.names]
-        self.limits = limits
+        self.limits = [*limits[base], *limits[1 - base]]
 
-    def arcs(self, loops: Sequence[BoundaryLoop]) -> list[tuple[Arc, ...]]:
-        """Return the arcs of each loop, the component on their left."""
-        rings = [self._laid(loop) for loop in loops]
-        self._polish(rings)
-        return [
-            tuple(
-                Arc(name, branch, ring.pieces[span], self.features[form] if form >= 0 else "", form)
-                for (name, branch, form), span in zip(ring.labels, ring.spans, strict=True)
-            )
-            for ring in rings
+    def arcs(self, loops: Sequence[BoundaryLoop], windings: Ints) -> list[tuple[Arc, ...]]:
+        """Return the arcs of each loop, the component on their left.
+
+        Cells lie at their windings, (cells, 2): turns of base and lift.
+        """
+        if not loops:
+            return []
+        laid = self._laid(loops, windings)
+        begins = laid.first | (laid.label != np.roll(laid.label, 1, axis=0)).any(axis=1)
+        begin = np.flatnonzero(begins)
+        pieces = self._pieces(laid, begin)
+        starts, labels = begin.tolist(), laid.label[begin].tolist()
+        spans = pairwise([*starts, len(begins)])
+        arcs = [
+            self._arc(form, branch, end, pieces[start:stop])
+            for (form, branch, end), (start, stop) in zip(labels, spans, strict=True)
         ]
+        place = [*np.flatnonzero(laid.first[begin]).tolist(), len(begin)]
+        return [tuple(arcs[i:j]) for i, j in pairwise(place)]
 
-    def _laid(self, loop: BoundaryLoop) -> _Ring:
-        steps = loop.steps
-        labels = [self._label(step) for step in steps]
-        first = next((i for i in range(len(steps)) if labels[i] != labels[i - 1]), 0)
-        steps, labels = steps[first:] + steps[:first], labels[first:] + labels[:first]
+    def _arc(self, form: int, branch: int, end: int, pieces: Pieces) -> Arc:
+        name = self.names[form] if form >= 0 else self.limits[end]
+        feature = self.features[form] if form >= 0 else ""
+        return Arc(name, branch or None, pieces, feature, form)
+
+    def _laid(self, loops: Sequence[BoundaryLoop], windings: Ints) -> _Laid:
+        """Put all loops one behind the other, each from where an arc begins."""
+        rows = np.concatenate([loop.edges for loop in loops])
+        length = np.array([len(loop.edges) for loop in loops])
+        loop, start = np.repeat(np.arange(len(loops)), length), np.cumsum(length) - length
+        label, number = self._labels(rows), np.arange(len(rows)) - start[loop]
+        before = start[loop] + (number - 1) % length[loop]
+        new = np.flatnonzero((label != label[before]).any(axis=1))
+        shift = np.zeros(len(loops), dtype=np.int64)
+        shift[loop[new][::-1]] = number[new][::-1]  # the first of each loop comes last
+        order = start[loop] + (number + shift[loop]) % length[loop]
         if self.base == 1:  # seen with the joints in their order, the loop runs backwards
-            steps, labels = steps[::-1], labels[::-1]
-        groups = [list(group) for _, group in groupby(range(len(steps)), key=labels.__getitem__)]
-        spans = [slice(group[0], group[-1] + 1) for group in groups]
-        return _Ring(self._pieces(steps, loop), spans, [labels[span.start] for span in spans])
+            order = order[start[loop] + length[loop] - 1 - number]
+        winding = windings[self.cells.half_edges.cell[rows]]
+        turns = TURN * winding + np.array([one.shift for one in loops])[loop]
+        after = start[loop] + (number + 1) % length[loop]
+        return _Laid(rows[order], turns[order], number == 0, before, after, label[order])
 
     # --- labels ---------------------------------------------------------------------------------
 
-    def _label(self, step: Step) -> Label:
-        if step.kind in ("up", "down"):
-            return self._line_label(step)
-        cell = self.cells.cells[step.cell]
-        root = cell.lower if step.kind == "lower" else cell.upper
-        if root.form < 0:
-            return self.limits[1 - self.base][-1 - root.form], None, -1
-        branch = root.branch if self.plane.lift_kind == "revolute" else None
-        return self.names[root.form], branch, root.form
+    def _labels(self, rows: Ints) -> Ints:
+        """Return form, branch (0 for none) and end of a range of half-edges; form -1 at an end."""
+        edges, plane = self.cells.half_edges, self.plane
+        kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
+        label = np.zeros((len(rows), 3), dtype=np.int64)
+        root = self.cells.roots[cell, (kind == UPPER).astype(int)]
+        label[:, 0] = root[:, 0]
+        label[:, 1] = root[:, 1] if plane.lift_kind == "revolute" else 0
+        label[:, 2] = np.where(root[:, 0] < 0, 1 - root[:, 0], 0)  # 2 and 3: of the lift
+        label[root[:, 0] < 0, :2] = [-1, 0]
+        line = np.flatnonzero(element >= 0)
+        if len(line):
+            label[line] = self._line_labels(element[line], kind[line] == UP)
+        return label
 
-    def _line_label(self, step: Step) -> Label:
-        """Name a piece of a critical line: a limit of the base, or a form without the lift."""
-        plane, t = self.plane, self.cells.abscissae[step.line]
-        side = 0 if step.kind == "down" else 1
-        if plane.base_range is not None and t == plane.ends[side]:
-            return self.limits[self.base][side], None, -1
-        low, high = self.cells.bounds(self.cells.lines[step.line], step.element)
-        form = plane.vanishing(float(t), (low + high) / 2)
+    def _line_labels(self, element: Ints, up: Bools) -> Ints:
+        """Name pieces of critical lines: a limit of the base, or a form without the lift."""
+        plane, found = self.plane, self.cells.elements
+        # Of a base that turns round the last line is the first, a turn on.
+        line = found.line[element]
+        t = self.cells.abscissae[line]
+        label = np.zeros((len(element), 3), dtype=np.int64)
+        if plane.base_range is not None:
+            label[:, 2] = up
+            label[:, 0] = np.where(t == np.array(plane.ends)[up.astype(int)], -1, 0)
+        inner = np.flatnonzero(label[:, 0] == 0)
+        middle = (found.low[element] + found.high[element]) / 2
+        label[inner, 0] = plane.vanishing(t[inner], middle[inner]) if len(inner) else 0
         # A form falls along the base at theta + arccos; there the component lies before it.
-        branch = (1 if step.kind == "up" else -1) if plane.base_kind == "revolute" else None
-        return self.names[form], branch, form
+        if plane.base_kind == "revolute":
+            label[inner, 1] = np.where(up[inner], 1, -1)
+        label[inner, 2] = 0
+        return label
 
     # --- places ---------------------------------------------------------------------------------
 
-    def _pieces(self, steps: Sequence[Step], loop: BoundaryLoop) -> Pieces:
-        """Lay the steps one behind the other; a loop round a joint changes windings."""
-        circles = self.plane.base_range is None, self.plane.lift_range is None
-        shift = loop.shift.tolist()
-        roots: list[Root | None] = []
-        rows: list[tuple[BaseLift, BaseLift, BaseLift]] = []
-        for step in steps:
-            root, start, end = self._step(step)
-            start, end = (start, end) if self.base == 0 else (end, start)
-            winding = loop.windings[step.cell]
-            turns = [TURN * winding[j] + shift[j] for j in (0, 1)]
-            for j in (0, 1) if rows else ():
-                turns[j] += TURN * circles[j] * round((rows[-1][1][j] - start[j] - turns[j]) / TURN)
-            places = [(x[0] + turns[0], x[1] + turns[1]) for x in (start, end)]
-            roots.append(root)
-            rows.append((places[0], places[1], (turns[0], turns[1])))
-        starts, ends, offsets = np.moveaxis(np.array(rows), 1, 0)
+    def _pieces(self, laid: _Laid, begin: Ints) -> Pieces:
+        """Lay the half-edges behind each other; a loop round a joint changes windings."""
+        circles = np.array([self.plane.base_range is None, self.plane.lift_range is None])
+        roots, start, end = self._places(laid.edges)
+        # From one to the next the windings may change by whole turns, which add up.
+        jumps = whole_turns((end + laid.turns)[laid.before] - start - laid.turns) * circles
+        jumps[laid.first] = 0
+        jumps = np.cumsum(jumps, axis=0)
+        jumps -= jumps[laid.first][np.cumsum(laid.first) - 1]
+        turns = laid.turns + TURN * jumps
+        starts, ends = start + turns, end + turns
         # At a fold both sides stop a rounding's square root short of each other.
-        gaps = np.roll(ends, 1, axis=0) - starts
+        gaps = ends[laid.before] - starts
         gaps -= TURN * whole_turns(gaps) * circles
-        ends = ends - np.roll(gaps, -1, axis=0) / 2
-        return Pieces(self.plane, self.base, roots, starts + gaps / 2, ends, offsets)
+        starts, ends = starts + gaps / 2, ends - gaps[laid.after] / 2
+        self._polish(laid, begin, starts, ends)
+        return Pieces(self.plane, self.base, roots, starts, ends, turns)
 
-    def _step(self, step: Step) -> tuple[Root | None, BaseLift, BaseLift]:
-        """Return what a step follows and where it starts and ends, in the cell's coordinates."""
-        cell, ends = self.cells.cells[step.cell], self.cells.ends[step.cell]
-        left, right = map(float, self.cells.abscissae[cell.slab : cell.slab + 2])
-        if step.kind == "lower":
-            return cell.lower, (left, ends[0][0]), (right, ends[1][0])
-        if step.kind == "upper":
-            return cell.upper, (right, ends[1][1]), (left, ends[0][1])
-        side = 1 if step.kind == "up" else 0
-        low, high = self.cells.bounds(self.cells.lines[step.line], step.element)
-        turns = TURN * (self.cells.turns_into(step.cell, side, (low + high) / 2) or 0)
-        if side:
-            return None, (right, low + turns), (right, high + turns)
-        return None, (left, high + turns), (left, low + turns)
+    def _places(self, rows: Ints) -> tuple[Ints, Floats, Floats]:
+        """Return what half-edges follow, and start and end in the cell's coordinates, (n, 2)."""
+        cells, edges = self.cells, self.cells.half_edges
+        kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
+        side = ((kind == UP) | (kind == UPPER)).astype(int)
+        roots, across = cells.roots[cell, side], element >= 0
+        roots[across] = FIBRE, 0, 0
+        n, found = len(rows), cells.elements
+        places = np.empty((2, n, 2))  # low end first
+        places[:, :, 0] = cells.abscissae[cells.slabs[cell] + np.array([[0], [1]])]
+        places[:, :, 1] = cells.ends[cell, :, side].T
+        k = np.flatnonzero(across)
+        at, right = element[k], side[k]
+        places[:, k, 0] = places[right, k, 0]
+        places[:, k, 1] = [found.low[at], found.high[at]]
+        places[:, k, 1] += TURN * found.turns[1 - right, at]
+        backwards = (kind == UPPER) | (kind == DOWN)
+        if self.base == 1:
+            backwards = ~backwards
+        start = np.where(backwards[:, None], places[1], places[0])
+        return roots, start, np.where(backwards[:, None], places[0], places[1])
 
-    def _polish(self, rings: Sequence[_Ring]) -> None:
+    def _polish(self, laid: _Laid, begin: Ints, starts: Floats, ends: Floats) -> None:
         """Bring the corners where two forms meet onto both, all at once."""
-        corners = [
-            (ring.pieces, before.stop - 1, span.start, a, b)
-            for ring in rings
-            for (*_, a), (*_, b), before, span in zip(
-                behind(ring.labels), ring.labels, behind(ring.spans), ring.spans, strict=True
-            )
-            if a != b and a >= 0 and b >= 0
-        ]
-        if not corners:
+        form = laid.label[:, 0]
+        corner, last = begin, laid.before[begin]
+        pair = np.array([form[last], form[corner]]).T
+        met = (pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1)
+        if not met.any():
             return
-        rough = np.array([pieces.start[start] for pieces, _, start, _, _ in corners])
-        meeting = np.array([(a, b) for *_, a, b in corners])
-        for (pieces, end, start, _, _), q in zip(
-            corners, _newton(self.plane, meeting, rough), strict=True
-        ):
-            pieces.end[end] += q - pieces.start[start]  # which may be some turns away
-            pieces.start[start] = q
+        corner, last = corner[met], last[met]
+        q = _newton(self.plane, pair[met], starts[corner])
+        ends[last] += q - starts[corner]  # which may be some turns away
+        starts[corner] = q
 
 
 def behind(ring: Sequence[Item]) -> list[Item]:
@@ -192,16 +233,29 @@ def behind(ring: Sequence[Item]) -> list[Item]:
     return [ring[-1], *ring[:-1]]
 
 
-def _newton(plane: Plane, pairs: NDArray[np.int64], q: Floats) -> Floats:
+def _newton(plane: Plane, pairs: Ints, q: Floats) -> Floats:
     """Two steps of Newton on pairs of forms, (k, 2), from base and lift values near, (k, 2)."""
     table = plane.table[pairs]
     for _ in range(2):
-        t, v = q.T[:, :, None, None]
-        base, steep = basis(plane.base_kind, t), basis_slope(plane.base_kind, t)
-        lift, slope = basis(plane.lift_kind, v), basis_slope(plane.lift_kind, v)
-        over, along_base = base @ table, ((steep @ table) * lift).sum(axis=(2, 3))
-        value, along_lift = (over * lift).sum(axis=(2, 3)), (over * slope).sum(axis=(2, 3))
-        slopes = np.stack([along_base, along_lift], axis=-1)
-        # At a tangency or a double root the least step towards both is all that is known.
-        q = q - (np.linalg.pinv(slopes, rcond=TRANSVERSAL) @ value[..., None])[..., 0]
-    return np.asarray(q)
+        base = basis_and_slope(plane.base_kind, q[:, 0])
+        lift = basis_and_slope(plane.lift_kind, q[:, 1])
+        both = base[:, None] @ table @ lift[:, None].swapaxes(2, 3)  # values and slopes
+        value, slopes = both[:, :, 0, 0], np.array([both[:, :, 1, 0], both[:, :, 0, 1]])
+        q = q - _least_step(slopes.transpose(1, 2, 0), value)
+    return q
+
+
+def _least_step(slopes: Floats, value: Floats) -> Floats:
+    """Solve pairs of equations, (k, 2, 2) and (k, 2).
+
+    At a tangency or a double root the least step towards both is all that is known.
+    """
+    (a, b), (c, d) = slopes.transpose(1, 2, 0)
+    determinant = a * d - b * c
+    flat = np.abs(determinant) <= TRANSVERSAL * (slopes * slopes).sum(axis=(1, 2))
+    x, y = value.T
+    step = np.array([d * x - b * y, a * y - c * x]) / np.where(flat, 1.0, determinant)
+    if flat.any():
+        inverse = np.linalg.pinv(slopes[flat], rcond=TRANSVERSAL)
+        step[:, flat] = (inverse @ value[flat][..., None])[..., 0].T
+    return step.T

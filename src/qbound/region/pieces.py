@@ -25,6 +25,9 @@ Bools = NDArray[np.bool_]
 INSIDE = 0.43
 """Where an interval is looked at: off its middle, which may be a place of symmetry."""
 
+PAIRS = 2**20
+"""Pairs of pieces that are looked at together, about: some 60 MB."""
+
 NONE, BACK, OWN = 0, 1, 2
 """What happens at an event: a side condition may change; the curve turns back; more."""
 
@@ -210,7 +213,7 @@ def _sides_at(plane: Plane, feature: Ints, t: Floats) -> Floats:
     """
     tables = plane.table[plane.count :][feature]
     c = np.einsum("ni,nij->nj", basis(plane.base_kind, t), tables)
-    lift = basis(plane.lift_kind, plane.roots_of(c).T / plane.lift_unit)
+    lift = basis(plane.lift_kind, plane.roots_of(c.T).T / plane.lift_unit)
     factors = basis(plane.base_kind, t / plane.base_unit)
     over = np.einsum("ni,nsij->nsj", factors, plane.sides[feature])
     return np.asarray(np.einsum("nsj,nrj->nrs", over, lift))
@@ -298,13 +301,16 @@ def _meeting_boxes(plane: Plane, pieces: Pieces, pair: Ints) -> tuple[Ints, Ints
     found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))]
     order = np.argsort(pieces.start, kind="stable")
     last = np.searchsorted(pieces.start[order], pieces.end[order] + NEAR, side="right")
-    for at, i in enumerate(order.tolist()):
-        j = order[at + 1 : last[at]]
+    many = np.cumsum(last - every - 1)
+    cuts = np.arange(PAIRS, many.max(initial=0), PAIRS)
+    for at in np.split(every, np.searchsorted(many, cuts)):
+        pick, j = ranges(at + 1, last[at])
+        i, j = order[at[pick]], order[j]
         apart = np.abs(middle[j] - middle[i])
         if plane.lift_kind == "revolute":
             apart = np.abs(apart - TURN * np.round(apart / TURN))
-        j = j[(apart <= half[i] + half[j]) & (pair[j] != pair[i])]
-        found.append((np.full(len(j), i), j))
+        met = (apart <= half[i] + half[j]) & (pair[j] != pair[i])
+        found.append((i[met], j[met]))
     first, second = (np.concatenate(x) for x in zip(*found, strict=True))
     return first, second
 

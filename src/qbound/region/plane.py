@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.angles import TURN
-from qbound.forms.circle import polar
-from qbound.forms.harmonic import HarmonicForm, Kind, basis
-from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, WALL
+from qbound.forms.factors import FACTORS
+from qbound.forms.harmonic import HarmonicForm, Kind
+from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, WALL, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -26,6 +26,12 @@ Bools = NDArray[np.bool_]
 Range = tuple[float, float] | None
 
 PROBES = np.array([0.29, 0.5, 0.77])
+
+FEW = 16
+"""Forms that are looked at together at many places."""
+
+TINY = 1e-300
+"""Keeps 0 / 0 at zero where a form has neither amplitude nor constant."""
 
 MOST_VALUES = 2**21
 """Values of features that are held at once: some 16 MB."""
@@ -95,11 +101,13 @@ class Plane:
         self.table: Floats = self.scaled / self.powers
         # Largest values of the coefficients along the lift: what is rounding is so beside these.
         self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
-        # Ends of the lift's range are roots of forms -1 and -2: two rows of zeros at the end.
-        self._rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
-        self._row_sizes = np.concatenate([self.sizes, np.zeros((2, 3))])
-        slides = self.lift_kind == "prismatic"
-        self.affine = [slides and not any(row) for row in self.table[:, :, 2].tolist()]
+        # Ends of the lift's range are roots of forms -1 and -2: two of zeros at the end.
+        rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
+        self._columns: Floats = rows.transpose(1, 2, 0).copy()
+        self._column_sizes: Floats = np.concatenate([self.sizes, np.zeros((2, 3))]).T.copy()
+        self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
+        if self.lift_kind == "revolute":
+            self.affine[:] = False
 
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
@@ -123,22 +131,35 @@ class Plane:
         return Separation(self)
 
     def along_lift(self, t: Floats) -> Floats:
-        """Return the coefficients of all forms but features' along the lift, (len(t), m, 3)."""
-        m, factors = self.count, basis(self.base_kind, t)
-        table = np.moveaxis(self.table[:m], 1, 0).reshape(3, 3 * m)
-        return _settled((factors @ table).reshape(len(t), m, 3), self.sizes[:m], self.lift_kind)
+        """Return the coefficients of all forms but features' along the lift, (3, len(t), m)."""
+        return self._over(t[:, None], self._columns[:, :, None, : self.count])
+
+    def _over(self, t: Floats, columns: Floats) -> Floats:
+        """Contract columns (3, 3, ...), base before lift, with the base's factors, (3, ...)."""
+        one, other = FACTORS[self.base_kind].functions(t)
+        return np.asarray(columns[0] + columns[1] * one + columns[2] * other)
 
     def positive(self, t: Floats, v: Floats, least: float) -> Bools:
         """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
-        products, left = self.products(t, v), np.arange(len(t))
-        for forms in np.split(self.table[: self.count].reshape(-1, 9), range(16, self.count, 16)):
+        products, m = self.products(t, v), self.count
+        if m <= FEW:
+            return np.asarray((products @ self.table[:m].reshape(m, 9).T > least).all(axis=1))
+        left = np.arange(len(t))
+        for forms in np.split(self.table[:m].reshape(-1, 9), range(FEW, m, FEW)):
             left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
-        return np.isin(np.arange(len(t)), left)
+        result = np.zeros(len(t), dtype=np.bool_)
+        result[left] = True
+        return result
 
     def products(self, t: Floats, v: Floats) -> Floats:
         """Return the nine factors of a form at paired base and lift values, (len(t), 9)."""
-        found = basis(self.base_kind, t)[:, :, None] * basis(self.lift_kind, v)[:, None, :]
-        return np.asarray(found.reshape(-1, 9))
+        found = np.empty((len(t), 3, 3))
+        found[:, 0, 0] = 1.0
+        found[:, 1, 0], found[:, 2, 0] = FACTORS[self.base_kind].functions(t)
+        one, other = FACTORS[self.lift_kind].functions(v)
+        np.multiply(found[:, :, 0], one[:, None], out=found[:, :, 1])
+        np.multiply(found[:, :, 0], other[:, None], out=found[:, :, 2])
+        return found.reshape(-1, 9)
 
     def open(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
         """Tell whether forms that do not change sign there are positive between lift values, (k,).
@@ -163,55 +184,55 @@ class Plane:
         or theta -+ pi, two ends that keep their order. Prismatic: the lower and the upper root of
         a quadratic; the one root of an affine form stands first.
         """
-        return self.roots_of(self.along_lift(t))
+        return self.roots_of(self.along_lift(t), self._column_sizes[:, None, : self.count])
 
-    def roots_of(self, c: Floats) -> Floats:
-        """Return both roots of coefficients along the lift, (..., 3) to (2, ...), as in `roots`."""
-        c0, c1, c2 = np.moveaxis(c, -1, 0)
+    def roots_of(self, c: Floats, sizes: Floats | None = None) -> Floats:
+        """Return both roots of coefficients along the lift, (3, ...) to (2, ...), as in `roots`.
+
+        With the sizes of the terms that they are sums of, double roots are exact.
+        """
         if self.lift_kind == "prismatic":
-            return _quadratic_roots(c0, c1, c2)
-        theta, alpha, ratio = polar(c1, c2, -c0)
-        found = (np.abs(ratio) <= 1) & ((c1 != 0) | (c2 != 0))
-        return np.where(found, np.stack([theta - alpha, theta + alpha]), np.nan)
+            return _quadratic_roots(*(c if sizes is None else _settled(c, sizes)))
+        theta, alpha, ratio = _polar(c, sizes)
+        found = (np.abs(ratio) <= 1) & ((c[1] != 0) | (c[2] != 0))
+        return np.where(found, [theta - alpha, theta + alpha], np.nan)
 
-    def vanishing(self, t: float, v: float) -> int:
-        """Return the form that is nearest to zero at a place; of a feature, if it is a contact."""
-        c = self.along_lift(np.array([t]))[0]
-        values = np.abs(c @ basis(self.lift_kind, np.asarray(v)))
+    def vanishing(self, t: Floats, v: Floats) -> Ints:
+        """Return the form nearest to zero at places, (k,); of a feature, if it is a contact."""
+        products = self.products(t, v)
+        values = np.abs(products @ self.table[: self.count].reshape(-1, 9).T)
         if self.contacts.pairs:
-            products = self.products(np.array([t]), np.array([v]))[0]
-            sides = (self.sides / self.powers).reshape(-1, SIDES, 9)
-            held = (sides @ products >= -WALL).all(axis=1)
-            own = np.abs(self.table[self.count :].reshape(-1, 9) @ products)
-            touching = self.contacts.touching & held
-            values = np.append(values, np.where(touching, own, np.inf))
-        return int(values.argmin())
+            sides = (self.sides / self.powers).reshape(-1, 9)
+            held = (products @ sides.T >= -WALL).reshape(len(t), -1, SIDES).all(axis=2)
+            own = np.abs(products @ self.table[self.count :].reshape(-1, 9).T)
+            own[:, ~self.contacts.touching] = np.inf
+            values = np.concatenate([values, np.where(held, own, np.inf)], axis=1)
+        return np.asarray(values.argmin(axis=1))
 
     def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
-        """Evaluate roots, each over its own row of base values inside its slab, shape as t (k, n).
+        """Evaluate roots, each over its own row of base values inside its slab, shape (..., k, n).
 
-        A root that leaves its form just there (at a fold, but for rounding) stays at the fold.
+        Of roots, shape (..., k, 3), several may be over the same values, (k, n). One that leaves
+        its form just there (at a fold, but for rounding) stays at the fold.
         """
-        form, branch, turns = np.array(roots, dtype=np.int64).reshape(-1, 3).T[:, :, None]
-        c = _settled(*self._lifted(form[:, 0], t), self.lift_kind)
-        c0, c1, c2 = np.moveaxis(c, -1, 0)
+        rows = np.asarray(roots, dtype=np.int64)
+        form, branch, turns = rows[..., 0], rows[..., 1], rows[..., 2]
+        columns, sizes = self._columns[:, :, form, None], self._column_sizes[:, form, None]
+        c = self._over(t, columns)
         if self.lift_kind == "revolute":
-            theta, alpha, _ = polar(c1, c2, -c0)
-            values = theta + branch * alpha + TURN * turns
+            theta, alpha, _ = _polar(c, sizes)
+            values = theta + branch[..., None] * alpha + (TURN * turns)[..., None]
         else:
-            lower, upper = _quadratic_roots(c0, c1, c2, folds=True)
-            values = np.clip(np.where(branch < 0, lower, upper), *self.lift_ends)
-        ends = np.array(self.lift_ends)[(form == HIGHEST.form).astype(int)]
-        return np.asarray(np.where(form < 0, ends, values))
+            lower, upper = _quadratic_roots(*_settled(c, sizes), folds=True)
+            values = np.clip(np.where(branch[..., None] < 0, lower, upper), *self.lift_ends)
+        for end, value in zip((LOWEST, HIGHEST), self.lift_ends, strict=True):
+            values[form == end.form] = value
+        return np.asarray(values)
 
-    def blank(self, roots: Sequence[Root], t: Floats) -> Bools:
-        """Tell where the forms of roots vanish on the whole fibre, shape as t (k, n)."""
-        c, size = self._lifted(np.array([root.form for root in roots], dtype=np.int64), t)
-        return np.asarray((np.abs(c) <= BLANK * size).all(axis=-1) & (size > 0).any(axis=-1))
-
-    def _lifted(self, forms: Ints, t: Floats) -> tuple[Floats, Floats]:
-        """Coefficients along the lift, (k, n, 3), and their sizes, (k, 1, 3); of ends all zero."""
-        return basis(self.base_kind, t) @ self._rows[forms], self._row_sizes[forms][:, None]
+    def blank(self, form: Ints, t: Floats) -> Bools:
+        """Tell where forms, (..., k), vanish on whole fibres over base values, (k, n)."""
+        c, size = self._over(t, self._columns[:, :, form, None]), self._column_sizes[:, form, None]
+        return np.asarray((np.abs(c) <= BLANK * size).all(axis=0) & (size > 0).any(axis=0))
 
 
 def normalised(tables: Floats) -> Floats:
@@ -243,7 +264,8 @@ class Separation:
         self.plane, self.pairs = plane, np.flatnonzero(chosen)
         self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
         self.corners: Ints = np.flatnonzero(contacts.corners[rows])
-        self.sides: Floats = (plane.sides[rows][self.corners] / plane.powers).reshape(-1, 9)
+        sides = plane.sides[rows][self.corners] / plane.powers
+        self.sides: Floats = sides.swapaxes(0, 1).reshape(-1, 9)  # all first ones first
         clause, pair = contacts.clause[rows], contacts.pair[rows]
         self.clauses: Ints = np.flatnonzero(np.diff(clause, prepend=-1))
         self.starts: Ints = np.flatnonzero(np.diff(pair[self.clauses], prepend=-1))
@@ -261,7 +283,7 @@ class Separation:
             products = self.plane.products(t[k : k + step], v[k : k + step])
             values = products @ self.forms.T
             if len(self.corners):
-                sides = (products @ self.sides.T).reshape(len(products), -1, SIDES).min(axis=2)
+                sides = (products @ self.sides.T).reshape(len(products), SIDES, -1).min(axis=1)
                 corners = values[:, self.corners]
                 values[:, self.corners] = np.where(sides >= -NEGLIGIBLE, corners, -np.inf)
             parted = np.minimum.reduceat(values, self.clauses, axis=1)
@@ -269,21 +291,30 @@ class Separation:
         return result
 
 
-def _settled(c: Floats, size: Floats, kind: Kind) -> Floats:
-    """Make double roots exact where coefficients, sums of terms of these sizes, cannot tell.
+def _polar(c: Floats, sizes: Floats | None = None) -> tuple[Floats, Floats, Floats]:
+    """Return theta, alpha and the cosine of alpha of Theorem 2, as `circle.polar` does.
 
     Where terms cancel, as at a point in which a form touches zero along a curve, what is left of
-    the discriminant is rounding.
+    the discriminant is rounding: coefficients that are sums of terms of these sizes cannot tell
+    two roots from one, and it is one.
     """
-    (c0, c1, c2), (e0, e1, e2) = np.moveaxis(c, -1, 0), np.moveaxis(ROUNDING * size, -1, 0)
-    if kind == "revolute":
-        d = np.hypot(c1, c2)
-        double, exact = np.abs(np.abs(c0) - d) <= e0 + e1 + e2, np.copysign(d, c0)
-    else:
-        doubt = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
-        double = (np.abs(c1 * c1 - 4 * c0 * c2) <= doubt) & (c2 != 0)
-        exact = c1 * c1 / np.where(double, 4 * c2, 1.0)
-    return np.stack([np.where(double, exact, c0), c1, c2], axis=-1)
+    c0, c1, c2 = c
+    d, height = np.hypot(c1, c2), np.abs(c0)
+    ratio = -c0 / np.maximum(d, ZERO_AMPLITUDE * height + TINY)
+    double = np.abs(np.abs(ratio) - 1) <= TANGENT
+    if sizes is not None:
+        double |= (np.abs(height - d) <= ROUNDING * sizes.sum(axis=0)) & (d > 0)
+    ratio = np.where(double, np.copysign(1.0, ratio), ratio)
+    alpha = np.arccos(np.minimum(np.maximum(ratio, -1.0), 1.0))
+    return np.arctan2(c2, c1), alpha, ratio
+
+
+def _settled(c: Floats, sizes: Floats) -> tuple[Floats, Floats, Floats]:
+    """Make double roots of quadratics exact where coefficients cannot tell, as in `_polar`."""
+    (c0, c1, c2), (e0, e1, e2) = c, ROUNDING * sizes
+    doubt = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
+    double = (np.abs(c1 * c1 - 4 * c0 * c2) <= doubt) & (c2 != 0)
+    return np.where(double, c1 * c1 / np.where(double, 4 * c2, 1.0), c0), c1, c2
 
 
 def _unit(kind: Kind, ends: tuple[float, float]) -> float:

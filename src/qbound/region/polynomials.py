@@ -135,7 +135,9 @@ def _polished(stack: Complexes, z: Complexes) -> Complexes:
 
 
 def _horner(stack: NDArray[np.inexact], z: NDArray[np.inexact]) -> NDArray[np.inexact]:
-    result = np.zeros_like(z)
-    for k in reversed(range(stack.shape[1])):
-        result = result * z + stack[:, k : k + 1]
+    result = np.empty_like(z)
+    result[...] = stack[:, -1:]
+    for k in reversed(range(stack.shape[1] - 1)):
+        result *= z
+        result += stack[:, k : k + 1]
     return result

@@ -127,6 +127,8 @@ class Problem:
 
     def without(self, dropped: Sequence[int]) -> Problem:
         """Return the problem without some of its forms, by index."""
+        if not len(dropped):
+            return self
         kept = [k for k in range(len(self.names)) if k not in dropped]
         return replace(
             self,

@@ -16,7 +16,7 @@ from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
-from qbound.region.components import Component, bounded, closures, measured
+from qbound.region.components import Component, bounded, closures, measured, winding_table
 from qbound.region.decomposition import Decomposition, decompose
 from qbound.region.emptiness import irreducible
 from qbound.region.loops import BoundaryLoop, Layout
@@ -402,7 +402,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
     if blocked:
-        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), [], np.zeros(0)))
+        none = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
+        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), *none, np.zeros(0)))
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
     cells = CellComplex(decompose(plane))
     if not cells.cells:
@@ -410,10 +411,11 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     found = measured(cells, problem, home, base)
     if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
-    bounding = [
-        [BoundaryLoop(w, f.windings, f.shift) for w in cells.loops(f.windings)] for f in found
-    ]
-    loops = iter(Layout(cells, base, inner.names, inner.limits).arcs(list(chain(*bounding))))
+    bounding = [[BoundaryLoop(edges, f.shift) for edges in cells.loops(f.windings)] for f in found]
+    layout = Layout(cells, base, inner.names, inner.limits)
+    loops = iter(
+        layout.arcs(list(chain(*bounding)), winding_table(cells, [f.windings for f in found]))
+    )
     components = [
         (bounded(f, base, list(islice(loops, len(own)))), f.windings)
         for f, own in zip(found, bounding, strict=True)

@@ -1,0 +1,96 @@
+"""What is known of one configuration, as plain data for JSON; nothing else is imported for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from qbound.boundary.nearest import nearest_features
+from qbound.boundary.parts import bounds_bodies
+from qbound.measures.nearest import nearest_boundary
+from qbound.model.robot import Robot
+from qbound.region import Region, find_region, margins
+
+
+def configuration_document(
+    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
+) -> dict[str, Any]:
+    """Return what is known of a configuration; with two joints its component and the boundary.
+
+    Parameters
+    ----------
+    q : sequence of float
+        One value a joint, rad or length.
+    weights : sequence of two float
+        Of the two joints, in the distance to the boundary.
+    """
+    return with_version(robot, configuration_facts(robot, q, weights))
+
+
+def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
+    """Return facts under the names of the robot and of the version, which is slow to find."""
+    from qbound.version import __version__
+
+    return {"robot": robot.name, "version": __version__, **facts}
+
+
+def configuration_facts(
+    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
+) -> dict[str, Any]:
+    """Return what `configuration_document` says of the configuration itself."""
+    found = sorted(margins(robot, q), key=lambda item: item[1])
+    content: dict[str, Any] = {
+        "q": list(q),
+        "feasible": all(margin >= 0 for _, margin in found),
+        "component": None,
+        "components": None,
+        "contains_home": None,
+        "margins": [_margin_content(robot, q, name, margin) for name, margin in found],
+        "nearest": None,
+    }
+    if len(robot.joints) == 2:
+        content |= _place_content(find_region(robot), q, weights)
+    return content
+
+
+def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) -> dict[str, Any]:
+    """Return a margin, and of bodies which of their corners and edges are nearest, and where."""
+    content: dict[str, Any] = {"boundary": name, "margin": margin}
+    boundary = next((each for each in robot.used if each.name == name), None)
+    if boundary is None or not bounds_bodies(boundary):
+        return content
+    near = nearest_features(robot, boundary, q)
+    return content | {
+        "between": list(near.names),
+        "features": list(near.features),
+        "places": near.places.tolist(),
+        "distance": near.distance,
+    }
+
+
+def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> dict[str, Any]:
+    where = region.component_of(q)
+    nearest = None
+    if any(component.loops for component in region.components):
+        found = nearest_boundary(region, q, where, weights)
+        nearest = {
+            "q": found.q.tolist(),
+            "boundary": found.boundary,
+            **feature_content(found.feature),
+            "component": found.component,
+            "distance": found.distance,
+            "weights": list(weights),
+        }
+    return {
+        "component": where,
+        "components": len(region.components),
+        "contains_home": None if where is None else region.components[where].contains_home,
+        "nearest": nearest,
+    }
+
+
+def feature_content(feature: str) -> dict[str, str]:
+    """Return what touches, where it is known."""
+    return {"feature": feature} if feature else {}

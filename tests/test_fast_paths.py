@@ -1,0 +1,138 @@
+"""What was made fast says what the plain way says: quadrature, products, pairs, commands."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from qbound import find_region, load_robot
+from qbound.cli import COMMANDS, command_line, command_parsers
+from qbound.forms.factors import basis, basis_and_slope, basis_slope
+from qbound.measures import nearest
+from qbound.model.frames import cross
+from qbound.region import critical, pieces
+from qbound.region.arcs import NODES, legendre
+from qbound.region.components import CELL_NODES
+from qbound.region.critical import base_values
+from qbound.region.decomposition import critical_values
+from qbound.region.pieces import find_pieces
+from qbound.region.plane import HIGHEST, LOWEST, Plane, Root
+from qbound.region.problem import clearance_problem
+from support.forms import ROUND, RR, forms
+
+
+@pytest.mark.parametrize("n", [1, 2, 5, *CELL_NODES[:4]])
+def test_nodes_are_those_of_numpy_and_integrate_exactly(n):
+    x, w = legendre(n)
+    nodes, weights = np.polynomial.legendre.leggauss(n)
+    assert_allclose(x, nodes, atol=4e-16)
+    assert_allclose(w, weights, atol=1e-14)
+    k = np.arange(2 * n)
+    assert_allclose(x ** k[:, None] @ w, np.where(k % 2, 0, 2 / (k + 1)), atol=1e-14)
+
+
+def test_cells_are_measured_with_more_nodes_each_time():
+    assert CELL_NODES[0] == NODES[0]
+    assert all(np.diff(CELL_NODES) > 0)
+
+
+@pytest.mark.parametrize("count", [3, 300])
+def test_products_of_polynomials_few_or_many(count):
+    rng = np.random.default_rng(0)
+    p, q = (rng.normal(size=(count, n, 2)) @ [1, 1j] for n in (3, 5))
+    found = critical._times(p, q)
+    for one, other, product in list(zip(p, q, found, strict=True))[:5]:
+        assert_allclose(product, np.convolve(one, other), atol=1e-13)
+
+
+def test_events_solved_together_are_those_solved_alone():
+    rng = np.random.default_rng(1)
+    plane = Plane(forms(RR, {(0, 0): 1.0, (1, 1): 2.0}), ROUND, 0)
+    stacks = [rng.normal(size=(4, n)) + 1j * rng.normal(size=(4, n)) for n in (3, 5, 9)]
+    stacks = [stack + np.conj(stack[:, ::-1]) for stack in stacks]  # with roots on the circle
+    events = [(np.arange(4) + 4 * k, stack) for k, stack in enumerate(stacks)]
+    together = base_values(plane, iter(events))
+    alone = [base_values(plane, iter([event])) for event in events]
+    rows, t = (np.concatenate(x) for x in zip(*alone, strict=True))
+    assert len(t) > 3
+    one, other = (np.array(sorted(zip(*x, strict=True))) for x in (together, (rows, t)))
+    assert_allclose(one, other, atol=1e-12)
+
+
+def test_several_roots_over_the_same_values_are_those_one_by_one():
+    plane = Plane(forms(RR, {(0, 0): 0.3, (1, 1): 1.0, (0, 2): 1.0}), (None, (-1.0, 2.0)), 0)
+    t = np.linspace(-1, 1, 12).reshape(3, 4)
+    roots = np.array([[Root(0, -1), Root(0, 1), LOWEST], [HIGHEST, Root(0, 1, 1), Root(0, -1)]])
+    found = plane.follow(roots, t)
+    assert found.shape == (2, 3, 4)
+    for i, k in np.ndindex(2, 3):
+        assert_allclose(found[i, k], plane.follow([Root(*roots[i, k])], t[[k]])[0], atol=0)
+    assert (found[0, 2] == -1.0).all()
+    assert (found[1, 0] == 2.0).all()
+
+
+def test_pieces_are_paired_the_same_in_blocks_of_any_size(monkeypatch):
+    problem = clearance_problem(load_robot("two-links-on-a-table"))
+    plane = Plane(problem.forms, problem.ranges, 0, problem.contacts)
+    whole = critical_values(plane, find_pieces(plane))
+    monkeypatch.setattr(pieces, "PAIRS", 50)
+    assert (critical_values(plane, find_pieces(plane)) == whole).all()
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+def test_factors_and_slopes_in_one_array(kind):
+    q = np.linspace(-2, 2, 6).reshape(2, 3)
+    found = basis_and_slope(kind, q)
+    assert_allclose(found[..., 0, :], basis(kind, q), atol=0)
+    assert_allclose(found[..., 1, :], basis_slope(kind, q), atol=0)
+
+
+def test_a_cross_product_of_stacks():
+    a, b = np.random.default_rng(2).normal(size=(2, 3, 4))
+    assert_allclose(cross(a, b), np.cross(a, b, axis=0), atol=1e-15)
+    assert_allclose(cross(a[:, 0], b), np.cross(a[:, 0], b, axisb=0, axisc=0), atol=1e-15)
+
+
+def test_the_nearest_point_is_found_in_few_rounds(monkeypatch):
+    region, rounds, slope = find_region(load_robot("minervabot-v2")), [0], nearest._slope
+
+    def counted(*arguments):
+        rounds[0] += 1
+        return slope(*arguments)
+
+    monkeypatch.setattr(nearest, "_slope", counted)
+    nearest.nearest_boundary(region, [0.35, -0.78], 0)
+    assert rounds[0] < 30  # sixty each, where rounding alone was left to search
+
+
+# --- commands -------------------------------------------------------------------------------------
+
+
+def test_a_command_alone_has_the_help_that_it_has_among_all():
+    every = command_parsers()
+    assert [*every][: len(COMMANDS)] == [*COMMANDS]
+    for name in ("contains", "import", "certify"):
+        (alone,) = (
+            action.choices for action in command_line(name)._actions if action.choices is not None
+        )
+        assert [*alone] == [name]
+        assert alone[name].format_help() == every[name].format_help()
+
+
+def test_contains_imports_what_it_needs():
+    heavy = re.compile(
+        r"qbound\.(proofs|arms|explorer|figures|sweeps|urdf|workspace|paths)"
+        r"|importlib\.(metadata|resources)|numpy\.(ma|polynomial)|email|csv|json"
+    )
+    code = (
+        "import sys; from qbound.cli import main; "
+        "status = main(['contains', 'minervabot-v2', '20deg', '-45deg']); "
+        "print(status, *sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    status, *modules = done.stdout.splitlines()[-1].split()
+    assert status == "0"
+    assert [name for name in modules if heavy.fullmatch(name)] == []
