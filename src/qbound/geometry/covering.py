@@ -28,6 +28,10 @@ AT_ONCE = 4_000_000
 """Distances of a chunk."""
 
 
+MOST_TRIED = 400
+"""Sets that may take another's place at most, of all that could evenly many."""
+
+
 class Cover(NamedTuple):
     """Balls that cover a shape.
 
@@ -234,6 +238,7 @@ class _Choice:
         able = np.flatnonzero(self.covers[:, wanted] & (self.moved < self.count))
         if not len(able):
             able = np.flatnonzero(self.covers[:, wanted])
+        able = able[:: 1 + len(able) // MOST_TRIED]
         gains = self.covers[able[:, None], missing] @ self.weights[missing]
         best = int(able[np.lexsort((self.moved[able], -gains))[0]])
         self.sets.append(best)

@@ -16,7 +16,7 @@ from qbound.tolerances import OUTWARD
 
 Floats = NDArray[np.float64]
 
-SHRINKINGS = 30
+SHRINKINGS = 12
 """Times that a ball is shrunk at most."""
 
 NEARLY = 0.02

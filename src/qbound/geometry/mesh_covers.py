@@ -94,7 +94,7 @@ def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
     if box is not None:
         cover = _box_cover(box, allowed)
     else:
-        samples = _samples(moved, allowed, allowed / (16 if closed and convex is None else 6))
+        samples = _samples(moved, allowed, allowed / (12 if closed and convex is None else 6))
         centres, depths = _places(moved, closed, convex, samples, allowed)
         cover = Cover(*_chosen(moved, centres, depths + allowed, samples[0], allowed), excess)
     return Cover(cover.centres + middle, cover.radii + 4 * OUTWARD * size, cover.excess)
@@ -151,7 +151,8 @@ def _places(
     """Return centres, inside and on the surface, and how deep each lies at least."""
     surface, normals, spread = samples
     on_it = _thinned(surface, MOST_PLACES // 4, excess / 2)
-    starts = _thinned(surface, MOST_PLACES, excess / 6)
+    most = MOST_PLACES if convex is not None else MOST_PLACES // 2  # which take longer
+    starts = _thinned(surface, most, excess / 6)
     centres, depths = np.zeros((0, 3)), np.zeros(0)
     touched, outward = surface[starts], normals[starts]
     if convex is not None:
