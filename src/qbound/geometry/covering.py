@@ -28,7 +28,7 @@ AT_ONCE = 4_000_000
 """Distances of a chunk."""
 
 
-MOST_TRIED = 400
+MOST_TRIED = 200
 """Sets that may take another's place at most, of all that could evenly many."""
 
 
