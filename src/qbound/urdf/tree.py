@@ -162,8 +162,8 @@ def _within_both(first: UrdfJoint, joint: UrdfJoint, mimic: Mimic) -> UrdfJoint:
 def _refuse_mimic(joint: UrdfJoint) -> NoReturn:
     name = shown(joint.mimic.joint if joint.mimic else "")
     if joint.type == "prismatic":
-        text = "a slide that follows another joint would move at a rate of its own, which no joint here"
-        joint.element.fault(f"follows joint {name} (mimic); {text} does; make one of both fixed")
+        text = "a slide that follows would move at a rate of its own, which no joint here does"
+        joint.element.fault(f"follows joint {name} (mimic); {text}; make one of both fixed")
     wanted = "the joint just before it, on a parallel axis, turned back by the same angle"
     joint.element.fault(f"follows joint {name} (mimic); possible is a parallelogram only: {wanted}")
 
