@@ -171,7 +171,7 @@ def _needed(covers: Bools, chosen: list[int]) -> list[int]:
 
 
 def fewer(covers: Bools, chosen: NDArray[Any], steps: int) -> NDArray[Any]:
-    """Search for a smaller choice of sets that together have every element, from one that has.
+    """Search for a smaller choice of sets that together have all that a choice has.
 
     One set is left out; while elements are missing, the set that is missed least gives way to one
     that has the element missed longest (local search with weights: Gao, Weise, Li, 2015).
@@ -198,7 +198,8 @@ def fewer(covers: Bools, chosen: NDArray[Any], steps: int) -> NDArray[Any]:
     >>> few(sets).tolist(), sorted(fewer(sets, few(sets), 10).tolist())
     ([0, 1, 2], [3, 4])
     """
-    now = _Choice(covers, chosen)
+    held = covers[chosen].any(axis=0)
+    now = _Choice(covers if held.all() else covers[:, held], chosen)
     best = np.array(chosen, dtype=int)
     for _ in range(steps):
         while len(now.sets) > 1 and (now.times > 0).all():

@@ -25,7 +25,7 @@ from qbound.geometry.mesh_solids import (
     unit_normals,
 )
 from qbound.geometry.simplices import edges, halved
-from qbound.geometry.solid_covers import MOST_OF_A_KIND, box_cover
+from qbound.geometry.solid_covers import box_cover
 from qbound.tolerances import OUTWARD
 
 Floats = NDArray[np.float64]
@@ -50,6 +50,10 @@ MOST_ADDED = 40
 
 MOST_STEPS, MOST_CHANGES = 400, 30_000
 """Exchanges of a search at most, and exchanges times balls."""
+
+MOST_BALLS = 500
+"""Balls of a mesh that is no box at most: with more an arm has too many pairs, and choosing takes
+minutes."""
 
 SURE = 1 / 12
 """Part of the excess by which a chosen ball is larger than what it has to hold a sample: between
@@ -174,10 +178,17 @@ def _chosen(
     """
     demands = surface[_thinned(surface, MOST_DEMANDS, excess / 4)]
     held = within(demands, centres, radii - SURE * excess)
+    lost = demands[~held.any(axis=1)]  # of a large mesh, to which few places are tried
+    if len(lost):  # those get balls of their own
+        lost = lost[_thinned(lost, MOST_PLACES, excess / 2)]
+        centres, radii = np.vstack([centres, lost]), np.append(radii, np.full(len(lost), excess))
+        held = np.hstack([held, within(demands, lost, np.full(len(lost), (1 - SURE) * excess))])
     chosen = few(held.T)
     for k in range(ROUNDS + MOST_ADDED):
-        if len(chosen) > MOST_OF_A_KIND:
-            raise ValueError(f"an excess of {excess:g} takes more than {MOST_OF_A_KIND} balls")
+        if len(chosen) > MOST_BALLS:
+            raise ValueError(
+                f"an excess of {excess:g} takes more than {MOST_BALLS} balls; allow more"
+            )
         if k < ROUNDS:
             steps = min(MOST_STEPS, MOST_CHANGES // len(chosen))
             chosen = fewer(np.ascontiguousarray(held.T), chosen, steps)
