@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
-from qbound.geometry.covering import few, uncovered, within
-from qbound.geometry.mesh_covers import mesh_cover, winding_numbers
+from qbound.geometry.covering import few, fewer, uncovered, within
+from qbound.geometry.mesh_covers import mesh_cover
+from qbound.geometry.mesh_solids import as_box, convex_solid, winding_numbers
 from qbound.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover
 
 RNG = np.random.default_rng(520)
@@ -105,6 +107,95 @@ def test_few_sets_have_what_all_have() -> None:
     for k in range(len(chosen)):  # none of them is needless
         others = np.delete(chosen, k)
         assert covers[others].any(axis=0).sum() < covers.any(axis=0).sum()
+
+
+def test_a_search_finds_fewer_sets_than_greed_and_loses_no_element() -> None:
+    won = 0
+    for _ in range(10):
+        covers = RNG.random((80, 120)) < 0.1
+        greedy = few(covers)
+        searched = fewer(covers, greedy, 200)
+        assert (covers[searched].any(axis=0) == covers.any(axis=0)).all()
+        assert len(np.unique(searched)) == len(searched) <= len(greedy)
+        won += len(greedy) - len(searched)
+    assert won >= 5
+    covers[:, 0] = False  # what no set has is not asked for
+    assert len(fewer(covers, few(covers), 50)) <= len(few(covers))
+
+
+def hull_mesh(corners: np.ndarray) -> np.ndarray:
+    """Triangles of a convex hull, outward."""
+    hull = ConvexHull(corners)
+    triangles = corners[hull.simplices]
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    inward = np.einsum("ni,ni->n", normals, hull.equations[:, :3]) < 0
+    triangles[inward] = triangles[inward][:, ::-1]
+    return triangles
+
+
+def box_corners(*size: float) -> np.ndarray:
+    return np.stack(np.meshgrid(*[[-x / 2, x / 2] for x in size]), axis=-1).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("size", [(0.1, 0.1, 0.4), (0.4, 0.3, 0.01), (0.3, 0.3, 0.3)])
+def test_a_box_as_a_mesh_takes_as_many_balls_as_a_box(size) -> None:
+    turn, _ = np.linalg.qr(RNG.normal(size=(3, 3)))
+    shift = np.array([0.3, -0.7, 0.2])
+    triangles = (hull_mesh(box_corners(*size)) @ turn.T + shift).astype(np.float32).astype(float)
+    cover = mesh_cover(triangles, True, 0.02)
+    assert cover.excess <= 0.02
+    assert len(cover.radii) == len(box_cover(np.array(size), 0.02).radii)
+    weights = RNG.dirichlet(np.ones(3), 5 * COUNT)
+    places = np.einsum("ni,nij->nj", weights, triangles[RNG.integers(0, 12, 5 * COUNT)])
+    assert within(places, cover.centres, cover.radii).any(axis=1).all()
+    directions = RNG.normal(size=(COUNT, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    ball = RNG.integers(0, len(cover.radii), COUNT)
+    skin = cover.centres[ball] + cover.radii[ball, None] * directions
+    assert box_distance((skin - shift) @ turn, *size).max() <= cover.excess + 1e-7
+
+
+def test_a_dented_box_is_no_box_and_a_box_inside_out_is_none_inside() -> None:
+    corners = box_corners(0.1, 0.1, 0.2)
+    whole = hull_mesh(corners)
+    assert convex_solid(whole, 1e-6) is not None
+    assert convex_solid(whole[:, ::-1], 1e-6) is not None  # the other sense encloses as much
+    top = np.array([0.0, 0.0, 0.1])
+    far = np.isclose(whole[:, :, 2], 0.1).all(axis=1)
+    for dent, convex in ((0.0, True), (0.01, False)):
+        fans = [
+            [[*t[i]], [*t[(i + 1) % 3]], [*(t.mean(axis=0) - [0, 0, dent])]]
+            for t in whole[far]
+            for i in range(3)
+        ]
+        dented = np.concatenate([whole[~far], np.array(fans)])
+        found = convex_solid(dented, 1e-6)
+        assert (found is not None) is convex
+    assert convex_solid(np.concatenate([whole, whole[:, ::-1]]), 1e-6) is None  # goes round nothing
+    peaked = convex_solid(hull_mesh(np.vstack([corners, top * 1.2])), 1e-6)
+    assert peaked is not None
+    assert as_box(peaked, corners, 1e-5) is None
+
+
+def test_a_prism_takes_few_balls_each_as_deep_as_it_says() -> None:
+    angle = 2 * np.pi * np.arange(32) / 32
+    ring = np.column_stack([0.06 * np.cos(angle), 0.06 * np.sin(angle)])
+    prism = hull_mesh(np.vstack([np.column_stack([ring, 0 * angle + z]) for z in (-0.05, 0.05)]))
+    centres, radii, excess = mesh_cover(prism, True, 0.02)
+    assert len(radii) <= 1.25 * len(cylinder_cover(0.06, 0.1, 0.02).radii)
+    directions = RNG.normal(size=(COUNT, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    ball = RNG.integers(0, len(radii), COUNT)
+    skin = centres[ball] + radii[ball, None] * directions
+    assert cylinder_distance(skin, 0.06, 0.1).max() <= excess
+    weights = RNG.dirichlet(np.ones(3), 5 * COUNT)
+    places = np.einsum("ni,nij->nj", weights, prism[RNG.integers(0, len(prism), 5 * COUNT)])
+    assert within(places, centres, radii).any(axis=1).all()
+
+
+def test_a_mesh_that_takes_thousands_of_balls_is_refused() -> None:
+    with pytest.raises(ValueError, match="more than 4000 balls"):
+        mesh_cover(hull_mesh(box_corners(1, 1, 1)), True, 0.01)
 
 
 def ring_mesh(outer: float, inner: float, height: float, count: int = 24) -> np.ndarray:

@@ -14,12 +14,14 @@ from qbound.arms.fibres import fibres
 from qbound.arms.links import links
 from qbound.arms.pair_forms import pair_forms
 from qbound.arms.paths import ToolPaths
+from qbound.arms.reach import reach
+from qbound.arms.why import why
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
 from qbound.cli import main
 from qbound.model.frames import roll_pitch_yaw
-from qbound.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
+from qbound.model.robot import HalfSpace, Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import parse_robot, robot_table
 from qbound.proofs.exact import exact_problem, exact_robot
 from support.urdf import BALL, joint, link, rotation, transform, written
@@ -168,15 +170,70 @@ def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
     assert (found.contact, found.joints) == (Contact.SOMETIMES, (0,))
 
 
-def test_what_carries_places_along_a_chain_refuses_it_by_name() -> None:
-    robot = replace(arm(2), boundaries=arm(2).boundaries[:3])
-    for asked in (
-        lambda: fibres(robot, 0, robot.home),
-        lambda: ToolPaths(robot, 0),
-        lambda: Balls.of(robot),
-    ):
-        with pytest.raises(ValueError, match="joint 'p' is a parallelogram"):
-            asked()
+def walled(seed: int, last: type = Revolute) -> Robot:
+    """The arm, with a wall for every ball."""
+    robot = arm(seed, last)
+    rng = np.random.default_rng([600, seed])
+    normals = rng.normal(size=(len(robot.points), 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    walls = (
+        HalfSpace(f"wall {p.name}", p.name, n, -2.0)
+        for p, n in zip(robot.points, normals, strict=True)
+    )
+    radii = (replace(point, radius=0.3) for point in robot.points)
+    return replace(robot, points=tuple(radii), boundaries=(*robot.boundaries, *walls))
+
+
+@pytest.mark.parametrize("last", [Revolute, Prismatic])
+@pytest.mark.parametrize("seed", range(3))
+def test_distances_say_what_forms_say(seed, last) -> None:
+    robot = walled(seed, last)
+    q = np.random.default_rng(seed).uniform(-2, 2, (40, 3))
+    balls, forms = Balls.of(robot), [clearance(robot, b) for b in robot.boundaries]
+    assert balls.margins(q) == pytest.approx(evaluator(robot, limits=False).margins(q), abs=1e-11)
+    for j in range(3):
+        wanted = np.stack([[form.along(j, x) for form in forms] for x in q])
+        assert balls.along(j, q) == pytest.approx(wanted, abs=1e-11)
+
+
+@pytest.mark.parametrize("last", [Revolute, Prismatic])
+def test_fibres_hold_what_is_feasible_and_nothing_else(last) -> None:
+    some = 0
+    for seed in range(4):
+        robot = walled(seed, last)
+        rng = np.random.default_rng([601, seed])
+        q = rng.uniform(-1, 1, (30, 3))
+        for j in range(3):
+            found = fibres(robot, j, q)
+            values = rng.uniform(*(robot.joints[j].limits or (-np.pi, np.pi)), (len(q), 50))
+            places = np.repeat(q[:, None], 50, axis=1)
+            places[..., j] = values
+            margins = evaluator(robot).margins(places)
+            clear = np.abs(margins).min(axis=-1) > 1e-9
+            feasible = (margins >= 0).all(axis=-1)
+            assert (found.contains(values) == feasible)[clear].all()
+            some += int(feasible.sum())
+    assert some > 1000
+
+
+@pytest.mark.parametrize("frame", ["bar", "2", "3"])
+def test_the_tool_goes_along_the_path_that_frames_say(frame) -> None:
+    robot = replace(arm(5), tool=f"p{frame}")
+    axis, rng = np.array([0.6, 0.0, 0.8]), np.random.default_rng(5)
+    paths = ToolPaths(robot, axis)
+    q = rng.uniform(-2, 2, (3, 20))
+    for j in range(paths.depth):
+        along = paths.along(j, q)
+        places, directions = along.places(q[j]), along.directions(q[j])
+        for k, x in enumerate(q.T):
+            frames = robot.frames(x)
+            assert places[:, k] == pytest.approx(frames.position("0", f"p{frame}", "0"), abs=1e-12)
+            ahead = replace(robot.point(f"p{frame}"), at=robot.point(f"p{frame}").at + axis)
+            moved = replace(
+                robot, points=tuple(ahead if p.name == ahead.name else p for p in robot.points)
+            )
+            tip = moved.frames(x).position("0", ahead.name, "0")
+            assert directions[:, k] == pytest.approx(tip - places[:, k], abs=1e-12)
 
 
 # --- from a URDF ----------------------------------------------------------------------------------
@@ -228,6 +285,37 @@ def test_a_mimic_joint_that_turns_back_is_a_parallelogram(tmp_path, axis, multip
     # Limits of both joints: lift in [-1, 2]; level, that is +-lift + 0.2, in [-1, 2].
     low, high = sorted(((-1 - 0.2) / multiplier, (2 - 0.2) / multiplier))
     assert robot.joints[1].limits == pytest.approx((max(-1, low), min(2, high)), rel=1e-12)
+
+
+def test_an_arm_with_one_is_asked_what_any_arm_is(tmp_path, capsys) -> None:
+    robot = load_robot(palletizer(tmp_path, "<mimic joint='lift' multiplier='-1'/>"))
+    post = Point("post/1", "base", np.array([-0.5, 0.0, 0.8]), 0.15)  # behind the turret
+    robot = replace(robot, points=(*robot.points, post))
+    robot = replace(robot, boundaries=(Pair("post, head", ("post/1", "head/1")),))
+    file = tmp_path / "arm.toml"
+    save_robot(robot, file)
+    lift = fibres(robot, "lift", robot.home)[0]
+    assert [(end.below, end.above) for end in lift] == [("post, head", "lift.upper")]
+    near, far = lift[0].low + 0.01, lift[0].high - 0.01
+    found = why(file, [0.0, near, 0.0], [-0.3, far, 0.1])
+    assert (found.answer, found.certificate) == ("connected", None)
+    assert found.held.answer == "connected"
+    assert evaluator(robot).feasible(found.path).all()
+    assert why(file, [0.0, lift[0].low - 0.05, 0.0], [0.0, far, 0.0]).answer == "infeasible"
+    assert main(["fibre", str(file), "lift"]) == 0
+    assert "post, head" in capsys.readouterr().out
+
+
+def test_the_map_of_reach_of_an_arm_with_one_holds_where_frames_put_the_tool(tmp_path) -> None:
+    robot = load_robot(palletizer(tmp_path, "<mimic joint='lift' multiplier='-1'/>"))
+    found = reach(robot, 0.4, points=128, scrambles=2, joint="lift")
+    q = np.random.default_rng(2).uniform(*np.array([j.limits for j in robot.joints]).T, (300, 3))
+    q = q[evaluator(robot).feasible(q)]
+    assert len(q) > 200
+    places = np.stack([robot.frames(x).position("base", robot.tool, "base") for x in q])
+    reached = found.reached.ravel()[found.grid.flat_index(places.T)]
+    assert reached.mean() > 0.95
+    assert found.reached.mean() < 0.8
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from qbound import RobotFileError, load_robot
+from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
 from qbound.urdf.arm import import_urdf, packaged_or_path
@@ -317,6 +318,33 @@ def test_a_mesh_of_a_package_is_covered_and_scaled(tmp_path) -> None:
         assert np.min(gaps, axis=0).max() <= 0
         assert "of a mesh all triangles are covered" in imported.notes[1]
         assert [source.name for source in imported.sources] == ["arm.urdf", "a.stl"]
+
+
+def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
+    for more, says in (
+        (["--to", "tool1"], "ur5.urdf: no link 'tool1'"),
+        (["--limits", "knee=0..1"], "ur5.urdf: limits of 'knee'"),
+        (["--srdf", "panda.urdf", "--home", "folded"], "no state 'folded'"),
+    ):
+        assert main(["import", "ur5.urdf", *more, "-o", "-"]) == 2
+        said = capsys.readouterr().err
+        assert says in said
+        assert "/ur5.urdf" not in said
+
+
+def test_links_named_like_balls_of_another_keep_names_of_their_own(tmp_path) -> None:
+    file = written(
+        tmp_path,
+        *(link(name, BALL) for name in ("a", "a/1", "a/1/1", "tip", "tip/tool")),
+        joint("j1", "a", "a/1"),
+        joint("j2", "a/1", "a/1/1"),
+        joint("j3", "a/1/1", "tip/tool"),
+        joint("j4", "tip/tool", "tip"),
+    )
+    robot = load_robot(file)
+    names = [point.name for point in robot.points]
+    assert names == ["tip/tool/tool", "a/2", "a/1/2", "a/1/1/1", "tip/tool/1", "tip/1"]
+    assert [link.name for link in links(robot)] == ["a", "a/1", "a/1/1", "tip/tool", "tip"]
 
 
 def test_a_packaged_file_is_found_by_its_name() -> None:

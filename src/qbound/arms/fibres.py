@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arms.gaps import NONE, Gaps, Indices, Intervals, on_circle, on_line
-from qbound.boundary.balls import Balls, blocks
+from qbound.boundary.balls import Balls, blocks, squared_distances
 from qbound.boundary.chain import Pose
 from qbound.boundary.evaluator import limit_names
 from qbound.model.robot import Joint, Robot, refuse_no_robot
@@ -228,11 +228,12 @@ def _violated(balls: Balls, joint: int, x: Floats, base: Pose) -> Bools:
 def _of_pairs_turning(balls: Balls, joint: int, x: Floats) -> Taken:
     """Return the arcs of a turning joint that pairs forbid."""
     which, kept = balls.across(joint), _kept(balls)
+    x, still, moved = balls.about(joint, x, which)
     about = np.stack([x[2], np.hypot(x[0], x[1])])  # height and radius
-    nearest = balls.squared(about, which)
+    nearest = squared_distances(about, still, moved)
     pair, row = np.nonzero(nearest < kept[which, None])
-    nearest, pair = nearest[pair, row], which[pair]
-    near, far, kept = balls.near[pair], balls.far[pair], kept[pair]
+    nearest, near, far, pair = nearest[pair, row], still[pair], moved[pair], which[pair]
+    kept = kept[pair]
     farthest = nearest + 4 * about[1, near, row] * about[1, far, row]
     (x1, y1), (x2, y2) = x[:2, near, row], x[:2, far, row]
     centre = np.arctan2(y1 * x2 - x1 * y2, x1 * x2 + y1 * y2)

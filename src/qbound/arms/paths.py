@@ -62,7 +62,8 @@ class ToolPaths:
         tool = robot.point(robot.tool)
         self.robot, self.depth = robot, robot.depth(tool.frame)
         self._chain = Chain(robot, [tool])
-        self._axis = self._chain.seen(axis, self.depth)
+        self._frame = self._chain.depth(tool.frame)
+        self._axis = self._chain.seen(axis, self._frame)
 
     def along(self, joint: int, q: Floats) -> Paths:
         """Return the paths along a joint that carries the tool.
@@ -73,14 +74,21 @@ class ToolPaths:
             Configurations as columns; the joint's own value is not read.
         """
         poses = self._chain.poses(q, joint)
-        (base, origin), (tool_axes, _) = poses[0], poses[self.depth]
+        (base, origin), (tool_axes, _) = poses[0], poses[self._frame]
         x, u = self._chain.places(poses)[:, 0], self._axis @ tool_axes
         x, u, origin = (np.broadcast_to(each, (3, q.shape[1])) for each in (x, u, origin))
         zero = np.zeros(q.shape[1])
         if self.robot.joints[joint].turns:
-            place = [[-origin[0], -origin[1], x[2] - origin[2]], [x[0], x[1], zero]]
-            place.append([-x[1], x[0], zero])
-            direction = [[zero, zero, u[2]], [u[0], u[1], zero], [-u[1], u[0], zero]]
+            crank = self._chain.crank(joint)
+            if crank is not None and self._chain.groups(joint)[0] == 2:
+                (a, b), turning = crank[:2, 0] + zero, zero
+                ahead = x - origin - np.array([a, b, zero])
+            else:
+                (a, b), turning = x[:2], zero + 1
+                ahead = np.array([zero, zero, x[2]]) - origin
+            place = [list(ahead), [a, b, zero], [-b, a, zero]]
+            about = [[u[0], u[1], zero], [-u[1], u[0], zero]]
+            direction = [list(u - turning * about[0]), *(turning * np.array(about))]
         else:
             place = [list(x - origin), [zero, zero, zero + 1], [zero, zero, zero]]
             direction = [list(u), [zero] * 3, [zero] * 3]

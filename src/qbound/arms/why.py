@@ -22,7 +22,7 @@ from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
-from qbound.model.robot import Robot
+from qbound.model.robot import Parallelogram, Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
@@ -147,7 +147,8 @@ def why(
     Notes
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
-    with one of "no path"; a paving is a proof by itself and has no certificate.
+    with one of "no path"; a paving is a proof by itself and has no certificate. Nor has an arm with
+    a parallelogram, which certificates do not know: paths of it are found by pavings alone.
 
     Examples
     --------
@@ -187,6 +188,10 @@ def why(
     if path is not None:
         return path
     none = f"a search for a path ({SEEDS} times two growing trees) found none"
+    if not _certifiable(robot):
+        none = (
+            "no path was searched for: certificates know no parallelogram, and would not prove it"
+        )
     return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
 
 
@@ -210,6 +215,11 @@ def differing(ends: Floats) -> list[int]:
     return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
 
 
+def _certifiable(robot: Robot) -> bool:
+    """Tell whether certificates know every type of joint of a robot."""
+    return not any(isinstance(joint, Parallelogram) for joint in robot.joints)
+
+
 # --- an end that violates something ---------------------------------------------------------------
 
 
@@ -217,9 +227,11 @@ def _infeasible(
     text: str, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
 ) -> Why:
     """Certify the worst of what is violated."""
-    point = statements.points_of(robot, ends)[bad[0][0]]
-    certificate = certify(text, statements.box(point, point))
-    refuted = certificate if certificate.verdict is Verdict.REFUTED else None
+    refuted = None
+    if _certifiable(robot):
+        point = statements.points_of(robot, ends)[bad[0][0]]
+        certificate = certify(text, statements.box(point, point))
+        refuted = certificate if certificate.verdict is Verdict.REFUTED else None
     return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
 
 
@@ -232,9 +244,11 @@ def _separated(
     parted = separation(travels, *ends.tolist())
     if parted is None:
         return None
-    ranges = [_widest(block) for block in parted.blocks]
-    certificate = certify_no_path(text, ends[0], ends[1], ranges)
-    proved = certificate if certificate.verdict is Verdict.PROVED else None
+    proved = None
+    if _certifiable(robot):
+        ranges = [_widest(block) for block in parted.blocks]
+        certificate = certify_no_path(text, ends[0], ends[1], ranges)
+        proved = certificate if certificate.verdict is Verdict.PROVED else None
     return Why(robot, ends, "separated", hold, travels, separation=parted, certificate=proved)
 
 
@@ -253,6 +267,8 @@ def _said_of_separations(robot: Robot) -> str:
 
 def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
+    if not _certifiable(asked.robot):
+        return None
     for k in range(seeds):
         start, goal = asked.ends
         path = find_path(asked.robot, start, goal, SEEDS * seed + k, tries=tries, hold=asked.hold)
@@ -263,6 +279,11 @@ def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
+    if not _certifiable(asked.robot):
+        if held is None:
+            return None
+        least = float(least_margins(asked.robot, path)[1].min())
+        return asked.answer("connected", path=path, least=least, held=held)
     proved = _proved(asked.text, asked.robot, path)
     if proved is None:
         return None

@@ -186,13 +186,13 @@ class Balls:
         return flat.transpose(2, 1, 0).reshape(*q.shape[:-1], len(self.names), 3)
 
     def across(self, joint: int) -> Indices:
-        """Return the pairs with a point on either side of a joint, by their index in `pairs`."""
-        depths = self.chain.depths
-        return np.flatnonzero((depths[self.near] <= joint) & (joint < depths[self.far]))
+        """Return the pairs with points on two sides of a joint, by their index in `pairs`."""
+        side = self.chain.groups(joint)
+        return np.flatnonzero(side[self.near] != side[self.far])
 
     def beyond(self, joint: int) -> Indices:
         """Return the half-spaces whose point a joint moves, by their index in `walls`."""
-        return np.flatnonzero(joint < self.chain.depths[self.held])
+        return np.flatnonzero(self.chain.groups(joint)[self.held])
 
     def walls_along(self, joint: int, x: Floats, base: Pose) -> Floats:
         """Return the heights over all half-spaces as forms of one joint, shape (3, walls, n).
@@ -208,22 +208,58 @@ class Balls:
         normal, place = self.normals @ axes, x[:, self.held] - origin[:, None]
         fixed = (normal * place).sum(axis=0) - self.levels[:, None]
         moved = np.zeros((3, *fixed.shape))
-        x, y, _ = x[:, self.held]
+        side, crank = self.chain.groups(joint)[self.held], self.chain.crank(joint)
         if self.robot.joints[joint].turns:
+            x, y, _ = x[:, self.held]
+            if crank is not None:  # what the bar carries moves as its end does
+                x, y = (np.where(side[:, None] == 2, crank[i], at) for i, at in enumerate((x, y)))
             moved[1] = normal[0] * x + normal[1] * y
             moved[2] = normal[1] * x - normal[0] * y
         else:
             moved[1] = normal[2]
-        moved[:, self.chain.depths[self.held] <= joint] = 0
+        moved[:, side == 0] = 0
         moved[0] = fixed - (moved[1] if self.robot.joints[joint].turns else 0)
         return moved
+
+    def about(self, joint: int, x: Floats, which: Indices) -> tuple[Floats, Indices, Indices]:
+        r"""Return places of which one stands still and the other is moved by a joint, for pairs.
+
+        They are the places of the points, but for a parallelogram. The end of its bar goes round by
+        the crank, :math:`R c`, and what it carries, at x, keeps its orientation. From there, a
+        point p before the joint is where :math:`p - (x - c)` is from the turning c; a point b of
+        the bar where the turning :math:`b - c` is from :math:`x - c`.
+
+        Parameters
+        ----------
+        x : ndarray, shape (3, points, n)
+            Places seen from the joint (`Chain.places`).
+        which : ndarray of int, shape (k,)
+            Pairs, with points on two sides of the joint.
+
+        Returns
+        -------
+        places : ndarray, shape (3, m, n)
+        near, far : ndarray of int, shape (k,)
+            Which of these stands still for each pair, and which is moved.
+        """
+        near, far, crank = self.near[which], self.far[which], self.chain.crank(joint)
+        if crank is None:
+            return x, near, far
+        side = self.chain.groups(joint)
+        before, carried = (side[near] == 0)[:, None], (side[far] == 2)[:, None]
+        one, other = x[:, near], x[:, far]
+        still = np.where(carried, np.where(before, one - other + crank, other - crank), one)
+        moved = np.where(carried, np.where(before, crank, one - crank), other)
+        count = np.arange(len(which))
+        return np.concatenate([still, moved], axis=1), count, count + len(which)
 
     def _pairs_along(self, joint: int, x: Floats) -> Floats:
         """Return the forms of all pairs as forms of one joint, shape (3, pairs, n)."""
         forms = np.zeros((3, len(self.pairs), x.shape[2]))
         forms[0] = self.squared(x) - np.square(self.distance)[:, None]
         moving = self.across(joint)
-        near, far = x[:, self.near[moving]], x[:, self.far[moving]]
+        x, still, moved = self.about(joint, x, moving)
+        near, far = x[:, still], x[:, moved]
         if self.robot.joints[joint].turns:
             forms[1, moving] = -2 * (near[0] * far[0] + near[1] * far[1])
             forms[2, moving] = -2 * (near[1] * far[0] - near[0] * far[1])
@@ -253,14 +289,7 @@ class Balls:
         x : ndarray, shape (c, points, n)
             Places (`Chain.places`), or some of their coordinates.
         """
-        near, far = self.near[which], self.far[which]
-        total = np.zeros((len(near), x.shape[2]))
-        for coordinate in x:
-            step = coordinate[far]
-            step -= coordinate[near]
-            step *= step
-            total += step
-        return total
+        return squared_distances(x, self.near[which], self.far[which])
 
     def _rounding(self) -> Floats:
         reach = np.array([self.robot.stretched(point.name) for point in self.chain.points])
@@ -269,6 +298,17 @@ class Balls:
         sizes[self.pairs] = np.square(between) + np.square(self.distance)
         sizes[self.walls] = reach[self.held] + np.abs(self.levels)
         return ROUNDING * sizes
+
+
+def squared_distances(x: Floats, one: Indices, other: Indices) -> Floats:
+    """Return those of places, shape (c, m, n), by two indices each of k: shape (k, n)."""
+    total = np.zeros((len(one), x.shape[2]))
+    for coordinate in x:
+        step = coordinate[other]
+        step -= coordinate[one]
+        step *= step
+        total += step
+    return total
 
 
 @lru_cache(maxsize=64)

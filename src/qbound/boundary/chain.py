@@ -2,13 +2,14 @@
 
 Every frame is turned here so that the axis of its joint is z: then a joint mixes two columns of a
 pose by its cosine and sine, or adds a multiple of the third. The other way along the chain is the
-same step undone, so that a joint may be the observer as well as the base. A parallelogram is no
-such step: it is refused by name.
+same step undone, so that a joint may be the observer as well as the base. A parallelogram is two
+steps: its bar turns, and what the bar carries turns back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,31 @@ from qbound.model.robot import Parallelogram, Point, Robot
 from qbound.printable import printable
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
 Pose = tuple[Floats, Floats]
 """Axes as columns, shape (3, 3, n), and origin, shape (3, n); n is 1 of what nothing moves."""
+
+
+class Step(NamedTuple):
+    """A motion of one frame in the one before it: of a joint, or one of a parallelogram's two.
+
+    Attributes
+    ----------
+    joint : int
+        Whose value it is.
+    sense : int
+        -1 where it goes back by the value.
+    slides : bool
+    origin, mount, axis : ndarray
+        As a joint has them.
+    """
+
+    joint: int
+    sense: int
+    slides: bool
+    origin: Floats
+    mount: Floats
+    axis: Floats
 
 
 class Chain:
@@ -29,28 +53,45 @@ class Chain:
     points : tuple of Point
         By the depth of their frames, else in the order given.
     depths : ndarray of int, shape (m,)
-        How many joints move each of them.
-
-    Raises
-    ------
-    ValueError
-        If a joint is a parallelogram.
+        How many steps move each of them: one a joint, two a parallelogram.
     """
 
     def __init__(self, robot: Robot, points: Sequence[Point]) -> None:
-        refuse_parallelograms(robot, "places are carried along turning and sliding joints only")
-        self.points = tuple(sorted(points, key=lambda point: robot.depth(point.frame)))
-        self.depths = np.array([robot.depth(point.frame) for point in self.points], dtype=np.intp)
-        self._sliding = [not joint.turns for joint in robot.joints]
-        self._turned = [np.eye(3), *(axis_last(joint.axis) for joint in robot.joints)]
+        self.steps = tuple(_steps(robot))
+        self._depths = {robot.base: 0}
+        for label in (label for joint in robot.joints for label in joint.labels):
+            self._depths[label] = len(self._depths)
+        self.points = tuple(sorted(points, key=lambda point: self.depth(point.frame)))
+        self.depths = np.array([self.depth(point.frame) for point in self.points], dtype=np.intp)
+        self._turned = [np.eye(3), *(axis_last(step.axis) for step in self.steps)]
         turned = self._turned
-        joints = list(enumerate(robot.joints))
-        self._moves = [turned[j].T @ joint.origin for j, joint in joints]
-        self._turns = [turned[j].T @ joint.mount @ turned[j + 1] for j, joint in joints]
+        steps = list(enumerate(self.steps))
+        self._moves = [turned[k].T @ step.origin for k, step in steps]
+        self._turns = [turned[k].T @ step.mount @ turned[k + 1] for k, step in steps]
         at = np.array([p.at for p in self.points], dtype=float).reshape(-1, 3)
         ends = np.searchsorted(self.depths, np.arange(len(turned) + 1))
         self._slices = [slice(*ends[k : k + 2]) for k in range(len(turned))]
         self._places = [at[s] @ turn for s, turn in zip(self._slices, turned, strict=True)]
+
+    def depth(self, frame: str) -> int:
+        """Count the steps between the base and a frame."""
+        return self._depths[frame]
+
+    def groups(self, joint: int) -> Indices:
+        """Say on which side of a joint each point is, shape (m,).
+
+        0 before it, 1 behind it; of a parallelogram 1 on the bar, 2 on what the bar carries.
+        """
+        mine = [k for k, step in enumerate(self.steps) if step.joint == joint]
+        return np.clip(self.depths - mine[0], 0, len(mine))
+
+    def crank(self, joint: int) -> Floats | None:
+        """Return what turns with a parallelogram, from its axis to what the bar carries.
+
+        Seen from the joint, shape (3, 1, 1); None of other joints.
+        """
+        mine = [k for k, step in enumerate(self.steps) if step.joint == joint]
+        return self._moves[mine[1]][:, None, None] if len(mine) > 1 else None
 
     def poses(self, q: Floats, joint: int | None = None) -> list[Pose]:
         """Return the pose of every frame, by its depth, seen from the base or from a joint.
@@ -61,17 +102,22 @@ class Chain:
             Configurations as columns.
         joint : int, optional
             The observer: this joint at its zero, at its frame's origin, z along its axis. Its own
-            value is not read: what it moves stands as at 0. Default the base.
+            value is not read: what it moves stands as at 0. Of a parallelogram the frame is the
+            bar's. Default the base.
         """
-        first = 0 if joint is None else joint + 1
+        values = [step.sense * q[step.joint] for step in self.steps]
+        first = 0
+        if joint is not None:
+            mine = [k for k, step in enumerate(self.steps) if step.joint == joint]
+            first = mine[0] + 1
+            for k in mine:
+                values[k] = np.zeros(1)
         here = np.eye(3)[..., None], np.zeros((3, 1))
         poses = [here]
-        for j in range(first, len(q)):
-            poses.append(self._onward(poses[-1], j, q[j]))
-        if joint is not None:
-            poses.insert(0, self._back(here, joint, np.zeros(1)))
-            for j in reversed(range(joint)):
-                poses.insert(0, self._back(poses[0], j, q[j]))
+        for k in range(first, len(self.steps)):
+            poses.append(self._onward(poses[-1], k, values[k]))
+        for k in reversed(range(first)):
+            poses.insert(0, self._back(poses[0], k, values[k]))
         return poses
 
     def places(self, poses: Sequence[Pose]) -> Floats:
@@ -87,24 +133,31 @@ class Chain:
         """Return a direction of a robot's frame as the same frame sees it here, shape (3,)."""
         return np.asarray(direction @ self._turned[depth])
 
-    def _onward(self, pose: Pose, j: int, q: Floats) -> Pose:
-        """Go beyond joint j: move, turn as it is mounted, then as its value says."""
+    def _onward(self, pose: Pose, k: int, q: Floats) -> Pose:
+        """Go beyond step k: move, turn as it is mounted, then as its value says."""
         axes, origin = pose
-        origin = origin + self._moves[j] @ axes
-        axes = self._turns[j].T @ axes
-        if self._sliding[j]:
+        origin = origin + self._moves[k] @ axes
+        axes = self._turns[k].T @ axes
+        if self.steps[k].slides:
             return axes, origin + q * axes[:, 2]
         return _turned(axes, np.cos(q), np.sin(q)), origin
 
-    def _back(self, pose: Pose, j: int, q: Floats) -> Pose:
-        """Go from beyond joint j to the frame before it."""
+    def _back(self, pose: Pose, k: int, q: Floats) -> Pose:
+        """Go from beyond step k to the frame before it."""
         axes, origin = pose
-        if self._sliding[j]:
+        if self.steps[k].slides:
             origin = origin - q * axes[:, 2]
         else:
             axes = _turned(axes, np.cos(q), -np.sin(q))
-        axes = self._turns[j] @ axes
-        return axes, origin - self._moves[j] @ axes
+        axes = self._turns[k] @ axes
+        return axes, origin - self._moves[k] @ axes
+
+
+def _steps(robot: Robot) -> Iterator[Step]:
+    for j, joint in enumerate(robot.joints):
+        yield Step(j, 1, not joint.turns, joint.origin, joint.mount, joint.axis)
+        if isinstance(joint, Parallelogram):
+            yield Step(j, -1, False, joint.crank, np.eye(3), joint.axis)
 
 
 def refuse_parallelograms(robot: Robot, why: str) -> None:

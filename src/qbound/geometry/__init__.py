@@ -4,5 +4,6 @@
 - `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `polylines`: curves in steps of a stated deviation;
 - `solid_covers`, `mesh_covers`: few balls that cover a shape; `covering`: proved that they do;
+- `mesh_solids`: the solid that a mesh encloses; `inner_balls`: balls in it that touch it;
 - `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals.
 """

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import resources
-from itertools import combinations
+from itertools import combinations, count
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,7 +25,7 @@ from qbound.urdf.meshes import read_mesh
 from qbound.urdf.shapes import Collision, Mesh, Triangles
 from qbound.urdf.srdf import Srdf, read_srdf
 from qbound.urdf.tree import Chain, find_chain, listed
-from qbound.urdf.xml import Source
+from qbound.urdf.xml import PACKAGED, Source, called
 
 Floats = NDArray[np.float64]
 Limits = Mapping[str, tuple[float, float]]
@@ -146,7 +145,7 @@ def import_urdf(
     try:
         robot = parse_robot(robot_table(robot))
     except RobotFileError as error:
-        raise RobotFileError(f"{urdf.file}: {error}") from None
+        raise RobotFileError(f"{called(urdf.file)}: {error}") from None
     solids = [shape.solid for each in shapes.values() for shape in each]
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
     sources = [urdf.source, links.source, *(mesh.source for mesh in meshes)]
@@ -156,9 +155,8 @@ def import_urdf(
 
 def packaged_or_path(source: str | Path) -> Path:
     """Return the place of a file, or of a packaged one by its name, such as ``ur5.urdf``."""
-    folder = resources.files("qbound") / "robots"
-    packaged = {f.name for f in folder.iterdir() if f.name.endswith((".urdf", ".srdf"))}
-    return Path(str(folder / str(source))) if str(source) in packaged else Path(source)
+    packaged = {file.name for file in PACKAGED.iterdir() if file.suffix in (".urdf", ".srdf")}
+    return PACKAGED / str(source) if str(source) in packaged else Path(source)
 
 
 # --- joints ---------------------------------------------------------------------------------------
@@ -172,7 +170,9 @@ def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
     for name in limits:
         if name not in names:
             known = listed(names)
-            raise RobotFileError(f"{urdf.file}: limits of {shown(name)}: the chain has {known}")
+            raise RobotFileError(
+                f"{called(urdf.file)}: limits of {shown(name)}: the chain has {known}"
+            )
     return tuple(_joint(chain, k, limits.get(joint.name)) for k, joint in enumerate(chain.joints))
 
 
@@ -217,9 +217,15 @@ def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
 
 def _tool(chain: Chain) -> Point:
     """Return the origin of the last link; no point may have the name of a frame."""
-    frames = [frame for _, frame, _ in chain.rigid()]
-    name = chain.tip if chain.tip not in frames else f"{chain.tip}/tool"
+    frames = {frame for _, frame, _ in chain.rigid()}
+    names = _longer_names(chain.tip, "/tool")
+    name = next(name for name in names if name not in frames)
     return Point(name, chain.frames[-1], chain.groups[-1][chain.tip].origin)
+
+
+def _longer_names(name: str, ending: str) -> Iterator[str]:
+    """Yield a name, then the name with one ending, two endings and so on."""
+    return (name + ending * k for k in count())
 
 
 def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
@@ -245,13 +251,14 @@ def _balls(
     """Cover every link of the chain; return the balls, and the most that one sticks out."""
     balls: list[Ball] = []
     reached = 0.0
+    links = {link for *_, group in chain.rigid() for link in group}
     for group, frame, poses in chain.rigid():
         for link, pose in poses.items():
             centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
             reached = max(reached, sticks_out)
-            for i, (at, radius) in enumerate(zip(centres, radii, strict=True), start=1):
-                point = Point(f"{link}/{i}", frame, at, float(radius))
-                balls.append(Ball(point, link, group))
+            names = (name for i in count(1) if (name := f"{link}/{i}") not in links)
+            for name, at, radius in zip(names, centres, radii, strict=False):
+                balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
     return balls, reached
 
 
@@ -265,7 +272,7 @@ def _pairs(urdf: Urdf, balls: list[Ball], links: Srdf, clearance: float) -> Iter
     if len(found) > MOST_PAIRS:
         text = f"{len(found)} pairs of balls; at most {MOST_PAIRS} are possible"
         cure = "allow a larger excess (--excess), or disable pairs of links in an SRDF (--srdf)"
-        raise RobotFileError(f"{urdf.file}: {text}: {cure}")
+        raise RobotFileError(f"{called(urdf.file)}: {text}: {cure}")
     return (Pair(", ".join(names), names, clearance) for names in found)
 
 

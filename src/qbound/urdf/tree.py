@@ -22,6 +22,7 @@ from qbound.model.schema import one_line, shown
 from qbound.tolerances import PARALLEL
 from qbound.urdf.document import OTHERS, Mimic, Urdf, UrdfJoint
 from qbound.urdf.poses import Pose
+from qbound.urdf.xml import called
 
 Floats = NDArray[np.float64]
 
@@ -160,6 +161,9 @@ def _within_both(first: UrdfJoint, joint: UrdfJoint, mimic: Mimic) -> UrdfJoint:
 
 def _refuse_mimic(joint: UrdfJoint) -> NoReturn:
     name = shown(joint.mimic.joint if joint.mimic else "")
+    if joint.type == "prismatic":
+        text = "a slide that follows would move at a rate of its own, which no joint here does"
+        joint.element.fault(f"follows joint {name} (mimic); {text}; make one of both fixed")
     wanted = "the joint just before it, on a parallel axis, turned back by the same angle"
     joint.element.fault(f"follows joint {name} (mimic); possible is a parallelogram only: {wanted}")
 
@@ -180,10 +184,10 @@ def _parents(urdf: Urdf) -> dict[str, UrdfJoint]:
 def _root(urdf: Urdf, parents: dict[str, UrdfJoint]) -> str:
     roots = [link for link in urdf.links if link not in parents]
     if not roots:
-        raise RobotFileError(f"{urdf.file}: joints run in a circle; a URDF is a tree")
+        raise RobotFileError(f"{called(urdf.file)}: joints run in a circle; a URDF is a tree")
     if len(roots) > 1:
         text = f"{len(roots)} links hang on no joint: {listed(roots)}"
-        raise RobotFileError(f"{urdf.file}: {text}; a URDF is one tree with one root")
+        raise RobotFileError(f"{called(urdf.file)}: {text}; a URDF is one tree with one root")
     for link in urdf.links:
         _path(urdf, parents, roots[0], link)
     return roots[0]
@@ -196,7 +200,7 @@ def _path(urdf: Urdf, parents: dict[str, UrdfJoint], start: str, tip: str) -> li
     while (link := path[-1].parent if path else tip) != start:
         if link not in parents:
             text = f"{shown(tip)} is not carried by {shown(start)}; a chain runs outward"
-            raise RobotFileError(f"{urdf.file}: {text}")
+            raise RobotFileError(f"{called(urdf.file)}: {text}")
         path.append(parents[link])
         if path[-1].parent in seen:
             path[-1].element.fault("closes a circle; a URDF is a tree")
@@ -211,7 +215,7 @@ def _only_leaf(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
     leaves = [link for link in leaves if _carries(parents, start, link)]
     if len(leaves) > 1:
         text = f"{len(leaves)} links could be the last one: {listed(leaves)}"
-        raise RobotFileError(f"{urdf.file}: {text}; name it (--to LINK)")
+        raise RobotFileError(f"{called(urdf.file)}: {text}; name it (--to LINK)")
     return leaves[0]
 
 
@@ -244,10 +248,12 @@ def _group(urdf: Urdf, frame: str, pose: Pose | None = None) -> dict[str, Pose]:
 def _check_count(urdf: Urdf, moving: list[UrdfJoint], start: str, tip: str) -> None:
     between = f"between {shown(start)} and {shown(tip)}"
     if not moving:
-        raise RobotFileError(f"{urdf.file}: no joint moves {between}")
+        raise RobotFileError(f"{called(urdf.file)}: no joint moves {between}")
     if len(moving) > MOST_JOINTS:
         text = f"{len(moving)} joints move {between}; at most {MOST_JOINTS} are possible"
-        raise RobotFileError(f"{urdf.file}: {text}: choose a shorter chain (--from LINK --to LINK)")
+        raise RobotFileError(
+            f"{called(urdf.file)}: {text}: choose a shorter chain (--from LINK --to LINK)"
+        )
 
 
 def _check_types(moving: list[UrdfJoint]) -> None:
@@ -260,7 +266,7 @@ def _check_types(moving: list[UrdfJoint]) -> None:
 def _known(urdf: Urdf, link: str) -> str:
     if link not in urdf.links:
         known = listed(urdf.links)
-        raise RobotFileError(f"{urdf.file}: no link {shown(link)}; there are {known}")
+        raise RobotFileError(f"{called(urdf.file)}: no link {shown(link)}; there are {known}")
     return link
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -24,6 +25,21 @@ Floats = NDArray[np.float64]
 
 LARGEST_FILE = 20_000_000
 """Bytes of a URDF or SRDF at most."""
+
+
+PACKAGED = Path(str(resources.files("qbound"))) / "robots"
+"""The folder of the files that come with the package."""
+
+
+def called(path: Path) -> str:
+    """Return what a message calls a file: its path, or the bare name of one of the package.
+
+    Examples
+    --------
+    >>> called(PACKAGED / "ur5.urdf"), called(Path("mine/ur5.urdf"))
+    ('ur5.urdf', 'mine/ur5.urdf')
+    """
+    return path.name if path.parent == PACKAGED else str(path)
 
 
 class Source(NamedTuple):
@@ -128,34 +144,36 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise RobotFileError(f"{path}: not UTF-8 text") from None
+        raise RobotFileError(f"{called(path)}: not UTF-8 text") from None
     if match := re.search(r"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
         line = text.count("\n", 0, match.start()) + 1
         text = f"<!{match[1]}> found; a robot needs no document type and no entities"
-        raise RobotFileError(f"{path}, line {line}: {text}")
+        raise RobotFileError(f"{called(path)}, line {line}: {text}")
     parser = etree.XMLParser(
         encoding="utf-8", resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False
     )
     try:
         node = etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        raise RobotFileError(f"{path}: not XML: {error.msg}") from None
+        raise RobotFileError(f"{called(path)}: not XML: {error.msg}") from None
     for each in node.iter():
         if isinstance(each.tag, str) and "xacro" in each.tag:
             text = "a xacro macro; expand the file first (xacro FILE -o arm.urdf)"
-            raise RobotFileError(f"{path}, line {each.sourceline}: {text}")
+            raise RobotFileError(f"{called(path)}, line {each.sourceline}: {text}")
     if node.tag != root:
-        raise RobotFileError(f"{path}: <{one_line(str(node.tag))}> found; wanted: <{root}>")
-    return Element(node, str(path), ""), Source.of(path, content)
+        raise RobotFileError(f"{called(path)}: <{one_line(str(node.tag))}> found; wanted: <{root}>")
+    return Element(node, called(path), ""), Source.of(path, content)
 
 
 def _content(path: Path) -> bytes:
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise RobotFileError(f"{path}: more than {LARGEST_FILE // 10**6} MB")
+            raise RobotFileError(f"{called(path)}: more than {LARGEST_FILE // 10**6} MB")
         return path.read_bytes()
     except (OSError, ValueError) as error:
-        raise RobotFileError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+        raise RobotFileError(
+            f"{called(path)}: {getattr(error, 'strerror', None) or error}"
+        ) from None
 
 
 def _number(word: str) -> float:
