@@ -1,6 +1,7 @@
 """Where the tool gets to: every place in a marked voxel, volumes that are known, directions."""
 
 import json
+from dataclasses import replace
 from importlib import resources
 from math import pi
 
@@ -13,11 +14,12 @@ from qbound import load_robot
 from qbound.arms.fibres import fibres
 from qbound.arms.paths import Paths, ToolPaths
 from qbound.arms.reach import reach
+from qbound.arms.reports import reach_lines
 from qbound.arms.voxels import Grid, crossed, enclosed_volume
 from qbound.boundary.balls import Balls
 from qbound.boundary.functions import position
 from qbound.cli import main
-from qbound.model.robotfile import parse_robot
+from qbound.model.robotfile import parse_robot, save_robot
 from support.ball_arms import arm_of_balls, drawn
 
 
@@ -239,6 +241,29 @@ def test_a_fibre_as_json_follows_its_schema(capsys):
     found = fibres(robot, "q2", content["q"])
     assert [i["low"] for i in content["intervals"]] == found.low.tolist()
     assert content["contains_q"] == Balls.of(robot).feasible(content["q"])
+
+
+def test_a_joint_may_be_named_by_its_index(tmp_path, capsys):
+    assert main(["fibre", "minervabot-v2", "q2"]) == 0
+    by_name = capsys.readouterr().out
+    assert main(["fibre", "minervabot-v2", "1"]) == 0
+    assert capsys.readouterr().out == by_name
+    for word in ("2", "-1", "1.0", "9" * 5000):
+        assert main(["fibre", "minervabot-v2", "--", word]) == 2
+        assert "there are 0 (q1), 1 (q2)" in capsys.readouterr().err
+    robot = load_robot("minervabot-v2")
+    names = {"q1": "1", "q2": "other"}
+    joints = tuple(replace(joint, name=names[joint.name]) for joint in robot.joints)
+    save_robot(replace(robot, joints=joints), tmp_path / "arm.toml")
+    assert main(["fibre", str(tmp_path / "arm.toml"), "1"]) == 0
+    assert "with other" in capsys.readouterr().out  # a name goes before an index
+
+
+def test_the_error_of_a_volume_is_called_an_estimate():
+    found = reach(load_robot("pr-gantry-arm"), 0.5, points=64, scrambles=2)
+    volume, said, *_ = reach_lines(found)
+    assert "+-" in volume
+    assert "an estimate, no bound" in said
 
 
 def test_a_fibre_names_what_blocks_it(capsys):

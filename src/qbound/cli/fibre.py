@@ -9,7 +9,7 @@ from qbound.arms.fibres import fibres
 from qbound.arms.reports import fibre_document, fibre_lines
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
-from qbound.cli.values import configuration
+from qbound.cli.values import configuration, joint
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
 
@@ -24,7 +24,7 @@ def add_to(commands: Any) -> None:
         epilog="example: qbound fibre minervabot-v2 q2 20deg -45deg",
     )
     add_robot(parser)
-    parser.add_argument("joint", metavar="JOINT", help="the joint that moves")
+    parser.add_argument("joint", metavar="JOINT", help="the joint that moves, by name or index")
     parser.add_argument(
         "values",
         nargs="*",
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     """Print the intervals; 1 if the joint may be nowhere."""
     robot = load_robot(options.robot)
     q = configuration(robot, options.values) if options.values else robot.home.tolist()
-    found = fibres(robot, options.joint, q)
+    found = fibres(robot, joint(robot, options.joint), q)
     document = (options.json, lambda: json_text(fibre_document(found, q)))
     deliver([document], fibre_lines(found, q))
     return 0 if found[0] else 1

@@ -15,7 +15,7 @@ from qbound.cli.chosen import add_robot, add_slice
 from qbound.cli.files import Content, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.cli.terminal import complain
-from qbound.cli.values import held
+from qbound.cli.values import held, joint
 from qbound.model.robotfile import load_robot
 from qbound.printable import printable
 from qbound.units import counted
@@ -35,7 +35,7 @@ def add_to(commands: Any) -> None:
     )
     add_robot(parser)
     parser.add_argument(
-        "--joints", nargs=3, required=True, metavar="JOINT", help="the three axes, by name"
+        "--joints", nargs=3, required=True, metavar="JOINT", help="the three axes, by name or index"
     )
     add_slice(parser)
     parser.add_argument(
@@ -62,9 +62,10 @@ def run(options: argparse.Namespace) -> int:
     check_targets([options.output], tuple(KINDS))
     robot = load_robot(options.robot)
     values = held(robot, options.slice)
+    axes = [joint(robot, text) for text in options.joints]
     with working("surface"):
         surface = find_surface(
-            robot, options.joints, values, resolution=options.resolution, caps=options.caps
+            robot, axes, values, resolution=options.resolution, caps=options.caps
         )
     if not len(surface.triangles):
         where = "every" if surface.feasible_part > 0 else "no"

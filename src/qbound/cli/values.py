@@ -12,6 +12,9 @@ from qbound.units import counted, parse_joint_value
 MOST_PANELS = 100
 """Slices of a strip: more would be no picture."""
 
+LONGEST_INDEX = 9
+"""Digits of a joint's index: Python refuses to read thousands of them."""
+
 
 def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
     """Read one value for each joint, rad or length."""
@@ -20,6 +23,13 @@ def configuration(robot: Robot, texts: Sequence[str]) -> list[float]:
         values, joints = counted(len(texts), "value"), counted(len(robot.joints), "joint")
         raise ValueError(f"{values} for {joints}: {names}")
     return [parse_joint_value(robot, j, text) for j, text in enumerate(texts)]
+
+
+def joint(robot: Robot, text: str) -> int | str:
+    """Read a joint: a name, or an index where no joint has that name."""
+    names = {each.name for each in robot.joints}
+    index = text not in names and text.isascii() and text.isdecimal() and len(text) < LONGEST_INDEX
+    return int(text) if index else text
 
 
 def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
