@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from importlib import resources
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from jsonschema import Draft202012Validator
 from numpy.testing import assert_array_equal
 
 from qbound import find_region, load_robot
+from qbound.arms.fibres import fibres
+from qbound.arms.reach import reach
 from qbound.cli import main
 from qbound.design import varied, workspace_area
 from qbound.figures.sweeps import sweep_picture
@@ -49,6 +52,28 @@ boundary = [
     { name = "floor", type = "half-space", point = "tip", normal = [0, 0, 1], offset = 0.0 },
 ]
 """.replace("TURNS", 'type = "revolute", axis = [0, -1, 0]')
+
+
+SLIDES = """
+schema = 1
+name = "A slide and a turn beside a post"
+length_unit = "m"
+angle_unit = "deg"
+home = { lift = 0, slide = 0, b = 0 }
+tool = "tip"
+joint = [
+    { name = "lift", parent = "base", frame = "1", axis = [0, 0, 1], limits = [-0.5, 0.5], SLIDES },
+    { name = "slide", parent = "1", frame = "2", axis = [1, 0, 0], limits = [0, 0.5], SLIDES },
+    { name = "b", parent = "2", frame = "3", axis = [0, 0, 1], limits = [-170, 170], TURNS },
+]
+point = [
+    { name = "tip", frame = "3", at = [0.5, 0, 0] },
+    { name = "post", frame = "base", at = [0, 0.5, 0], radius = 0.2 },
+]
+boundary = [{ name = "apart", type = "pair", points = ["tip", "post"] }]
+""".replace("SLIDES", 'type = "prismatic", origin = [0, 0, 0]').replace(
+    "TURNS", 'type = "revolute", origin = [0, 0, 0]'
+)
 
 
 def here(jobs):
@@ -146,6 +171,56 @@ def test_pavings_bracket_the_exact_area(tmp_path):
     assert (found["paving.outer"] - found["paving.inner"] <= 0.3).all()
 
 
+def test_fibres_and_reach_are_those_of_direct_calls(tmp_path, monkeypatch):
+    quick = partial(reach, points=64, scrambles=2)
+    monkeypatch.setattr("qbound.sweeps.measures.reach", quick)
+    monkeypatch.setattr("qbound.arms.reach.SPREADS", ())
+    (tmp_path / "arm.toml").write_text(SLIDES, encoding="utf-8")
+    asked = '"fibre.length", "fibre.home.length", "reach.volume", "reach.error"'
+    vary = '{ number = "joint.slide.limits.1", from = 0.4, to = 0.6, count = 2 }'
+    lines = (f"vary = [{vary}]", "fibre = 'b'", "voxel = 0.2")
+    spec = written(tmp_path / "s.toml", *lines, robot="arm.toml", measure=asked)
+    found = execute(read_specification(spec), tmp_path / "out", here)
+    assert found.reasons == {}
+    for k, high in enumerate((0.4, 0.6)):
+        robot = varied(load_robot(tmp_path / "arm.toml"), {"joint.slide.limits.1": high})
+        free, mapped = fibres(robot, "b", robot.home), quick(robot, 0.2)
+        wanted = [free.length[0], next(i for i in free[0] if i.low <= 0 <= i.high)]
+        wanted[1] = wanted[1].high - wanted[1].low
+        got = [found.values[name][k] for name in measures.MEASURES if name in found.values]
+        assert got == [*wanted, mapped.volume, mapped.error]
+        assert 0 < wanted[1] < wanted[0]
+    units = [found.measure_unit(name) for name in found.values]
+    assert units == ["rad", "rad", "m^3", "m^3"]
+
+
+def test_home_has_no_free_length_where_it_is_not_safe_and_is_held_where_a_joint_is(tmp_path):
+    """The tip on a half-turn above the floor: between 0 and 180 degrees, home at 90."""
+    (tmp_path / "arm.toml").write_text(THREE, encoding="utf-8")
+    row = '{ number = "home.c", from = 0, to = 90, count = 2 }'
+    held = '{ number = "held.b", from = 0, to = 180, count = 2 }'
+    asked = '"fibre.home.length", "fibre.length"'
+    lines = (f"vary = [{row}, {held}]", "fibre = 'a'")
+    spec = written(tmp_path / "s.toml", *lines, robot="arm.toml", measure=asked)
+    found = execute(read_specification(spec), tmp_path / "out", here)
+    assert np.allclose(found.values["fibre.length"], math.pi)
+    down = replace(load_robot(tmp_path / "arm.toml"), home=np.array([-math.pi / 2, 0, 0]))
+    assert measures.home_length(fibres(down, "a", down.home), down) == 0
+    up = found.values["fibre.home.length"]
+    assert np.allclose(up[0], [math.pi, 0])
+    assert np.allclose(up[1, 0], math.pi)
+
+
+def test_the_page_has_every_measure_and_a_specification_that_is_one(tmp_path):
+    page = (Path(__file__).parents[1] / "book" / "sweep.md").read_text(encoding="utf-8")
+    for name, measure in measures.MEASURES.items():
+        assert f"* - `{name}`\n  - {measure.needs}\n" in page
+    (tmp_path / "s.toml").write_text(page.split("```toml\n")[1].split("```")[0])
+    keys = read_specification(tmp_path / "s.toml").specification.__struct_fields__
+    said = [any(text in page for text in (f"`{k}`", f"\n{k} = ", f"[[{k}]]")) for k in keys]
+    assert all(said)
+
+
 def test_names_of_measures_are_those_of_the_table():
     assert set(MeasureName.__args__) == set(measures.MEASURES)
 
@@ -236,6 +311,13 @@ def test_the_summary_says_what_was_swept_and_how_to_open_it(study, tmp_path, mon
     assert content["schema"] == "qbound/sweep/1"
     assert content["shape"] == [3, 3]
     assert content["versions"] == versions()
+    schema = resources.files("qbound") / "schemas" / "sweep-summary.schema.json"
+    keeps = Draft202012Validator(json.loads(schema.read_text(encoding="utf-8")))
+    keeps.check_schema(keeps.schema)
+    keeps.validate(content)
+    Draft202012Validator(json_schema()).validate(content["specification"])
+    for broken in ({"shape": [3, 0]}, {"schema": "qbound/sweep/2"}, {"seed": 1}, {"measures": []}):
+        assert not keeps.is_valid(content | broken)
     assert [len(content[key]) for key in ("vary", "measures", "not_measured")] == [2, 2, 3]
     monkeypatch.chdir(tmp_path / "out")
     namespace = {"zarr": zarr}
@@ -320,6 +402,20 @@ BAD = {
     ),
     "no such measure": (GOOD, '"region.volume"', "measure[0]: 'region.volume' is unknown"),
     "no measure": (GOOD, " ", "measure: [] has length 0"),
+    "no moving joint": (GOOD, '"fibre.length"', "takes a joint that moves: set 'fibre' to one of"),
+    "another joint": (f"{GOOD}\nfibre = 'q9'", '"fibre.length"', "there is no joint 'q9'; q1, q2"),
+    "a held joint": (
+        f"{GOOD}\nfibre = 'q1'\nslice = {{ q1 = 0 }}",
+        '"fibre.home.length"',
+        "measure[0]: fibre.home.length takes 'fibre', and q1 is held",
+    ),
+    "no voxel": (GOOD, '"reach.volume"', "reach.volume takes 'voxel', the edge of a voxel in cm"),
+    "no edge": (f"{GOOD}\nvoxel = 0", '"reach.volume"', "voxel: 0 is too small"),
+    "reach of a slice": (
+        f"{GOOD}\nvoxel = 5\nslice = {{ q1 = 0 }}",
+        '"reach.error"',
+        "reach.error takes every joint, and q1 is held",
+    ),
     "a measure twice": (GOOD, f"{AREA}, {AREA}", "measure[1]: region.area is asked for twice"),
     "no TOML": ("vary = [", AREA, "not TOML"),
     "a date": ("vary = 1979-05-27", AREA, "vary: 1979-05-27 is not a list"),

@@ -48,8 +48,8 @@ class Job:
         Content of the robot file.
     held : dict of str to float
         Joints that are held at one value, in the file's units.
-    rule, tolerance
-        As in a specification.
+    rule, tolerance, fibre, voxel
+        As in a specification; None where it says nothing.
     measures : tuple of str
     arms : tuple of dict of str to float
         In the order of the grid, the last varied number first to change.
@@ -62,6 +62,8 @@ class Job:
     held: Mapping[str, float]
     rule: Rule
     tolerance: float
+    fibre: str | None
+    voxel: float | None
     measures: tuple[str, ...]
     arms: tuple[Numbers, ...]
     versions: Mapping[str, str]
@@ -109,7 +111,9 @@ def arm_of(job: Job, numbers: Numbers) -> Arm:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # was said when the sweep began
         robot = varied(parse_robot(job.table), placed)
-    return Arm(robot, in_library_units(robot, {**job.held, **values}), job.rule, job.tolerance)
+    held = in_library_units(robot, {**job.held, **values})
+    moving = None if job.fibre is None else robot.joint_index(job.fibre)
+    return Arm(robot, held, job.rule, job.tolerance, moving, job.voxel)
 
 
 def in_library_units(robot: Robot, held: Mapping[str, float]) -> dict[int, float]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
+from msgspec import UNSET
 from numpy.typing import NDArray
 
 from qbound.model.robotfile import robot_table
@@ -65,6 +66,8 @@ def job(study: Study, chunk: Chunk) -> Job:
         held=specification.slice,
         rule=specification.rule,
         tolerance=specification.tolerance,
+        fibre=None if specification.fibre is UNSET else specification.fibre,
+        voxel=None if specification.voxel is UNSET else specification.voxel,
         measures=tuple(specification.measure),
         arms=tuple(_numbers(study, arm) for arm in values),
         versions=versions(),

@@ -1,7 +1,8 @@
 """Which measures has an arm? A table of names and functions; a new measure is one more row.
 
-Areas are exact up to rounding (Theorem 2, cell by cell); pavings are proved brackets and take any
-number of joints. The paper has samples in their place.
+Areas are exact up to rounding (Theorem 2, cell by cell), and so are the lengths of fibres; pavings
+are proved brackets and take any number of joints. A volume of reach is an estimate, and its error
+another; the seed is 0, so that the same arm has the same. The paper has samples in their place.
 """
 
 from __future__ import annotations
@@ -11,7 +12,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Literal
 
+import numpy as np
+
+from qbound.arms.fibres import Fibres, fibres
+from qbound.arms.reach import Reach, reach
 from qbound.design import home_area, region_area, workspace_area
 from qbound.model.robot import Robot
 from qbound.proofs.exact import exact_problem, exact_robot
@@ -32,12 +38,18 @@ class Arm:
     rule : {"clearance", "paper"}
     tolerance : float
         Undecided part of the joint range at which a paving stops.
+    moving : int, optional
+        The joint whose fibre is asked for.
+    voxel : float, optional
+        Edge of the voxels of a map of reach, length.
     """
 
     robot: Robot
     held: Mapping[int, float]
     rule: Rule = "clearance"
     tolerance: float = 0.01
+    moving: int | None = None
+    voxel: float | None = None
 
     @cached_property
     def region(self) -> Region:
@@ -49,6 +61,23 @@ class Arm:
         """The proved paving of all joints that are not held."""
         return pave(exact_problem(exact_robot(self.robot), self.held), self.tolerance)
 
+    @cached_property
+    def fibre(self) -> Fibres:
+        """The free values of the moving joint, the others held or at home."""
+        if self.moving is None:
+            raise ValueError("no joint is named")
+        rest = self.robot.home[self.robot.free(self.held)]
+        return fibres(self.robot, self.moving, self.robot.with_held(rest, self.held))
+
+    @cached_property
+    def reached(self) -> Reach:
+        """The map of the places of the tool, with the seed 0."""
+        return reach(self.robot, self.voxel)
+
+
+Needs = Literal["two joints", "any joints", "a fibre", "every joint"]
+"""What a measure is about: two joints that are not held, any number, one that is named, or all."""
+
 
 @dataclass(frozen=True)
 class Measure:
@@ -58,57 +87,105 @@ class Measure:
     ----------
     compute : callable
         From a `Arm` to a number.
-    dimension : {"joints", "plane", "one"}
-        Product of both joints' units, length squared, or a plain number.
-    planar : bool
-        Whether exactly two joints must not be held.
+    dimension : {"joints", "joint", "plane", "space", "one"}
+        Product of both joints' units, the moving joint's, length squared or cubed, or a plain
+        number.
+    needs : Needs
     says : str
         What it is, for people.
     """
 
     compute: Callable[[Arm], float]
     dimension: str
-    planar: bool
+    needs: Needs
     says: str
 
 
 MEASURES: Mapping[str, Measure] = {
     "region.area": Measure(
-        lambda arm: region_area(arm.region), "joints", True, "area of all safe components"
+        lambda arm: region_area(arm.region), "joints", "two joints", "area of all safe components"
     ),
     "region.home.area": Measure(
         lambda arm: home_area(arm.region),
         "joints",
-        True,
+        "two joints",
         "area of the component with the home pose; 0 where home is in none",
     ),
     "region.components": Measure(
-        lambda arm: len(arm.region.components), "one", True, "number of safe components"
+        lambda arm: len(arm.region.components), "one", "two joints", "number of safe components"
     ),
     "workspace.area": Measure(
         lambda arm: workspace_area(arm.region),
         "plane",
-        True,
+        "two joints",
         "area of the places that the tool reaches from home; 0 where home is in no component",
     ),
     "paving.inner": Measure(
         lambda arm: rounded_down(arm.paving.inner_fraction),
         "one",
-        False,
+        "any joints",
         "part of the joint range that is proved safe",
     ),
     "paving.outer": Measure(
         lambda arm: -rounded_down(-arm.paving.inner_fraction - arm.paving.undecided_fraction),
         "one",
-        False,
+        "any joints",
         "part of the joint range outside which all is proved unsafe",
+    ),
+    "fibre.length": Measure(
+        lambda arm: float(arm.fibre.length[0]),
+        "joint",
+        "a fibre",
+        "length of all safe values of the joint `fibre`, the others held or at home",
+    ),
+    "fibre.home.length": Measure(
+        lambda arm: home_length(arm.fibre, arm.robot),
+        "joint",
+        "a fibre",
+        "length of the interval of these in which home is; 0 where it is in none",
+    ),
+    "reach.volume": Measure(
+        lambda arm: arm.reached.volume,
+        "space",
+        "every joint",
+        "estimated volume of the places that the tool reaches by any safe configuration",
+    ),
+    "reach.error": Measure(
+        lambda arm: arm.reached.error,
+        "space",
+        "every joint",
+        "estimated error of that volume, no bound",
     ),
 }
 """By the name that a specification uses."""
 
 
-def unit_of(measure: Measure, robot: Robot, free: list[int]) -> str:
+POWERS = {"plane": 2, "space": 3}
+"""Of the length unit."""
+
+
+def home_length(fibre: Fibres, robot: Robot) -> float:
+    """Return the length of the interval of a fibre in which the joint's home value is, else 0.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> fibre = fibres(robot, "q2", robot.home)
+    >>> home_length(fibre, robot) == fibre.length.item()
+    True
+    """
+    above = robot.home[fibre.joint] - fibre.low
+    if robot.joints[fibre.joint].limits is None:
+        above = np.mod(above, math.tau)
+    wide = fibre.high - fibre.low
+    return float(wide[(above >= 0) & (above <= wide)].max(initial=0.0))
+
+
+def unit_of(measure: Measure, robot: Robot, free: list[int], moving: int | None = None) -> str:
     """Return the unit of a measure of the joints that are not held, by index.
+
+    Of a fibre it is the unit of the joint that moves.
 
     Examples
     --------
@@ -118,8 +195,10 @@ def unit_of(measure: Measure, robot: Robot, free: list[int]) -> str:
     """
     if measure.dimension == "one":
         return "1"
-    if measure.dimension == "plane":
-        return f"{robot.length_unit}^2"
+    if measure.dimension in POWERS:
+        return f"{robot.length_unit}^{POWERS[measure.dimension]}"
+    if moving is not None and measure.dimension == "joint":
+        return joint_units(robot)[moving]
     one, other = (joint_units(robot)[j] for j in free)
     return f"{one}^2" if one == other else f"{one} {other}"
 

@@ -7,8 +7,9 @@
 
 Numbers are named as `qbound.design.varied` has them, measures by `measures`; ``held.wrist`` is the
 value of a joint that is held. Optional: `also` in a row of `vary`, numbers that take its values,
-too; `slice`, joints that are held at one value; `rule`; `tolerance`, of pavings; `chunk`, arms that
-are measured together. Every number is in the robot file's unit.
+too; `slice`, joints that are held at one value; `rule`; `tolerance`, of pavings; `fibre`, the joint
+whose travel is measured; `voxel`, of maps of reach; `chunk`, arms that are measured together. Every
+number is in the robot file's unit.
 """
 
 from __future__ import annotations
@@ -23,13 +24,14 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
-from msgspec import Meta, field
+from msgspec import UNSET, Meta, UnsetType, field
 
+from qbound.boundary.balls import Balls
 from qbound.design import Path as Place
 from qbound.design import varied
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots
-from qbound.model.rows import Label, Number, Row
+from qbound.model.rows import LARGEST, Label, Number, Row
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.printable import printable
 from qbound.sweeps.cells import HELD
@@ -46,6 +48,10 @@ MeasureName = Literal[
     "workspace.area",
     "paving.inner",
     "paving.outer",
+    "fibre.length",
+    "fibre.home.length",
+    "reach.volume",
+    "reach.error",
 ]
 
 
@@ -94,6 +100,8 @@ class Specification(Row, kw_only=True):
         list[MeasureName], Meta(min_length=1, description="a list of one or more measures")
     ]
     tolerance: Annotated[float, Meta(gt=0, lt=1)] = 0.01
+    fibre: Label | UnsetType = UNSET
+    voxel: Annotated[float, Meta(gt=0, le=LARGEST)] | UnsetType = UNSET
     chunk: Annotated[int, Meta(ge=1, le=10_000)] = 16
 
 
@@ -265,14 +273,39 @@ def _measure_faults(study: Study) -> Faults:
         if name in seen:
             yield ("measure", i), f"{name} is asked for twice"
         seen.add(name)
-        if MEASURES[name].planar and len(free) != 2:
+        needs = MEASURES[name].needs
+        if needs == "two joints" and len(free) != 2:
             moving = f"{len(free)} of {len(study.robot.joints)} are not held"
             text = f"{name} takes two joints; {moving} ({', '.join(map(one_line, free))})"
             yield ("measure", i), text
-        if study.specification.rule == "paper" and not MEASURES[name].planar:
+        if study.specification.rule == "paper" and needs != "two joints":
             yield ("measure", i), f"{name} knows the clearance rule only"
+        if needs in {"a fibre", "every joint"}:
+            yield from ((("measure", i), f"{name} {text}") for text in _arm_faults(study, needs))
     if study.specification.rule == "paper" and held:
         yield ("rule",), "the paper's rule knows two joints only: nothing can be held"
+
+
+def _arm_faults(study: Study, needs: str) -> Iterator[str]:
+    """Yield why no arm of a sweep has a fibre, or a map of reach."""
+    specification, held = study.specification, sorted(held_names(study.specification))
+    names = [joint.name for joint in study.robot.joints]
+    known = ", ".join(map(one_line, names))
+    if needs == "a fibre":
+        if specification.fibre is UNSET:
+            yield f"takes a joint that moves: set 'fibre' to one of {known}"
+        elif specification.fibre not in names:
+            yield f"takes 'fibre', and there is no joint {shown(specification.fibre)}; {known}"
+        elif specification.fibre in held:
+            yield f"takes 'fibre', and {one_line(specification.fibre)} is held"
+    if needs == "every joint" and held:
+        yield f"takes every joint, and {', '.join(map(one_line, held))} is held"
+    if needs == "every joint" and specification.voxel is UNSET:
+        yield f"takes 'voxel', the edge of a voxel in {study.robot.length_unit}"
+    try:
+        Balls.of(study.robot)
+    except ValueError as error:
+        yield f"takes points and balls: {error}"
 
 
 def held_names(specification: Specification) -> set[str]:

@@ -19,6 +19,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec import UNSET
 from numpy.typing import NDArray
 
 from qbound.extras import require
@@ -233,7 +234,9 @@ def number_unit(study: Study, name: str) -> str:
 def measure_unit(study: Study, measure: str) -> str:
     """Return the unit of a measure; ``1`` for a plain number."""
     held = {study.robot.joint_index(name) for name in held_names(study.specification)}
-    return unit_of(MEASURES[measure], study.robot, study.robot.free(held))
+    fibre = study.specification.fibre
+    moving = None if fibre is UNSET else study.robot.joint_index(fibre)
+    return unit_of(MEASURES[measure], study.robot, study.robot.free(held), moving)
 
 
 def _json(content: Mapping[str, Any]) -> bytes:
