@@ -89,6 +89,23 @@ def test_a_turned_cube_is_exact_with_its_edges_and_corners() -> None:
         assert np.linalg.norm(surface.vertices - corner, axis=1).min() < 1e-12
 
 
+def test_a_strip_narrower_than_a_step_is_kept_between_its_neighbours() -> None:
+    """An edge cut off along its whole length: the three planes have no point in common."""
+    turned = Rotation.from_rotvec([0.3, -0.2, 0.5]).as_matrix()
+    one, other = turned[:, 0], turned[:, 1]
+    planes = {"one": (-one, -0.3), "other": (-other, -0.3), "strip": (-(one + other), -0.58)}
+    robot = portal(
+        (point("hand", "3"),),
+        tuple(HalfSpace(name, "hand", *plane) for name, plane in planes.items()),
+    )
+    surface = find_surface(robot, NAMES, resolution=8)
+    assert surface.exact.all()
+    assert set(surface.pairs) == {"one", "other", "strip"}
+    strip = surface.triangles[surface.pair == surface.pairs.index("strip")]
+    assert_allclose(surface.vertices[strip] @ (one + other), 0.58, atol=1e-12)
+    assert least_margins(surface, surface.vertices).min() > -1e-12
+
+
 def test_caps_close_a_box() -> None:
     far = (point("hand", "3"), point("ball", "0", (2, 0, 0), 0.9))
     box = find_surface(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import combinations
 from typing import Final, Self
 
 import numpy as np
@@ -28,6 +29,9 @@ VIOLATED: Final = 4 * ON_FORM
 
 CUTS: Final = 3
 """Rounds of cutting: between two functions a third may come up."""
+
+FAR: Final = 10.0
+"""Steps that no place is moved by."""
 
 WELDED: Final = 9
 """Digits of a step in which the places of one vertex agree."""
@@ -174,13 +178,14 @@ def _onto_active(
 ) -> Placed:
     """Put places onto wanted functions; where another is then violated, onto that one, too.
 
-    Where that fails a place goes onto the function that is active where it begins; where that
-    fails as well, it stays.
+    Where these do not meet a place goes onto some of them: a strip of a third function may lie
+    between two, narrower than a step. Where that fails as well, it stays.
     """
     count = len(start)
     sets = np.full((count, MOST), NONE, dtype=np.intp)
     sets[:, : wanted.shape[1]] = wanted
     vertices, exact = start.copy(), np.zeros(count, dtype=np.bool_)
+    violated = np.full(count, NONE, dtype=np.intp)
     left = np.arange(count)
     for _ in range(MOST + 1):
         place, found = _by_size(forms, start[left], sets[left], held[left], step)
@@ -188,18 +193,50 @@ def _onto_active(
         safe = least >= -VIOLATED
         done = found & safe
         vertices[left[done]], exact[left[done]] = place[done], True
+        violated[left] = which
         full = sets[left, MOST - 1] != NONE
         more = found & ~safe & ~full & ~(sets[left] == which[:, None]).any(axis=1)
         left, which = left[more], which[more]
         sets[left, (sets[left] != NONE).sum(axis=1)] = which
     rest = np.flatnonzero(~exact)
-    which, _ = forms.least(start[rest])
-    alone = np.column_stack([which, np.full((len(rest), MOST - 1), NONE)])
-    place, found = _by_size(forms, start[rest], alone, held[rest], step)
-    found &= forms.least(place)[1] >= -VIOLATED
-    vertices[rest[found]], exact[rest[found]] = place[found], True
-    sets[rest] = alone
+    active, _ = forms.least(start[rest])
+    known = np.column_stack([violated[rest], active, sets[rest]])
+    vertices[rest], sets[rest], exact[rest] = _onto_some(
+        forms, start[rest], known, held[rest], step
+    )
     return Placed(vertices, sets, exact, held)
+
+
+def _onto_some(
+    forms: SurfaceForms, start: Floats, known: Ints, held: Bools, step: Floats
+) -> tuple[Floats, Ints, Bools]:
+    """Put places onto those of some functions where nothing is violated.
+
+    The nearest such place counts, and one on the first function before one on others: it is what
+    lies between them.
+
+    Parameters
+    ----------
+    known : ndarray of int, shape (N, k)
+        The functions to choose from; a place for which none will do stays, with the second.
+    """
+    best = np.full(len(start), np.inf)
+    place, sets = start.copy(), np.full((len(start), MOST), NONE, dtype=np.intp)
+    sets[:, 0] = known[:, 1]
+    repeated = [(known[:, :k] == known[:, [k]]).any(axis=1) for k in range(known.shape[1])]
+    usable = (known != NONE) & ~np.column_stack(repeated)
+    for size in range(1, MOST + 1):
+        for chosen in map(list, combinations(range(known.shape[1]), size)):
+            here = np.flatnonzero(usable[:, chosen].all(axis=1))
+            wanted = known[here][:, chosen]
+            moved, found = forms.onto(start[here], wanted, held[here], step)
+            away = np.linalg.norm((moved - start[here]) / step, axis=1) + FAR * (0 not in chosen)
+            better = found & (away < best[here])
+            better[better] = forms.least(moved[better])[1] >= -VIOLATED
+            at = here[better]
+            best[at], place[at], sets[at, :size] = away[better], moved[better], wanted[better]
+            sets[at, size:] = NONE
+    return place, sets, np.isfinite(best)
 
 
 def _by_size(
