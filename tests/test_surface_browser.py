@@ -9,7 +9,7 @@ from matplotlib.image import imread
 
 from qbound.arms.surfaces import find_surface
 from qbound.explorer.surface_page import surface_page
-from support.browser import broken_rules, drag, in_every_family, opening, settle, wait_until
+from support.browser import broken_rules, drag, eventually, in_every_family, opening, settle, wait_until
 from support.portals import NAMES, dice
 
 VIEW = "surface.view"
@@ -93,3 +93,39 @@ def test_without_webgl_it_says_so(browser, file) -> None:
     assert page.get_by_text("needs WebGL 2").is_visible()
     assert page.locator(".pairs li").count() == 6
     page.close()
+
+
+AROUND = """<!doctype html><title>Around</title><h1>Before</h1>
+<iframe src="dice.html" title="Surface" height="100" style="border: 0; width: 100%"></iframe>
+<p style="height: 3000px">After</p>
+<script>
+const frame = document.querySelector("iframe");
+addEventListener("message", ({ data }) => { frame.height = data.explorerHeight; });
+</script>"""
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_in_a_frame_it_has_its_height_a_theme_and_leaves_the_wheel_alone(open_page, file, width):
+    around = file.with_name("around.html")
+    around.write_text(AROUND, encoding="utf-8")
+    page = open_page(around.as_uri(), viewport={"width": width, "height": 800})
+    inside = page.frames[1]
+    overflow = "() => document.documentElement.scrollHeight - innerHeight"
+    eventually(page, lambda: page.locator("iframe").bounding_box()["height"] > 400)
+    eventually(page, lambda: inside.evaluate(overflow) <= 0)
+    assert page.locator("iframe").bounding_box()["height"] < 1400
+    ground = "() => getComputedStyle(document.documentElement).backgroundColor"
+    light = inside.evaluate(ground)
+    page.evaluate("() => frame.contentWindow.postMessage({ theme: 'dark' }, '*')")
+    eventually(page, lambda: inside.evaluate(ground) != light)
+    canvas, view = page.frame_locator("iframe").locator("canvas"), "() => window.surface.view.distance"
+    before = inside.evaluate(view)
+    canvas.hover()
+    page.mouse.wheel(0, 100)
+    eventually(page, lambda: page.evaluate("() => scrollY") > 0)
+    assert inside.evaluate(view) == before
+    canvas.scroll_into_view_if_needed()
+    canvas.focus()
+    canvas.hover()
+    page.mouse.wheel(0, 100)
+    eventually(page, lambda: inside.evaluate(view) != before)

@@ -406,6 +406,8 @@ function surfaceHands(canvas, { turn, zoom, reset, tell }) {
   canvas.addEventListener(
     "wheel",
     (event) => {
+      // In a frame the wheel moves the page around it, until the picture has been chosen.
+      if (window.parent !== window && document.activeElement !== canvas) return;
       event.preventDefault();
       zoom(Math.exp(Math.sign(event.deltaY) * 0.08));
     },
