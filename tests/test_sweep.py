@@ -146,6 +146,9 @@ def test_held_joints_and_home_are_in_the_units_of_the_file(tmp_path):
     wanted = [find_region(robot, {"a": math.radians(q)}).area for q in (30, 60)]
     assert found.values["region.area"].tolist() == wanted
     assert found.axis_unit(0) == "deg"
+    low = THREE.replace("offset = 0.0", "offset = -0.1")  # else all areas are half of the plane
+    (tmp_path / "arm.toml").write_text(low, encoding="utf-8")
+    robot = load_robot(tmp_path / "arm.toml")
     held = written(
         tmp_path / "h.toml",
         "slice = { c = 45 }",
