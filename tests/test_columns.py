@@ -1,5 +1,6 @@
 """Pavings by columns: what they prove holds, and they bracket the area."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -181,3 +182,22 @@ def test_a_tolerance_of_nothing_is_refused() -> None:
     for tolerance in (0.0, -1.0, np.nan):
         with pytest.raises(ValueError, match="tolerance"):
             paved("minervabot-v2", tolerance)
+
+
+def test_a_joint_that_turns_far_from_zero_is_refused() -> None:
+    robot = load_robot("minervabot-v2")
+    for far in range(2):
+        joints = [
+            replace(joint, limits=(1e7, 1e7 + 1)) if k == far else joint
+            for k, joint in enumerate(robot.joints)
+        ]
+        problem = exact_problem(replace(robot, joints=tuple(joints)))
+        with pytest.raises(ValueError, match=f"joint {far}: its limits reach beyond"):
+            pave_columns(problem, 0.1)
+
+
+def test_a_robot_without_boundaries_is_feasible_everywhere() -> None:
+    problem = exact_problem(replace(load_robot("minervabot-v2"), boundaries=()))
+    paving = pave_columns(problem, 1e-3)
+    assert paving.bracket[0] == pytest.approx(paving.volume)
+    assert paving.verdicts([0.1, 0.2]) == {Verdict.PROVED}

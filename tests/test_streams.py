@@ -129,6 +129,19 @@ def test_lengths_of_any_unit_are_judged(scale) -> None:
     assert_array_equal(table.feasible(q), wanted)
 
 
+@pytest.mark.parametrize("scale", [1e-157, 1e-160, 1e-162])
+def test_where_squares_of_lengths_underflow_double_precision_decides(scale) -> None:
+    forms = HarmonicForm(
+        scale**2 * np.random.default_rng(8).normal(size=(3, 3, 3)), ("revolute", "revolute")
+    )
+    names = ["a", "b", "c"]
+    table = compiled(forms, names, [None] * 3, [None] * 2, [("", "")] * 2)
+    q = np.random.default_rng(9).uniform(-3, 3, (2000, 2))
+    settled = table.settled(q)
+    assert_array_equal(table.feasible(q), settled)
+    assert_array_equal([table.feasible(one) for one in q[:300]], settled[:300])
+
+
 # --- what is no configuration ---------------------------------------------------------------------
 
 

@@ -9,7 +9,15 @@ from matplotlib.image import imread
 
 from qbound.arms.surfaces import find_surface
 from qbound.explorer.surface_page import surface_page
-from support.browser import broken_rules, drag, eventually, in_every_family, opening, settle, wait_until
+from support.browser import (
+    broken_rules,
+    drag,
+    eventually,
+    in_every_family,
+    opening,
+    settle,
+    wait_until,
+)
 from support.portals import NAMES, dice
 
 VIEW = "surface.view"
@@ -118,7 +126,10 @@ def test_in_a_frame_it_has_its_height_a_theme_and_leaves_the_wheel_alone(open_pa
     light = inside.evaluate(ground)
     page.evaluate("() => frame.contentWindow.postMessage({ theme: 'dark' }, '*')")
     eventually(page, lambda: inside.evaluate(ground) != light)
-    canvas, view = page.frame_locator("iframe").locator("canvas"), "() => window.surface.view.distance"
+    canvas, view = (
+        page.frame_locator("iframe").locator("canvas"),
+        "() => window.surface.view.distance",
+    )
     before = inside.evaluate(view)
     canvas.hover()
     page.mouse.wheel(0, 100)

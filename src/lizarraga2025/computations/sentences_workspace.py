@@ -321,7 +321,7 @@ def efficiency_and_volume() -> Outcome:
         for n in sizes
     ]
     errors = np.sqrt(np.mean((np.array(free) / part - 1) ** 2, axis=1))
-    law = np.sqrt((1 - part) / part / sizes)
+    law = np.sqrt(max(0.0, 1 - part) / part / sizes)
     holds = part < 1 and bool((np.abs(errors / law - 1) < 0.5).all())
     text = "; ".join(f"{n}: {e:.1g}" for n, e in zip(sizes, errors, strict=True))
     return Outcome(

@@ -21,7 +21,7 @@ from qbound.boundary.functions import clearance
 from qbound.boundary.lengths import Denominator, denominators, lengths
 from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
-from qbound.boundary.screen import SINES, Screen, reaches, screen
+from qbound.boundary.screen import LEAST, SINES, Screen, reaches, screen
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
@@ -271,8 +271,9 @@ class Evaluator:
     def _certain(self) -> Floats:
         """The lifted table in units of its rounding: beyond 1 or -1 that changes no sign."""
         sizes = self.monomials.sizes(self._reach)
-        bounds = len(sizes) * ROUNDING * (np.abs(self._lifted) @ sizes)
-        return np.asarray(self._lifted[bounds > 0] / bounds[bounds > 0, None])
+        rows = self._lifted[(self._lifted != 0).any(axis=1)]  # one of zeros holds everywhere
+        bounds = np.maximum(len(sizes) * ROUNDING * (np.abs(rows) @ sizes), LEAST)
+        return np.asarray(rows / bounds[:, None])
 
     @cached_property
     def _reach(self) -> list[float]:

@@ -48,6 +48,9 @@ TURNS = 32.0
 SIZES = (2.0**-60, 2.0**60)
 """Monomials of these sizes neither over- nor underflow in single precision."""
 
+LEAST = 2.0**-900
+"""Least bound of an error: where lengths or their squares underflow, nothing is certain."""
+
 ENTRIES = 2**17
 """Monomials of a block: they stay in the cache."""
 
@@ -139,7 +142,7 @@ def screen(
         return None
     table = table[(table != 0).any(axis=1)]  # a row of zeros holds everywhere
     errors = _errors(monomials, reach, sines) + len(monomials) + 2
-    bounds = ROOM * UNIT * (np.abs(table) @ (errors * sizes))
+    bounds = np.maximum(ROOM * UNIT * (np.abs(table) @ (errors * sizes)), LEAST)
     scaled = (table / bounds[:, None]).astype(np.float32)
     return Screen(scaled, monomials, reach.astype(np.float32))
 

@@ -141,10 +141,11 @@ def _version() -> str:
 
 
 def _others() -> list[Any]:
-    """Load the commands of the entry-point group, in the order of their names."""
+    """Load the commands of the entry-point group, by name; ours keep theirs."""
     from importlib.metadata import entry_points  # slow: it reads mail
 
-    return [found.load() for found in sorted(entry_points(group=GROUP), key=lambda e: e.name)]
+    others = sorted(entry_points(group=GROUP), key=lambda found: found.name)
+    return [found.load() for found in others if found.name not in COMMANDS]
 
 
 class _Parser(argparse.ArgumentParser):

@@ -24,7 +24,7 @@ from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import BITS, BoxBounds
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.sectors import Sectors, covered, hidden, pieces, sectors_of
-from qbound.proofs.trigonometry import ERROR, cosine_sine
+from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
 from qbound.proofs.verdict import Verdict
 
 Floats = NDArray[np.float64]
@@ -166,7 +166,8 @@ def pave_columns(
     Raises
     ------
     ValueError
-        If the tolerance is not positive, no joint turns, or bodies are to keep apart.
+        If the tolerance is not positive, no joint turns, a joint turns beyond `FARTHEST`, or bodies
+        are to keep apart.
 
     Examples
     --------
@@ -206,6 +207,9 @@ def _start(problem: ExactProblem, lift: int) -> ColumnPaving:
     low, high = _inner_ends(bounds)
     if not bool((low < high).all()):
         raise ValueError("the range of a joint is empty")
+    for joint, kind in enumerate(problem.kinds):
+        if kind == "revolute" and max(abs(low[joint]), abs(high[joint])) > FARTHEST:
+            raise ValueError(f"joint {joint}: its limits reach beyond {FARTHEST:g} rad")
     base = np.delete(np.arange(len(low)), lift)
     count = max(1, round(FIRST ** (1 / len(base))))
     edges = [np.linspace(low[j], high[j], count + 1) for j in base]

@@ -142,7 +142,9 @@ def sectors_of(
         both[1][which] = np.where(ok, rest, negative)
     tilts = np.where(ok[..., None], tilt, tilts)
     undecided = ~(everywhere | nowhere)
-    slopes = (np.where(undecided[..., None], wave.steepest, 0) * half[:, None]).max(axis=1)
+    slopes = (np.where(undecided[..., None], wave.steepest, 0) * half[:, None]).max(
+        axis=1, initial=0
+    )
     return Sectors(centre, np.stack(both[0]), np.stack(both[1]), tilts, everywhere, nowhere, slopes)
 
 

@@ -21,7 +21,7 @@ from qbound.forms.angles import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Problem
 from qbound.region.arcs import NODES, converged, legendre
-from qbound.tolerances import CHORD, QUADRATURE, SAME_CRITICAL
+from qbound.tolerances import CHORD, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.image_crossings import crossing_distances
@@ -126,7 +126,8 @@ class Layers:
             held = [laid.held(laid.by(side)) for side in self.sides]
             postures = np.sum(held, axis=0)[:, n // 2]
             q2, along = self.arm.second(self.arm.sides[0], u), laid.start + laid.ends
-            for k in np.flatnonzero(postures):
+            wide = np.diff(laid.ends, axis=0).max(axis=1) > NEGLIGIBLE  # not rounding alone
+            for k in np.flatnonzero(wide & (postures > 0)):
                 low, high = along[k], along[k + 1]
                 far_side = np.arange(low[-1], high[-1], step)
                 near_side = np.arange(high[0], low[0], -step)
