@@ -14,7 +14,7 @@
     window.addEventListener("message", ({ data: told }) => {
       if (!["light", "dark"].includes(told?.theme)) return;
       page.style.colorScheme = told.theme;
-      surface.redraw();
+      surface?.redraw();
     });
   }
 }
