@@ -108,9 +108,7 @@ def joints(count: int) -> list[Job]:
     rough: dict[str, Any] | None = {} if count < 5 else None
     return [
         Job("stream", scene, ("qbound_numpy", TYPED), request, quick, "", 5, compared),
-        Job(
-            "part", scene, ("qbound_joints", TYPED), {"step": 0.2}, rough, "", 3, with_error(scene)
-        ),
+        Job("part", scene, (FIBRES, TYPED), {"step": 0.2}, rough, "", 3, with_error(scene)),
     ]
 
 
