@@ -149,8 +149,11 @@ def must(title: str, command: Command, quiet: bool = False, **settings: object) 
 
 
 def environment() -> dict[str, str]:
-    """Return the shell's environment, without what would mix in the user's code and settings."""
-    mixes_in = {"PYTHONPATH", "QBOUND_RESULTS"}
+    """Return the shell's environment, without what would mix in the user's code and settings.
+
+    Nor may it forbid bytecode: each of some thousand processes would compile all that it imports.
+    """
+    mixes_in = {"PYTHONPATH", "QBOUND_RESULTS", "PYTHONDONTWRITEBYTECODE"}
     kept = {name: value for name, value in os.environ.items() if name not in mixes_in}
     return kept | {
         "IPYTHONDIR": str(VENV / "ipython"),

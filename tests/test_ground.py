@@ -237,9 +237,10 @@ def test_the_code_of_the_user_does_not_mix_in(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", "elsewhere")
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     monkeypatch.setenv("QBOUND_REQUIRE_BROWSER", "1")
     environment = run.environment()
-    assert "PYTHONPATH" not in environment
+    assert not environment.keys() & {"PYTHONPATH", "PYTHONDONTWRITEBYTECODE"}
     assert environment["PYTHONNOUSERSITE"] == "1"
     assert environment["QBOUND_REQUIRE_BROWSER"] == "1"
 

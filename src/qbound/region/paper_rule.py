@@ -102,7 +102,9 @@ def box(robot: Robot) -> Box:
         If a joint has no window: the paper's rule then says nothing about it. Or if windows and
         limits leave it no value.
     """
-    lower, upper = zip(*(_sides(robot, joint) for joint in range(len(robot.joints))), strict=True)
+    found = windows(robot)
+    sides = (_sides(robot, joint, found) for joint in range(len(robot.joints)))
+    lower, upper = zip(*sides, strict=True)
     return Box(
         lower=np.array([value for value, _ in lower]),
         upper=np.array([value for value, _ in upper]),
@@ -148,9 +150,11 @@ def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:
             yield Window(pair.name, component + 1, joint, upper - TURN, upper)
 
 
-def _sides(robot: Robot, joint: int) -> tuple[tuple[float, Bound], tuple[float, Bound]]:
+def _sides(
+    robot: Robot, joint: int, found: list[Window]
+) -> tuple[tuple[float, Bound], tuple[float, Bound]]:
     """Return the highest lower end and the lowest upper end of a joint, each with its bound."""
-    own, moved = [window for window in windows(robot) if window.joint == joint], robot.joints[joint]
+    own, moved = [window for window in found if window.joint == joint], robot.joints[joint]
     if not own:
         raise ValueError(f"no point pair bounds joint {moved.name!r}")
     lower = [(w.lower, Bound(w.boundary, w.component, LOWER)) for w in own]
