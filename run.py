@@ -365,7 +365,7 @@ def build_pages() -> None:
 
 
 def sphinx(builder: str, source: Path, target: Path) -> Command:
-    strict = ["-W", "-n", "--keep-going", "-q", "-b", builder]
+    strict = ["-W", "-n", "--keep-going", "-q", "-j", "auto", "-b", builder]
     doctrees = ["-d", target / f"doctrees-{builder}"]
     return [in_venv("python"), "-m", "sphinx", *strict, *doctrees, source, target / builder]
 

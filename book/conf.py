@@ -6,6 +6,7 @@ from importlib.metadata import files
 from pathlib import Path
 
 from sphinx.ext import autosummary
+from sphinx_proof.domain import ProofDomain
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "_ext"))
@@ -53,6 +54,8 @@ extensions = [
     "recorded_numbers",
     "result_pages",
 ]
+# Several processes read the pages: what this domain keeps, its extension merges, not the domain.
+ProofDomain.merge_domaindata = lambda *_: None
 exclude_patterns = ["_build", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]
 

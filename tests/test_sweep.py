@@ -25,11 +25,17 @@ from qbound.cli import main
 from qbound.design import varied, workspace_area
 from qbound.figures.sweeps import sweep_picture
 from qbound.model.schema import SENTENCES
-from qbound.sweeps import SpecificationError, grid, measures
+from qbound.sweeps import grid, measures
 from qbound.sweeps.cells import OtherVersionError, measure_job, versions
 from qbound.sweeps.cluster import connected, run_jobs
 from qbound.sweeps.run import execute
-from qbound.sweeps.specification import MeasureName, Study, json_schema, read_specification
+from qbound.sweeps.specification import (
+    MeasureName,
+    SpecificationError,
+    Study,
+    json_schema,
+    read_specification,
+)
 from qbound.sweeps.store import OtherSweepError
 
 VARY = '{ number = "joint.q2.origin.0", from = 10, to = 20, count = 3 }'

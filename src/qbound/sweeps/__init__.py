@@ -11,6 +11,5 @@ It needs `qbound[cluster]`. Not in the paper.
 """
 
 from qbound.sweeps.run import Swept, sweep
-from qbound.sweeps.specification import SpecificationError
 
-__all__ = ["SpecificationError", "Swept", "sweep"]
+__all__ = ["Swept", "sweep"]
