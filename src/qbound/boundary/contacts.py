@@ -14,12 +14,12 @@ each in the first degree.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.records import dataclass
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -25,6 +25,7 @@ from qbound.boundary.screen import LEAST, SINES, Screen, reaches, screen
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
+from qbound.records import dataclass
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.factors import FACTORS, Kind
+from qbound.records import dataclass
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]

@@ -18,7 +18,6 @@ products of errors apart; `ROOM` is for them, and for the rounding of double pre
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +25,7 @@ from numpy.typing import NDArray
 
 from qbound.boundary.monomials import Monomials, padded
 from qbound.forms.factors import Kind
+from qbound.records import dataclass
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]

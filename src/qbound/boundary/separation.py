@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 
@@ -19,6 +18,7 @@ from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, ref
 from qbound.boundary.poses import POSE, PlanePoses, of_far_places, of_near_places
 from qbound.geometry.distance import View, edges, signed
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Held, Robot
+from qbound.records import dataclass
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]

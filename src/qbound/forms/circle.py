@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.records import dataclass
 from qbound.tolerances import TANGENT, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]

@@ -7,11 +7,12 @@ SymPy expressions and balls alike; a new kind of joint is a new row.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from qbound.records import dataclass
 
 Kind = Literal["revolute", "prismatic"]
 Array = NDArray[Any]

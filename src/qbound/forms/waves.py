@@ -3,13 +3,13 @@ r"""Harmonic forms as sums of waves: amplitudes, wave vectors, and powers of sli
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.factors import FACTORS, Kind
+from qbound.records import dataclass
 
 Array = NDArray[Any]
 

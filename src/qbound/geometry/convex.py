@@ -8,11 +8,13 @@ user's corners may be rounded by is stated in one place.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from qbound.records import dataclass
 
 Floats = NDArray[np.float64]
 Whole = tuple[int, int]

@@ -9,7 +9,6 @@ this only compares, it turns lower bounds of the forms into proofs, and safe ste
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.factors import Kind
 from qbound.forms.harmonic import HarmonicForm
+from qbound.records import dataclass
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -17,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import basis_and_slope
 from qbound.forms.harmonic import HarmonicForm
+from qbound.records import dataclass
 from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
 

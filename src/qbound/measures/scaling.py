@@ -8,7 +8,6 @@ bodies all forms of one of the tests that part them (`conditions`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +21,7 @@ from qbound.geometry.simplices import halved
 from qbound.measures.conditions import Conditions, conditions
 from qbound.measures.worst_bodies import least_margin_over
 from qbound.model.robot import Boundary, Robot
+from qbound.records import dataclass
 from qbound.tolerances import PROVED_SCALE, TANGENT
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +19,7 @@ from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
 from qbound.measures.conditions import Conditions, conditions
 from qbound.measures.scaling import first_exit, violation
+from qbound.records import dataclass
 from qbound.region import Component, Problem
 from qbound.region.arcs import Arc
 from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE

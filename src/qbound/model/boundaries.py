@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from qbound.model.frames import whole_numbers
 from qbound.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from qbound.model.shapes import Point
+from qbound.records import dataclass
 
 Array = NDArray[Any]
 Source = Mapping[str, Any]

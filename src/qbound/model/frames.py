@@ -7,12 +7,12 @@ of SymPy expressions, which is how the book proves what the numbers show.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.records import dataclass
 from qbound.tolerances import ZERO_AMPLITUDE
 
 Array = NDArray[Any]

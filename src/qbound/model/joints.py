@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
@@ -29,6 +29,7 @@ from qbound.model.rows import (
     unit_vector,
 )
 from qbound.model.schema import shown
+from qbound.records import dataclass
 
 Array = NDArray[Any]
 Kind = Literal["revolute", "prismatic"]

@@ -8,7 +8,6 @@ holds at every configuration.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -17,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.model.frames import Frames, cross
 from qbound.model.joints import Joint
 from qbound.model.schema import one_line
+from qbound.records import dataclass
 from qbound.tolerances import ZERO_AMPLITUDE
 
 Array = NDArray[Any]

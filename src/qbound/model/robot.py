@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import Any, TypeVar
@@ -18,6 +17,7 @@ from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
 from qbound.model.values import joint_values
+from qbound.records import dataclass
 
 __all__ = [
     "JOINT_TYPES",

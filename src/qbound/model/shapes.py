@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar
 
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.geometry.convex import convex_parts, polygon_fault
 from qbound.model.rows import Label, Number, Row, Size, Vector, plain
+from qbound.records import dataclass
 from qbound.tolerances import CHORD
 
 Array = NDArray[Any]

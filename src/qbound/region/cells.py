@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
+from qbound.records import dataclass
 from qbound.region.decomposition import Cell, Decomposition
 from qbound.region.plane import Plane, ranges
 from qbound.tolerances import SAME_POINT, TOUCH

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Final
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, nearest_turn
 from qbound.printable import printable
+from qbound.records import dataclass
 from qbound.region.arcs import NODES, Arc, legendre, ordered
 from qbound.region.cells import CellComplex, Placed
 from qbound.region.loops import Windings, behind

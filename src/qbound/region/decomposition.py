@@ -9,7 +9,6 @@ number of pairs in collision goes up or down by one at each. No grid, no sample,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, turns_up_to
+from qbound.records import dataclass
 from qbound.region.critical import base_values, meetings, own_events, univariate
 from qbound.region.pieces import INSIDE, Pieces, crossings, find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges

@@ -7,7 +7,6 @@ an arc, and the corners where two forms meet are brought onto both. All loops ar
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeVar
 
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.factors import basis_and_slope
+from qbound.records import dataclass
 from qbound.region.arcs import FIBRE, Arc, Pieces
 from qbound.region.cells import DOWN, UP, UPPER, CellComplex
 from qbound.region.plane import Plane

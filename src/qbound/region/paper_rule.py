@@ -9,7 +9,6 @@ the clearance rule's question, and the two rules are kept apart.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final, TypeVar
 
 import numpy as np
@@ -22,6 +21,7 @@ from qbound.forms.circle import circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.printable import printable
+from qbound.records import dataclass
 from qbound.region.problem import Problem, state
 from qbound.tolerances import ZERO_AMPLITUDE
 

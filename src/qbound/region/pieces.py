@@ -7,13 +7,12 @@ conditions; never with other features) a root is a contact or none, and one plac
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
+from qbound.records import dataclass
 from qbound.region.critical import Complexes, base_values, meetings, own_events, univariate
 from qbound.region.plane import Plane, normalised, ranges
 from qbound.tolerances import AGREE, BOX, CONTACT_SIDE, NEAR, NEGLIGIBLE, SAME_CRITICAL, WALL

@@ -8,7 +8,7 @@ engine serves both.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, lru_cache
 from typing import Literal
 
@@ -30,6 +30,7 @@ from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Held, Robot
 from qbound.printable import printable
+from qbound.records import dataclass
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 from itertools import chain, islice
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
+from qbound.records import dataclass
 from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured, winding_table

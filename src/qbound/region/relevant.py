@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
@@ -23,6 +22,7 @@ from qbound.boundary.evaluator import Range
 from qbound.forms.angles import TURN
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
+from qbound.records import dataclass
 from qbound.region.problem import Problem
 from qbound.tolerances import UNCERTAIN_SIGN
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.model.robot import Held, Robot, refuse_no_robot
+from qbound.records import dataclass
 from qbound.region.region import Region, find_region
 from qbound.tolerances import SAME_POINT
 
