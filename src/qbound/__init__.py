@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from qbound.model.robot import Robot
     from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
     from qbound.region import Region, find_region, find_slices, margins, violated
-    from qbound.version import __version__
+
+    __version__: str
 
 __all__ = [
     "HarmonicForm",

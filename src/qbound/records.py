@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 if TYPE_CHECKING:
     from inspect import Signature
 
+__all__ = ["dataclass", "record"]
+
 Class = TypeVar("Class")
 Fields = tuple[Field[Any], ...]
 
@@ -64,7 +66,7 @@ def _initialiser(cls: type, fields: Fields) -> Callable[..., None]:
     count, has_more = len(names), hasattr(cls, "__post_init__")
     keep = object.__setattr__  # not by `__dict__`, which would make every attribute slower to read
 
-    def __init__(self: Any, /, *values: Any, **named: Any) -> None:  # noqa: N807
+    def __init__(self: Any, /, *values: Any, **named: Any) -> None:
         if named or len(values) != count:
             values = _completed(cls, fields, values, named)
         for name, value in zip(names, values, strict=True):
@@ -114,7 +116,7 @@ def _signature(cls: type) -> Signature:
             return MADE
         return Parameter.empty if field.default is MISSING else field.default
 
-    each: Fields = dataclasses.fields(cls)  # type: ignore[arg-type]  # a dataclass
+    each: Fields = dataclasses.fields(cls)
     kind = Parameter.POSITIONAL_OR_KEYWORD
     return Signature(
         [Parameter(f.name, kind, default=default(f), annotation=f.type) for f in each],
@@ -157,6 +159,6 @@ def _hash(values: attrgetter[Any]) -> Callable[[Any], int]:
 
 
 if TYPE_CHECKING:
-    from dataclasses import dataclass as dataclass
+    from dataclasses import dataclass
 else:
     dataclass = record

@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if arguments is not None:
                 return _run(arguments)
             with _process():
-                return _run(sys.argv[1:], before_work=gc.enable)
+                return _run(sys.argv[1:], before_work=_begin)
         except BrokenPipeError:  # as in `qbound region ... | head`
             return NO_READER
         except (ValueError, OSError, ImportError) as error:
@@ -104,6 +104,11 @@ def _process() -> Iterator[None]:
         yield
     finally:
         gc.freeze()
+
+
+def _begin() -> None:
+    gc.freeze()  # or else all that is there would be looked through at once
+    gc.enable()
 
 
 def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -> int:
