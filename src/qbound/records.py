@@ -43,7 +43,10 @@ def record(*, frozen: bool = False, eq: bool = True) -> Callable[[type[Class]], 
 
     def decorated(cls: type[Class]) -> type[Class]:
         has_own_repr = "__repr__" in vars(cls)
-        made: Any = dataclasses.dataclass(init=False, repr=False, eq=False)(cls)
+        inherits = any(dataclasses.is_dataclass(base) for base in cls.__bases__)
+        made: Any = dataclasses.dataclass(
+            init=False, repr=False, eq=False, frozen=frozen and inherits
+        )(cls)
         fields: Fields = dataclasses.fields(made)
         made.__init__ = _initialiser(made, fields)
         made.__signature__ = _LateSignature()
@@ -51,6 +54,7 @@ def record(*, frozen: bool = False, eq: bool = True) -> Callable[[type[Class]], 
             made.__repr__ = _shown
         if frozen:
             made.__setattr__, made.__delattr__ = _refuse_assignment, _refuse_deletion
+            made.__dataclass_params__.frozen = True  # dataclasses that inherit ask for it
         if eq:
             values = attrgetter(*(field.name for field in fields))
             made.__eq__ = _equality(values)

@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if arguments is not None:
                 return _run(arguments)
             with _process():
-                return _run(sys.argv[1:], before_work=_begin)
+                return _run(sys.argv[1:], before_work=_look_again)
         except BrokenPipeError:  # as in `qbound region ... | head`
             return NO_READER
         except (ValueError, OSError, ImportError) as error:
@@ -103,10 +103,10 @@ def _process() -> Iterator[None]:
     try:
         yield
     finally:
-        gc.freeze()
+        _look_again()
 
 
-def _begin() -> None:
+def _look_again() -> None:
     gc.freeze()  # or else all that is there would be looked through at once
     gc.enable()
 
@@ -125,7 +125,7 @@ def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -
 def _refuse_empty(words: Sequence[str]) -> None:
     """Refuse words that hold nothing: ``--json ""`` is no option left out, but a slip."""
     if words and not words[0]:
-        raise ValueError("an empty word where a command is wanted; qbound --help lists them")
+        raise ValueError("an empty value where a command is wanted; qbound --help lists them")
     for before, word in pairwise(["", *words]):
         option = word.startswith("-") and word.endswith("=")
         if not word or option:
