@@ -263,7 +263,8 @@ class Robot:
         columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
         pairs = zip(self.joints, columns, strict=True)
         moved = [frame for joint, x in pairs for frame in joint.frames_at(x)]
-        fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
+        still = np.eye(3, dtype=int)
+        fixed = [Frame(point.name, point.frame, still, point.at) for point in self.points]
         return Frames(self.base, [*moved, *fixed])
 
 
