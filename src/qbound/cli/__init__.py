@@ -23,7 +23,6 @@ from typing import Any, NoReturn
 
 from qbound.cli.files import check_targets
 from qbound.cli.terminal import complain, finish_output, plain_terminal, say
-from qbound.extras import explained
 from qbound.printable import printable
 
 COMMANDS = {
@@ -76,6 +75,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except BrokenPipeError:  # as in `qbound region ... | head`
             return NO_READER
         except (ValueError, OSError, ImportError) as error:
+            from qbound.extras import explained
+
             complain(explained(error))
         except MemoryError:
             complain("this asks for more memory than there is")
@@ -176,6 +177,8 @@ def _add_others(commands: Any) -> None:
     One that fails, in whatever way, is named and left out: the others answer.
     """
     from importlib.metadata import entry_points  # slow: it reads mail
+
+    from qbound.extras import explained
 
     for found in sorted(entry_points(group=GROUP), key=lambda found: found.name):
         if found.name in COMMANDS:
