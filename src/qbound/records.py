@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import MISSING, Field, FrozenInstanceError
+from itertools import repeat
 from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
@@ -73,8 +74,7 @@ def _initialiser(cls: type, fields: Fields) -> Callable[..., None]:
     def __init__(self: Any, /, *values: Any, **named: Any) -> None:
         if named or len(values) != count:
             values = _completed(cls, fields, values, named)
-        for name, value in zip(names, values, strict=True):
-            keep(self, name, value)
+        any(map(keep, repeat(self), names, values))  # a loop: each gives None
         if has_more:
             self.__post_init__()
 
