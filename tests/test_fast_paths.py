@@ -1,5 +1,6 @@
 """What was made fast says what the plain way says: quadrature, products, pairs, commands."""
 
+import gc
 import re
 import subprocess
 import sys
@@ -8,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import qbound
 from qbound import find_region, load_robot
-from qbound.cli import COMMANDS, command_line, command_parsers
+from qbound.cli import COMMANDS, command_line, command_parsers, main
 from qbound.forms.factors import basis, basis_and_slope, basis_slope
 from qbound.measures import nearest
 from qbound.model.frames import cross
@@ -126,13 +128,90 @@ def test_contains_imports_what_it_needs():
     heavy = re.compile(
         r"qbound\.(proofs|arms|explorer|figures|sweeps|urdf|workspace|paths)"
         r"|importlib\.(metadata|resources)|numpy\.(ma|polynomial)|email|csv|json"
+        r"|pathlib|shutil|threading|qbound\.region\.paper_rule"
     )
     code = (
-        "import sys; from qbound.cli import main; "
+        "import sys; before = {*sys.modules}; from qbound.cli import main; "
         "status = main(['contains', 'minervabot-v2', '20deg', '-45deg']); "
-        "print(status, *sys.modules)"
+        "print(status, *{*sys.modules} - before)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     status, *modules = done.stdout.splitlines()[-1].split()
     assert status == "0"
     assert [name for name in modules if heavy.fullmatch(name)] == []
+
+
+def test_a_process_of_its_own_answers_as_a_call_does(capsys):
+    words = ["contains", "minervabot-v2", "100deg", "20deg"]
+    command = [sys.executable, "-W", "error", "-m", "qbound", *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert gc.isenabled()
+    assert (main(words), *capsys.readouterr()) == (done.returncode, done.stdout, done.stderr)
+    assert done.returncode == 1
+
+
+def test_a_process_looks_for_garbage_while_it_works_and_only_then(monkeypatch):
+    looking = []
+
+    def run(options):
+        looking.append(gc.isenabled())
+        return 0
+
+    monkeypatch.setattr("sys.argv", ["qbound", "robots"])
+    monkeypatch.setattr("qbound.cli.robots.run", run)
+    monkeypatch.setattr(gc, "freeze", lambda: looking.append("kept"))
+    assert main() == 0
+    assert looking == ["kept", True, "kept"]
+
+
+# --- commands of others ---------------------------------------------------------------------------
+
+
+class Plugin:
+    """An entry point: of a module with `add_to`, or of one that fails."""
+
+    def __init__(self, name, fault=None):
+        self.name, self.value, self.fault = name, f"others.{name}", fault
+
+    def load(self):
+        if self.fault:
+            raise self.fault
+        return self
+
+    def add_to(self, commands):
+        commands.add_parser(self.name, help="a plug-in")
+
+
+@pytest.fixture
+def plugins(monkeypatch):
+    found = [
+        Plugin("good"),
+        Plugin("lost", ModuleNotFoundError("No module named 'others'")),
+        Plugin("worse", RuntimeError()),
+        Plugin("region", RuntimeError("ours keeps its name")),
+    ]
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: found)
+
+
+def test_a_plugin_that_cannot_be_imported_is_named_and_the_others_answer(plugins, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    out, err = capsys.readouterr()
+    assert ended.value.code == 0
+    assert "a plug-in" in out
+    assert [line.partition(": the command ")[2] for line in err.splitlines()] == [
+        "lost (others.lost) cannot be used: No module named 'others'",
+        "worse (others.worse) cannot be used: RuntimeError",
+    ]
+
+
+def test_the_version_is_told_whatever_the_plugins_are(plugins, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr() == (f"qbound {qbound.__version__}\n", "")
+
+
+def test_an_empty_command_is_no_option_without_a_value(capsys):
+    assert main([""]) == 2
+    assert capsys.readouterr().err.startswith("qbound: an empty value where a command is wanted")

@@ -1,8 +1,10 @@
 """Importing the package stays light: what only some calls need is loaded by those calls."""
 
+import ast
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -18,7 +20,8 @@ def loaded_by(code: str) -> set[str]:
 
 
 def test_import_loads_no_heavy_module() -> None:
-    modules = loaded_by("import qbound")
+    assert not loaded_by("import qbound") & {"numpy", "msgspec", *HEAVY}
+    modules = loaded_by("from qbound import *")
     assert {"qbound", "numpy"} <= modules
     assert not modules & set(HEAVY)
 
@@ -57,9 +60,30 @@ def test_the_front_door_holds_what_a_reader_needs_first(name) -> None:
     assert all(hasattr(qbound, exported) for exported in qbound.__all__)
 
 
+def test_the_front_door_opens_on_what_type_checkers_see() -> None:
+    import qbound
+
+    tree = ast.parse(Path(qbound.__file__).read_text(encoding="utf-8"))
+    [seen] = [
+        node
+        for node in tree.body
+        if isinstance(node, ast.If)
+        and "TYPE" in ast.unparse(node.test)
+        and not isinstance(node.test, ast.UnaryOp)
+    ]
+    imports = [node for node in seen.body if isinstance(node, ast.ImportFrom)]
+    told = {node.module: tuple(name.name for name in node.names) for node in imports}
+    places = {f"qbound.{place}": names for place, names in qbound._PLACES.items()}
+    assert places == told | {"qbound.version": ("__version__",)}
+    assert sorted(name for names in told.values() for name in names) == qbound.__all__
+    assert {*qbound.__all__, "__version__", "region", "units"} <= {*dir(qbound)}
+    assert qbound.units.__name__ == "qbound.units"
+    with pytest.raises(AttributeError, match="'qbound' has no attribute 'find_regions'"):
+        qbound.find_regions  # noqa: B018
+
+
 def test_version_is_that_of_the_metadata() -> None:
     import tomllib
-    from pathlib import Path
 
     import qbound
 

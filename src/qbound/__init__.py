@@ -10,12 +10,18 @@ On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, 
 `printable`, `extras`, `version`.
 """
 
-from qbound.boundary.functions import clearance, components, pair_vector
-from qbound.forms.circle import circle_arc, circle_roots
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Robot
-from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-from qbound.region import Region, find_region, find_slices, margins, violated
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from qbound.boundary.functions import clearance, components, pair_vector
+    from qbound.forms.circle import circle_arc, circle_roots
+    from qbound.forms.harmonic import HarmonicForm
+    from qbound.model.robot import Robot
+    from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
+    from qbound.region import Region, find_region, find_slices, margins, violated
+
+    __version__: str
 
 __all__ = [
     "HarmonicForm",
@@ -36,10 +42,43 @@ __all__ = [
     "violated",
 ]
 
+_PLACES = {
+    "boundary.functions": ("clearance", "components", "pair_vector"),
+    "forms.circle": ("circle_arc", "circle_roots"),
+    "forms.harmonic": ("HarmonicForm",),
+    "model.robot": ("Robot",),
+    "model.robotfile": ("RobotFileError", "load_robot", "packaged_robots", "save_robot"),
+    "region": ("Region", "find_region", "find_slices", "margins", "violated"),
+    "version": ("__version__",),
+}
+"""Where each name comes from when it is first asked for: a command loads only what it uses."""
 
-def __getattr__(name: str) -> str:
-    if name == "__version__":  # read from the metadata where it is asked for: the search is slow
-        from qbound.version import __version__
+_PARTS = (
+    "boundary",
+    "extras",
+    "files",
+    "forms",
+    "geometry",
+    "model",
+    "printable",
+    "region",
+    "tolerances",
+    "units",
+)
+"""What `import qbound` lets one reach without an import of its own."""
 
-        return __version__
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:  # to a type checker an unknown name stays one
+
+    def __getattr__(name: str) -> Any:
+        for place, names in _PLACES.items():
+            if name in names:
+                found = getattr(import_module(f"{__name__}.{place}"), name)
+                globals()[name] = found
+                return found
+        if name in _PARTS:
+            return import_module(f"{__name__}.{name}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, "__version__", *_PARTS})

@@ -10,9 +10,12 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterable
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from qbound.printable import printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 CIRCLE = "links lead in a circle"
 
@@ -55,6 +58,8 @@ def target(path: str | Path) -> Path:
     OSError
         If links lead in a circle, the folder is missing, or the file is none that can be replaced.
     """
+    from pathlib import Path  # with all that it imports: commands that write nothing start sooner
+
     try:
         found = Path(path).resolve()
         reason = _refusal(found)

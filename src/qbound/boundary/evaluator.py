@@ -376,7 +376,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     """
     formed = [boundary for boundary in robot.used if not bounds_bodies(boundary)]
     forms = compiled(
-        stacked(robot, formed),
+        forms_in_use(robot),
         [boundary.name for boundary in formed],
         [robot.least_distance(boundary) for boundary in formed],
         [joint.limits if limits else None for joint in robot.joints],
@@ -386,6 +386,12 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     if len(formed) == len(robot.used):
         return forms
     return with_bodies(forms, Separation(robot), [boundary.name for boundary in robot.used])
+
+
+@lru_cache(maxsize=4)
+def forms_in_use(robot: Robot) -> HarmonicForm:
+    """Derive the forms of all boundaries in use; slices of one robot restrict the same ones."""
+    return stacked(robot, [boundary for boundary in robot.used if not bounds_bodies(boundary)])
 
 
 def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:

@@ -52,7 +52,7 @@ def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicF
     ValueError
         If the observer is no frame between the base and the point.
     """
-    return _propagate(robot, point, observer)[0]
+    return HarmonicForm(_propagate(robot, point, observer)[0], robot.kinds)
 
 
 def squared_distance(
@@ -63,10 +63,9 @@ def squared_distance(
     It has no products such as :math:`\cos^2 q`: a rotation keeps lengths, so a joint only adds
     twice a dot product. Arguments and errors as in `position`.
     """
-    coordinates, squared = _propagate(robot, point, observer)
+    u, squared = _propagate(robot, point, observer)
     centre = np.asarray(centre)
-    cross = coordinates.dot(-2 * centre).coefficients
-    return HarmonicForm(squared.coefficients + cross, robot.kinds) + np.asarray(centre @ centre)
+    return HarmonicForm(_from(centre, u, squared), robot.kinds)
 
 
 def observer(robot: Robot, pair: Pair) -> str:
@@ -229,8 +228,9 @@ def _components(boundary: Boundary, robot: Robot) -> HarmonicForm:
 @_clearance.register
 def _(boundary: Pair, robot: Robot) -> HarmonicForm:
     _, near, far = _near_far(robot, boundary)
-    squared = squared_distance(robot, far.name, near.frame, near.at)
-    return squared - robot.required_distance(boundary) ** 2
+    u, squared = _propagate(robot, far.name, near.frame)
+    from_near, d_min = _from(near.at, u, squared), robot.required_distance(boundary)
+    return HarmonicForm(add_constant(from_near, -(d_min**2)), robot.kinds)
 
 
 @_components.register
@@ -253,7 +253,8 @@ def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
     if boundary.body is not None:
         raise ValueError(_of_bodies(boundary))
     radius = robot.point(boundary.point).radius
-    return position(robot, boundary.point).dot(boundary.normal) - (boundary.offset + radius)
+    height = _dot(boundary.normal, _propagate(robot, boundary.point, None)[0])
+    return HarmonicForm(add_constant(height, -(boundary.offset + radius)), robot.kinds)
 
 
 @_components.register
@@ -282,15 +283,23 @@ def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     return -1, second, first
 
 
-def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[HarmonicForm, HarmonicForm]:
-    """Carry the position u of a point, and |u|^2, from its frame to the observer's."""
+def _from(centre: Array, u: Array, squared: Array) -> Array:
+    """Return the coefficients of |u - centre|^2, of those of u and of |u|^2."""
+    return add_constant(squared + _dot(-2 * centre, u), centre @ centre)
+
+
+def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[Array, Array]:
+    """Carry the position u of a point, and |u|^2, from its frame to the observer's: coefficients.
+
+    Of u they have shape (3, 3, ..., 3), of its square (3, ..., 3).
+    """
     point = robot.point(name)
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
     u = add_constant(u, point.at)
     squared = add_constant(np.zeros_like(u[0]), point.at @ point.at)
     for j, joint in _steps(robot, point, robot.base if observer is None else observer):
         u, squared = _pass_joint(joint, j, u, squared)
-    return HarmonicForm(u, robot.kinds), HarmonicForm(squared, robot.kinds)
+    return u, squared
 
 
 def _order(robot: Robot, point: Point) -> tuple[int, int]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from qbound.cli.terminal import say
 from qbound.files import target, write_together
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 Content = str | bytes
 Output = tuple[str | None, Callable[[], Content]]
@@ -54,9 +57,14 @@ def check_targets(
     OSError
         If a folder is missing, or a target is no regular file or may not be written.
     """
+    written = [file for file in files if file is not None]
+    if not written:
+        return
+    from pathlib import Path  # slow to import, and most commands write nothing
+
     read = {Path(file).resolve() for file in sources if file is not None and Path(file).is_file()}
     seen = set()
-    for file in (file for file in files if file is not None):
+    for file in written:
         path = _open_output() if file == "-" else target(file)
         if path in seen:
             raise ValueError(f"{file}: two outputs go to this one place")
@@ -71,6 +79,8 @@ def check_targets(
 def _open_output() -> Path:
     if sys.stdout is None:
         raise ValueError("-: standard output is closed")
+    from pathlib import Path
+
     return Path("-")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -35,6 +34,8 @@ def working(what: str) -> Iterator[None]:
     if not is_terminal():
         yield
         return
+    import threading
+
     over, start = threading.Event(), time.monotonic()
 
     def tick() -> None:

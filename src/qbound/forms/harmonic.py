@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.extras import require
 from qbound.forms.factors import FACTORS, Kind, basis, basis_slope
 from qbound.forms.waves import Waves, to_waves
 
@@ -207,6 +206,8 @@ class HarmonicForm:
         q : sequence of sympy.Expr
             One symbol a joint.
         """
+        from qbound.extras import require
+
         require("sympy")
         import sympy
 

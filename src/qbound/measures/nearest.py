@@ -286,14 +286,18 @@ def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
         return nearest
     slope = _slope(arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
     falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
-    return np.concatenate([nearest, _flat(arc, start[falls], end[falls], q, w)])
+    if not falls.any():
+        return nearest
+    return np.concatenate([nearest, _flat(arc, start[falls], end[falls], slope[falls], q, w)])
 
 
-def _flat(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
-    """Return where the distance stops falling over each chord: false position (Illinois)."""
+def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Floats) -> Floats:
+    """Return where the distance stops falling over each chord: false position (Illinois).
+
+    Of the chords there are the slopes at both ends, shape (n, 2): below 0, then above.
+    """
     low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
-    ends = np.broadcast_to([[0.0, 1.0]], (len(start), 2))
-    below, above = np.split(_slope(arc, start, end, ends, q, w)[1], 2, axis=1)
+    below, above = np.split(slope, 2, axis=1)
     falls = above < below  # nowhere
     # The slope is a product of two such lengths, and no nearer to zero than that is rounded.
     rounding = 2.0**-50 * np.hypot(*(w * (end - start)).T) * np.hypot(*(w * (start - q)).T)

@@ -3,8 +3,6 @@
 A new one needs its class and its table here, and its forms in `boundary.functions`.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -43,14 +41,14 @@ class Boundary(ABC):
         """
 
     @abstractmethod
-    def with_extra_clearance(self, length: float) -> Boundary:
+    def with_extra_clearance(self, length: float) -> "Boundary":
         """Return it asking for some more distance."""
 
     @abstractmethod
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Boundary:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "Boundary":
         """Return it with the numbers of a table, or of its own attributes, of another kind."""
 
-    def with_labels(self, label: Callable[[str, float], Any]) -> Boundary:
+    def with_labels(self, label: Callable[[str, float], Any]) -> "Boundary":
         """Return it with `label(letter, value)` for what Table 5 gives a label: nothing here."""
         return self
 
@@ -71,15 +69,15 @@ class Pair(Boundary):
         """Return both radii plus the clearance."""
         return sum(point(name).radius for name in self.points) + self.clearance
 
-    def with_extra_clearance(self, length: float) -> Pair:
+    def with_extra_clearance(self, length: float) -> "Pair":
         """Ask for more between the spheres."""
         return replace(self, clearance=self.clearance + length)
 
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Pair:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "Pair":
         """Convert the clearance."""
         return replace(self, clearance=number(source.get("clearance", 0)))
 
-    def row(self) -> PairRow:
+    def row(self) -> "PairRow":
         """Return its table [[boundary]]."""
         return PairRow.of(self)
 
@@ -95,15 +93,15 @@ class BodyPair(Boundary):
     def least_distance(self, point: Find) -> None:
         """Return None: its margin is a length."""
 
-    def with_extra_clearance(self, length: float) -> BodyPair:
+    def with_extra_clearance(self, length: float) -> "BodyPair":
         """Ask for more between the bodies."""
         return replace(self, clearance=self.clearance + length)
 
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> BodyPair:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "BodyPair":
         """Convert the clearance."""
         return replace(self, clearance=number(source.get("clearance", 0)))
 
-    def row(self) -> BodyPairRow:
+    def row(self) -> "BodyPairRow":
         """Return its table [[boundary]]."""
         return BodyPairRow.of(self)
 
@@ -130,21 +128,21 @@ class HalfSpace(Boundary):
     def least_distance(self, point: Find) -> None:
         """Return None: its form is the height over the wall."""
 
-    def with_extra_clearance(self, length: float) -> HalfSpace:
+    def with_extra_clearance(self, length: float) -> "HalfSpace":
         """Move the wall inwards."""
         return replace(self, offset=self.offset + length)
 
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> HalfSpace:
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "HalfSpace":
         """Convert normal and offset."""
         return replace(self, normal=direction(source["normal"]), offset=number(source["offset"]))
 
-    def with_labels(self, label: Callable[[str, float], Any]) -> HalfSpace:
+    def with_labels(self, label: Callable[[str, float], Any]) -> "HalfSpace":
         """Label the offset; the normal is made of whole numbers where it can be."""
         letter = "xyz"[int(np.argmax(np.abs(self.normal)))]
         offset = label(letter, self.offset)
         return replace(self, offset=offset, normal=whole_numbers(self.normal))
 
-    def row(self) -> HalfSpaceRow:
+    def row(self) -> "HalfSpaceRow":
         """Return its table [[boundary]]."""
         what = {"point": self.point} if self.body is None else {"body": self.body}
         normal, offset = plain(self.normal), plain(self.offset)

@@ -4,8 +4,6 @@ A new one needs its class here and its name in `JointRow.type`: frames, units, l
 follow. Its factor in a harmonic form (`kind`) is one that `forms` knows.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -89,7 +87,7 @@ class Joint(ABC):
         """Names of all frames that it moves, its own last."""
         return (self.frame,)
 
-    def steps(self, observer: str, frame: str) -> tuple[Joint, ...]:
+    def steps(self, observer: str, frame: str) -> tuple["Joint", ...]:
         """Return the motion that brings what its parent, or `observer`, sees of one of its frames.
 
         A single joint, or none: `observer` is the frame that sees it, if this joint moves that too,
@@ -98,7 +96,7 @@ class Joint(ABC):
         return () if observer == self.frame else (self,)
 
     @classmethod
-    def further(cls, row: JointRow) -> dict[str, Any]:
+    def further(cls, row: "JointRow") -> dict[str, Any]:
         """Return the attributes that only this type has, from its table."""
         return {}
 
@@ -132,7 +130,7 @@ class Joint(ABC):
         """Return a joint of another type in its place, with some attributes changed."""
         return kind(**{each.name: getattr(self, each.name) for each in fields(Joint)} | changes)
 
-    def row(self, angle: float) -> JointRow:
+    def row(self, angle: float) -> "JointRow":
         """Return its table of a file whose unit of angle is `angle` radians."""
         scale = self.scale(angle)
         straight = np.array_equal(self.mount, np.eye(3))
@@ -245,11 +243,11 @@ class Parallelogram(Revolute):
         return float(np.linalg.norm(np.asarray(self.crank, dtype=float)))
 
     @classmethod
-    def further(cls, row: JointRow) -> dict[str, Any]:
+    def further(cls, row: "JointRow") -> dict[str, Any]:
         """Read crank and bar, which `robotcheck` asks for."""
         return {"crank": np.array(row.crank, dtype=float), "bar": row.bar}
 
-    def row(self, angle: float) -> JointRow:
+    def row(self, angle: float) -> "JointRow":
         """Write crank and bar too."""
         return structs.replace(super().row(angle), crank=plain(self.crank), bar=self.bar)
 

@@ -141,7 +141,11 @@ class Robot:
 
     def point(self, name: str) -> Point:
         """Return the point of that name."""
-        return _named("point", {p.name: p for p in self.points}, name)
+        return _named("point", self._points, name)
+
+    @cached_property
+    def _points(self) -> dict[str, Point]:
+        return {point.name: point for point in self.points}
 
     def body(self, name: str) -> Body:
         """Return the body, of a link or an obstacle, of that name."""
@@ -164,11 +168,14 @@ class Robot:
 
     def depth(self, frame: str) -> int:
         """Count the joints between the base and a frame; ValueError if there is no such frame."""
-        depths = {self.base: 0}
-        depths |= {name: j for j, joint in enumerate(self.joints, start=1) for name in joint.labels}
-        if frame not in depths:
-            raise ValueError(f"no frame {frame!r}; there are {', '.join(depths)}")
-        return depths[frame]
+        if frame not in self._depths:
+            raise ValueError(f"no frame {frame!r}; there are {', '.join(self._depths)}")
+        return self._depths[frame]
+
+    @cached_property
+    def _depths(self) -> dict[str, int]:
+        moved = enumerate(self.joints, start=1)
+        return {self.base: 0} | {name: j for j, joint in moved for name in joint.labels}
 
     def joint_index(self, joint: int | str) -> int:
         """Return the index of a joint that is given by its index or its name."""
@@ -256,7 +263,8 @@ class Robot:
         columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
         pairs = zip(self.joints, columns, strict=True)
         moved = [frame for joint, x in pairs for frame in joint.frames_at(x)]
-        fixed = [Frame(p.name, p.frame, np.eye(3, dtype=int), p.at) for p in self.points]
+        still = np.eye(3, dtype=int)
+        fixed = [Frame(point.name, point.frame, still, point.at) for point in self.points]
         return Frames(self.base, [*moved, *fixed])
 
 

@@ -3,8 +3,6 @@
 Meaning is what types cannot say: unique names, one chain, references and so on.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence

@@ -11,8 +11,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import date, datetime, time
-from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 import numpy as np
@@ -28,6 +27,9 @@ from qbound.model.schema import place
 from qbound.model.shapes import BodyRow, ObstacleRow, default_names, row_shape
 from qbound.printable import printable
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 __all__ = [
     "RobotFileError",
     "load_robot",
@@ -38,8 +40,8 @@ __all__ = [
     "save_robot",
 ]
 
-ROBOTS: Final = Path(__file__).parents[1] / "robots"
-"""Where packaged robots are: found without `importlib.resources`, which takes 10 ms to load."""
+ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
+"""Where packaged robots are. `importlib.resources` takes 10 ms to load, and `pathlib` three."""
 
 
 def load_robot(
@@ -113,7 +115,7 @@ def load_robot(
 
 def is_urdf(source: str | Path) -> bool:
     """Tell whether a path is that of a URDF, by its ending."""
-    return Path(source).suffix.lower() == ".urdf"
+    return os.path.splitext(source)[1].lower() == ".urdf"  # noqa: PTH122
 
 
 def save_robot(robot: Robot, path: str | Path) -> None:
@@ -163,7 +165,8 @@ def packaged_robots() -> tuple[str, ...]:
     >>> "minervabot-v2" in packaged_robots()
     True
     """
-    return tuple(sorted(file.stem for file in ROBOTS.glob("*.toml")))
+    files = (name.rpartition(".") for name in os.listdir(ROBOTS))  # noqa: PTH208
+    return tuple(sorted(stem for stem, _, ending in files if ending == "toml"))
 
 
 def parse_robot(table: Table) -> Robot:
@@ -207,13 +210,18 @@ def robot_text(source: str | Path) -> tuple[str, str]:
         raise RobotFileError(f"{source}: {text} {source} -o arm.toml")
     name = f"{source}.toml"
     if name in os.listdir(ROBOTS):  # noqa: PTH208  # letter by letter, on every system
-        return (ROBOTS / name).read_text(encoding="utf-8"), name
+        return _read(f"{ROBOTS}/{name}", "utf-8"), name
     try:
-        return Path(source).read_text(encoding="utf-8-sig"), str(source)
+        return _read(source, "utf-8-sig"), str(source)
     except (OSError, UnicodeDecodeError) as error:
         known = ", ".join(packaged_robots())
         reason = getattr(error, "strerror", None) or "not UTF-8 text"
         raise RobotFileError(f"{source}: {reason}; packaged robots are {known}") from None
+
+
+def _read(path: str | Path, encoding: str) -> str:
+    with open(os.fspath(path), encoding=encoding) as file:  # noqa: PTH123
+        return file.read()
 
 
 # --- from a table to a robot, and back -----------------------------------------------------------
@@ -242,7 +250,10 @@ def _built(file: RobotFile) -> Robot:
         shape = row_shape(row, _flat_coordinate(robot, frame))
         bodies.append(Body(name if row.name is UNSET else row.name, frame, shape))
     count = len(file.body)
-    return replace(robot, bodies=tuple(bodies[:count]), obstacles=tuple(bodies[count:]))
+    whole = replace(robot, bodies=tuple(bodies[:count]), obstacles=tuple(bodies[count:]))
+    if "plane" in vars(robot):  # it is that of the joints, and worked out once
+        vars(whole)["plane"] = robot.plane
+    return whole
 
 
 def _flat_coordinate(robot: Robot, frame: str) -> int:

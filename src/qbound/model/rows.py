@@ -2,9 +2,9 @@
 
 The classes stand beside what they describe (joints, shapes, boundaries); the JSON Schema of a robot
 file and every refusal are derived from them. A `description` reads on after "is not" and "wanted:".
+Where they stand, annotations are no texts (no `annotations` of the future): msgspec would compile
+each, when the first file is read.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence

@@ -4,8 +4,6 @@ A shape is a class: it has convex `parts`, which is what distances are taken of,
 which is what is drawn. A new one needs its class and its table here, and a row in `SHAPES`.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
@@ -39,7 +37,7 @@ class Point:
     at: Array
     radius: float = 0.0
 
-    def row(self) -> PointRow:
+    def row(self) -> "PointRow":
         """Return its table of a file."""
         return PointRow.of(self)
 
@@ -124,7 +122,7 @@ class Polygon(Shape):
     corners: Array
 
     @classmethod
-    def of(cls, corners: Iterable[Sequence[float]], flat: int = 1) -> Polygon:
+    def of(cls, corners: Iterable[Sequence[float]], flat: int = 1) -> "Polygon":
         """Make it of corners with three numbers, or two and a 0 for coordinate number `flat`.
 
         Examples
@@ -208,7 +206,7 @@ class Capsule(Shape):
         bow = self.radius * (np.cos(half)[:, None] * along + np.sin(half)[:, None] * side)
         return np.concatenate([self.end + bow, self.start - bow])
 
-    def value(self, flat: int) -> CapsuleRow:
+    def value(self, flat: int) -> "CapsuleRow":
         """Return the table of both ends and the radius."""
         start, end = (_written(place, flat) for place in (self.start, self.end))
         return CapsuleRow(start=start, end=end, radius=float(self.radius))
@@ -242,7 +240,7 @@ class Disc(Shape):
         other = np.cross(n, one)
         return np.asarray(self.at + self.radius * (np.cos(turn) * one + np.sin(turn) * other))
 
-    def value(self, flat: int) -> DiscRow:
+    def value(self, flat: int) -> "DiscRow":
         """Return the table of centre and radius."""
         return DiscRow(at=_written(self.at, flat), radius=float(self.radius))
 

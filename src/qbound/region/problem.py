@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -21,6 +21,7 @@ from qbound.boundary.evaluator import (
     Evaluator,
     Range,
     compiled,
+    forms_in_use,
     limit_names,
     stacked,
     with_bodies,
@@ -205,7 +206,7 @@ def state(
     one, other = free_pair(robot, held)
     bodies = tuple(boundary for boundary in used if bounds_bodies(boundary))
     formed = [boundary for boundary in used if boundary not in bodies]
-    every = _forms_in_use(robot) if used is robot.used else stacked(robot, formed)
+    every = forms_in_use(robot) if used is robot.used else stacked(robot, formed)
     forms = every.restrict(held)
     beyond = list(_beyond_limits(robot, held))
     constants = np.zeros((len(beyond), 3, 3))
@@ -223,12 +224,6 @@ def state(
         bodies=bodies,
         contacts=body_contacts(robot, held, bodies),
     )
-
-
-@lru_cache(maxsize=4)
-def _forms_in_use(robot: Robot) -> HarmonicForm:
-    """Derive the forms of all boundaries in use; slices of one robot restrict the same ones."""
-    return stacked(robot, [boundary for boundary in robot.used if not bounds_bodies(boundary)])
 
 
 def _beyond_limits(robot: Robot, held: Mapping[int, float]) -> Iterator[tuple[str, float]]:

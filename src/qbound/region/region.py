@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
-from qbound.region import paper_rule
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured, winding_table
 from qbound.region.decomposition import Decomposition, decompose
@@ -373,6 +372,8 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
         raise ValueError(f"no rule {rule!r}; there are clearance and paper")
     if held:
         raise ValueError("the paper's rule knows two joints only: nothing can be held")
+    from qbound.region import paper_rule  # few ask for it, and a command starts sooner
+
     return solve(paper_rule.problem(robot))
 
 
