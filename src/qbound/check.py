@@ -2252,10 +2252,9 @@ def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -
 
 def parted_of(robot: Robot, statement: Statement, parted: Parted) -> str:
     """Say between which configurations there is no path, and what is violated between them."""
-    names = ", ".join(sorted({ascii(boundary.name) for boundary in parted.boundaries}))
-    count = f"{parted.leaves} box{'es' * (parted.leaves != 1)}"
-    said = _no_path_keeps(robot, statement)
-    return f"{said}: it would pass {count}, all over each of which one of {names} is violated"
+    names = " or ".join(sorted({ascii(boundary.name) for boundary in parted.boundaries}))
+    boxes = f"one of the boxes ({parted.leaves}) all over which {names} is violated"
+    return f"{_no_path_keeps(robot, statement)}: each meets {boxes}"
 
 
 def _no_path_keeps(robot: Robot, statement: Statement) -> str:

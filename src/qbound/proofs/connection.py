@@ -195,13 +195,18 @@ def _classify(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
 
 
 def _groups(paving: Paving, cells: Sequence[Cells], *, corners: bool) -> Groups:
+    edges = touching(cells, all_round(paving), corners=corners)
+    label = joined(sum(map(len, cells)), edges)
+    ends = np.cumsum([len(c) for c in cells])[:-1]
+    return Groups(tuple(cells), tuple(np.split(label, ends)), edges)
+
+
+def joined(count: int, edges: Ints) -> Ints:
+    """Return a number for each cell, equal where a chain of edges leads from one to another."""
     require("scipy")
     from scipy.sparse.csgraph import connected_components
 
-    edges = touching(cells, all_round(paving), corners=corners)
-    _, label = connected_components(_graph(sum(map(len, cells)), edges), directed=False)
-    ends = np.cumsum([len(c) for c in cells])[:-1]
-    return Groups(tuple(cells), tuple(np.split(label, ends)), edges)
+    return np.asarray(connected_components(_graph(count, edges), directed=False)[1])
 
 
 def _graph(count: int, edges: Ints) -> Any:

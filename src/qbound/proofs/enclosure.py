@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.boxes import BoxBound
-from qbound.proofs.connection import all_round, outer_groups, touching
+from qbound.proofs.connection import all_round, joined, touching
 from qbound.proofs.dyadic import Cells
 from qbound.proofs.forest import Forest
 from qbound.proofs.paving import Paving
@@ -60,18 +60,58 @@ def wall(paving: Paving, one: ArrayLike, other: ArrayLike) -> Wall:
     paving : Paving
         Separates the two, see `connection.separated`; without bodies.
     """
-    groups = outer_groups(paving)
-    ends = [groups.containing(paving, q) for q in (one, other)]
-    label = np.concatenate(groups.label)
-    edges = touching((*groups.cells, *paving.infeasible), all_round(paving), corners=True)
-    first, count = int(label.max()) + 1, sum(map(len, paving.infeasible))
-    edges = np.concatenate([label, first + np.arange(count)])[edges]
-    edges = edges[(edges >= first).any(axis=1)]
-    depth = np.concatenate([_depths(paving, cells) for cells in paving.infeasible])
-    levels = np.repeat([c.level for c in paving.infeasible], [len(c) for c in paving.infeasible])
+    closed = paving.infeasible[::-1]  # the smallest first
+    cells = (*paving.feasible, paving.undecided, *closed)
+    edges = touching(cells, all_round(paving), corners=True)
+    first = np.cumsum([0, *map(len, cells)])
+    ends = [
+        np.concatenate(
+            [
+                start + np.flatnonzero(paving.containing(c, q))
+                for start, c in zip(first, cells, strict=False)
+            ]
+        )
+        for q in (one, other)
+    ]
+    ends = [found[found < first[-1 - len(closed)]] for found in ends]
+    opened, label = _whole_sizes(edges, first[-1 - len(closed) :], ends)
+    left = closed[opened:]
+    depth = np.concatenate([_depths(paving, c) for c in left])
+    levels = np.repeat([c.level for c in left], [len(c) for c in left])
     order = np.lexsort([depth.max(axis=1), -levels])
-    kept = _kept(edges, first, (order + first).tolist(), ends)
-    return _of_cells(paving.infeasible, np.array(kept) - first, depth)
+    groups = int(label.max()) + 1
+    edges = np.concatenate([label, groups + np.arange(len(depth))])[edges]
+    edges = edges[(edges >= groups).any(axis=1)]
+    kept = _kept(edges, groups, (order + groups).tolist(), [set(label[e].tolist()) for e in ends])
+    return _of_cells(left, np.array(kept) - groups, depth)
+
+
+def _whole_sizes(edges: Ints, counts: Ints, ends: Sequence[Ints]) -> tuple[int, Ints]:
+    """Open all closed cells of a size, size after size, as long as the rest parts the two.
+
+    Parameters
+    ----------
+    edges : ndarray of int, shape (e, 2)
+        Touching cells; open ones come first, then closed ones by their sizes.
+    counts : ndarray of int
+        How many cells are open at first, and with each size.
+    ends : two ndarrays of int
+        The open cells that hold either configuration.
+
+    Returns
+    -------
+    opened : int
+        How many sizes.
+    label : ndarray of int
+        The group of each open cell.
+    """
+    found = 0, np.zeros(0, dtype=np.int64)
+    for opened, count in enumerate(counts.tolist()):
+        label = joined(count, edges[(edges < count).all(axis=1)])
+        if np.isin(label[ends[0]], label[ends[1]]).any():
+            break
+        found = opened, label
+    return found
 
 
 def _depths(paving: Paving, cells: Cells) -> Floats:
