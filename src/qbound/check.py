@@ -16,7 +16,7 @@ refused here. Read from top to bottom:
     bodies        outlines in the plane of motion, and what separates two of them
     the bound     on each leaf of a tree, why the boundary is positive there
     no path       values of one joint that nothing passes, whatever the other joints
-    parted        boxes of up to three joints that no path passes, the other joints held
+    disconnected  boxes of up to three joints, the others held, that lie in every path
     the answer    a statement that is written from what was verified, and an exit status
 
 Exit status: 0 proved, 1 refuted by a witness that was verified, 2 anything else, 130 interrupted.
@@ -1981,7 +1981,7 @@ def least_violation(robot: Robot, form: Form, j: int, reach: Point) -> Form:
     return found
 
 
-# --- parted ---------------------------------------------------------------------------------------
+# --- disconnected ---------------------------------------------------------------------------------
 # The box of all values of the joints that move is cut into leaves. On one with a number a boundary
 # is violated throughout. So a path that violates none stays in the others, closed as they are, and
 # gets from one to another only where they touch, be it in a corner.
@@ -1998,21 +1998,21 @@ UNITS = 2**MAX_DEPTH
 TURN_ERROR = 10
 """Units that it may take to count a turn in whole units, in radians, up to five turns away."""
 
-VISITS = 4
+VISITS = 2
 """Cells that are compared with a span in the time of a multiplication."""
 
 Span = tuple[tuple[Fraction | int, Fraction | int], ...]
 """A low and a high end for each joint that moves, in units from the low end of the box."""
 
 
-class Parted(NamedTuple):
+class Disconnected(NamedTuple):
     """Leaves on each of which one of some boundaries is violated throughout."""
 
     boundaries: list[Boundary]
     leaves: int
 
 
-def verify_parted(robot: Robot, statement: Statement, value: Any) -> Parted:
+def verify_disconnected(robot: Robot, statement: Statement, value: Any) -> Disconnected:
     """Verify that no path of the joints that move leads from start to goal; the others are held."""
     proof, [[start, goal]] = table_of(value, "proof", ("boundaries", "tree")), statement.loops
     demand_within_limits(robot, (start, goal))
@@ -2025,19 +2025,19 @@ def verify_parted(robot: Robot, statement: Statement, value: Any) -> Parted:
         for b in boundaries
     ]
     box = free_box(robot, statement)
-    cut = Cut(robot, box, statement.free)
+    leaves = Leaves(robot, box, statement.free)
     for cell, is_leaf, number in walk(box, proof["tree"], "proof: tree"):
-        cut.add(cell, is_leaf=is_leaf, is_open=is_leaf and number is None)
+        leaves.add(cell, is_leaf=is_leaf, is_open=is_leaf and number is None)
         if is_leaf and number is not None:
             demand(number < len(violations), f"proof: tree: no boundary has the number {number}")
             violated = is_positive(violations[number], cell)
             demand(violated, f"proof: tree: {boundaries[number].name!a} may be kept on a leaf")
-    first, last = cut.holding(start), cut.holding(goal)
+    first, last = leaves.holding(start), leaves.holding(goal)
     demand(first, "proof: tree: the start is in no leaf without a number")
     demand(last, "proof: tree: the goal is in no leaf without a number")
-    joined = last & cut.reached(first)
+    joined = last & leaves.reached(first)
     demand(not joined, "proof: tree: leaves without a number lead from the start to the goal")
-    return Parted(boundaries, sum(cut.is_leaf) - sum(cut.is_open))
+    return Disconnected(boundaries, sum(leaves.is_leaf) - sum(leaves.is_open))
 
 
 def free_box(robot: Robot, statement: Statement) -> Box:
@@ -2055,7 +2055,7 @@ def free_box(robot: Robot, statement: Statement) -> Box:
     return Box(low, high)
 
 
-class Cut:
+class Leaves:
     """The cells of a tree in its order, by their spans, to tell which of its leaves touch.
 
     A joint without limits is glued: its values a turn apart are the same.
@@ -2181,7 +2181,9 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
         blocked = verify_no_path(robot, statement, content["proof"])
         found = no_path_of(robot, statement, blocked)
     elif grammar == 5:
-        found = parted_of(robot, statement, verify_parted(robot, statement, content["proof"]))
+        found = disconnected_of(
+            robot, statement, verify_disconnected(robot, statement, content["proof"])
+        )
     else:
         found = _verified(robot, statement, content, refuted=refuted)
     lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
@@ -2250,10 +2252,10 @@ def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -
     return f"{said}: {robot.joints[j].name!a} cannot pass {ranges}"
 
 
-def parted_of(robot: Robot, statement: Statement, parted: Parted) -> str:
+def disconnected_of(robot: Robot, statement: Statement, proof: Disconnected) -> str:
     """Say between which configurations there is no path, and what is violated between them."""
-    names = " or ".join(sorted({ascii(boundary.name) for boundary in parted.boundaries}))
-    boxes = f"one of the boxes ({parted.leaves}) all over which {names} is violated"
+    names = " or ".join(sorted({ascii(boundary.name) for boundary in proof.boundaries}))
+    boxes = f"one of the boxes ({proof.leaves}) all over which {names} is violated"
     return f"{_no_path_keeps(robot, statement)}: each meets {boxes}"
 
 

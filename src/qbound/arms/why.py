@@ -28,9 +28,9 @@ from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify
 from qbound.proofs.connection import Connection, connection
+from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
-from qbound.proofs.parted import certify_parted
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.region import violated
@@ -361,16 +361,16 @@ def _paved(asked: _Asked, source: str | Path) -> Why:
             return connected
     said = _said_of_paving(robot, moving, found)
     if found.answer == "separated" and (asked.hold or len(moving) == n):
-        parted = _parted(asked, found.paving)
-        return asked.answer("separated", held=found, certificate=parted, tried=(said,))
+        proved = _disconnected(asked, found.paving)
+        return asked.answer("separated", held=found, certificate=proved, tried=(said,))
     return asked.answer("undecided", held=found, tried=(said,))
 
 
-def _parted(asked: _Asked, paving: Paving) -> Certificate | None:
-    """Certify what a paving separates; it is a proof without that, too."""
+def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
+    """Certify that a paving separates; it is a proof without that, too."""
     if not _certifiable(asked.robot):
         return None
-    certificate = certify_parted(asked.text, *asked.ends, paving)
+    certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
 
 

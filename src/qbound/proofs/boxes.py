@@ -89,7 +89,7 @@ class BoxBound:
         turns = waves.turns[~sliding]
         self.form, self.sliding = form, sliding
         self.size = float(size.sum())
-        self.slack = NEGLIGIBLE * self.size
+        self.slack = NEGLIGIBLE * size.sum()
         self.matrix = np.einsum("k,ki,kj->ij", size[~sliding], turns, turns)
         self.largest = np.einsum("k,ki,kj->ij", size[~sliding], abs(turns), abs(turns))
         lone = (waves.powers == 2).any(axis=1) & (waves.powers.sum(axis=1) == 2)

@@ -3,7 +3,8 @@
 It is written from the book's page "The certificate" and shares no line with `check`: `grammar`
 reads the file into exact rationals; `interpolation` finds a boundary function from its values at
 third parts of a turn; trees are walked with a stack of cells. On each leaf it proves the inequality
-of that page (`leaves`). What parts two configurations is checked in `check_parted`.
+of that page (`leaves`). Boxes that separate two configurations are checked in
+`check_disconnected`.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any
 
 from qbound.extras import require
 from qbound.proofs.cells import Box, Cell, Simplex, cells_of
-from qbound.proofs.check_parted import check_parted
+from qbound.proofs.check_disconnected import check_disconnected
 from qbound.proofs.flat_balls import Core, Features, FlatArm, cores_of
 from qbound.proofs.grammar import Barrier, Blocked, Content, Witness, read_certificate
 from qbound.proofs.grammar_robot import Boundary, Place, Robot
@@ -106,8 +107,8 @@ def _verified(text: str | bytes) -> Verdict:
     if content.barrier is not None:
         _check_barrier(content, content.barrier)
         return content.verdict
-    if content.parted is not None:
-        check_parted(content, content.parted)
+    if content.disconnected is not None:
+        check_disconnected(content, content.disconnected)
         return content.verdict
     cells = _exact_cells(content)
     asked = _Asked(content)

@@ -31,9 +31,9 @@ MOST_BYTES = 2_000_000
 MOST_POINTS = 20_000
 MOST_TRIANGLES = 20_000
 MOST_FREE = 3
-GRAMMAR, GRAMMAR_OF_BODIES, GRAMMAR_OF_NO_PATH, GRAMMAR_OF_PARTED = 2, 3, 4, 5
-"""What the producers write: of robots without pairs of bodies, of others; of no path past a range
-of one joint, and of none through the boxes of up to three."""
+GRAMMAR, GRAMMAR_OF_BODIES, GRAMMAR_OF_NO_PATH, GRAMMAR_OF_DISCONNECTED = 2, 3, 4, 5
+"""What the producers write: of robots without pairs of bodies, of others; of no path by a range of
+one joint, and by boxes of up to three."""
 
 SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3, 4, 5)}
 
@@ -108,7 +108,7 @@ class Barrier:
 
 
 @dataclass(frozen=True, eq=False)
-class Parted:
+class Disconnected:
     """A tree over the values of some joints; a leaf's number names the boundary violated on it."""
 
     boundaries: tuple[Boundary, ...]
@@ -130,7 +130,7 @@ class Content:
         Corners of the convex parts of outlines, by the name of the body.
     barrier : Barrier or None
         The proof that there is no path, in grammar 4.
-    parted : Parted or None
+    disconnected : Disconnected or None
         The proof of that in grammar 5.
     """
 
@@ -143,7 +143,7 @@ class Content:
     witness: Witness | None
     parts: dict[str, tuple[tuple[int, ...], ...]]
     barrier: Barrier | None = None
-    parted: Parted | None = None
+    disconnected: Disconnected | None = None
 
 
 def read_certificate(text: str | bytes) -> Content:
@@ -176,9 +176,9 @@ def read_certificate(text: str | bytes) -> Content:
     if grammar >= GRAMMAR_OF_NO_PATH:
         ends = read_statement(statement, robot, grammar)
         barrier = _barrier(data["proof"], robot) if grammar == GRAMMAR_OF_NO_PATH else None
-        parted = _parted(data["proof"], robot) if grammar == GRAMMAR_OF_PARTED else None
+        boxes = _disconnected(data["proof"], robot) if grammar == GRAMMAR_OF_DISCONNECTED else None
         sha256 = _sha256(data)
-        return Content(grammar, Verdict.PROVED, ends, robot, sha256, {}, None, {}, barrier, parted)
+        return Content(grammar, Verdict.PROVED, ends, robot, sha256, {}, None, {}, barrier, boxes)
     return Content(
         grammar,
         Verdict(verdict),
@@ -300,7 +300,7 @@ def read_statement(data: Any, robot: Robot, grammar: int = GRAMMAR) -> Statement
     if kind not in ("box", "path", "polygon", NO_PATH):
         refuse(f"set: {shown(kind)} is no box, path or polygon, nor {NO_PATH}")
     triangles = ("triangles",) if kind == "polygon" else ()
-    moving = ("free",) if grammar == GRAMMAR_OF_PARTED else ()
+    moving = ("free",) if grammar == GRAMMAR_OF_DISCONNECTED else ()
     keys(data, "statement", ("set", "margin", "points", *triangles, *moving))
     margin = decimal(data["margin"], "margin")
     if margin < 0:
@@ -372,12 +372,12 @@ def _barrier(data: Any, robot: Robot) -> Barrier:
     return Barrier(j, tuple(_blocked(row, robot, j) for row in rows))
 
 
-def _parted(data: Any, robot: Robot) -> Parted:
+def _disconnected(data: Any, robot: Robot) -> Disconnected:
     """Read a tree whose leaves may name boundaries."""
     keys(data, "proof", ("boundaries", "tree"))
     names = items(data["boundaries"], "boundaries", 1, MOST_ROWS)
     (tree,) = _trees("boundaries", [data["tree"]])
-    return Parted(tuple(_of_points(name, robot) for name in names), tree)
+    return Disconnected(tuple(_of_points(name, robot) for name in names), tree)
 
 
 def _of_points(value: Any, robot: Robot) -> Boundary:

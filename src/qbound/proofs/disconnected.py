@@ -1,7 +1,7 @@
 """Certificates that no path leads from one configuration to another while some joints are held.
 
-Grammar 5 of the book's page "The certificate": a tree over the box of the joints that move. Leaves
-with a number are violated all over by one boundary, and part the two configurations.
+Grammar 5 of the book's page "The certificate": a tree over the box of the joints that move. On each
+leaf with a number one boundary is violated throughout, and these leaves separate the two.
 """
 
 from __future__ import annotations
@@ -18,16 +18,18 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.certify import Certificate
-from qbound.proofs.enclosure import covered, wall
-from qbound.proofs.grammar import GRAMMAR_OF_PARTED, NO_PATH
+from qbound.proofs.grammar import GRAMMAR_OF_DISCONNECTED, NO_PATH
 from qbound.proofs.paving import Paving
+from qbound.proofs.separator import covering, separator
 from qbound.proofs.statements import units, within_limits
 from qbound.proofs.verdict import Verdict
 
 Floats = NDArray[np.float64]
 
 
-def certify_parted(text: str, one: ArrayLike, other: ArrayLike, paving: Paving) -> Certificate:
+def certify_disconnected(
+    text: str, one: ArrayLike, other: ArrayLike, paving: Paving
+) -> Certificate:
     """Certify that no path joins two configurations while the joints that agree are held.
 
     Not in the paper.
@@ -58,12 +60,12 @@ def certify_parted(text: str, one: ArrayLike, other: ArrayLike, paving: Paving) 
     low, high = _box(robot, free)
     kinds = paving.bounds.table.kinds
     forms = HarmonicForm(paving.bounds.table.coefficients[:, 0], kinds)
-    found = covered(wall(paving, *ends[:, free]), forms, low, high)
+    found = covering(separator(paving, *ends[:, free]), forms, low, high)
     if found.left:
-        return Certificate(Verdict.UNDECIDED, "", f"undecided: {found.left} cells of a wall")
+        return Certificate(Verdict.UNDECIDED, "", f"undecided: {found.left} boxes")
     tree, names = _numbered(found.tree, free, paving.problem.names)
     content = {
-        "schema": f"qbound/certificate/{GRAMMAR_OF_PARTED}",
+        "schema": f"qbound/certificate/{GRAMMAR_OF_DISCONNECTED}",
         "verdict": Verdict.PROVED,
         "statement": {"set": NO_PATH, "margin": "0", "points": [points], "free": free},
         "robot": text,

@@ -1,6 +1,6 @@
-"""Do boxes on which a boundary is violated part two configurations? In balls, for `check_arb`.
+"""Do boxes on which a boundary is violated separate two configurations? In balls.
 
-Grammar 5 of the book's page "The certificate", written from that page. The tree is kept as a tree:
+For `check_arb`: grammar 5 of the book's page "The certificate". The tree is kept as a tree:
 pairs of cells that touch are cut down to pairs of leaves, and leaves without a number that touch
 are put together. A joint without limits is compared with itself a turn on, in balls: what is not
 certainly apart touches.
@@ -14,11 +14,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
+from itertools import combinations_with_replacement, product
 from typing import Any
 
 from qbound.proofs.cells import Box
-from qbound.proofs.grammar import Content, Parted
+from qbound.proofs.grammar import Content, Disconnected
 from qbound.proofs.grammar_robot import LARGEST_ANGLE, Robot
 from qbound.proofs.grammar_values import refuse, shown
 from qbound.proofs.interpolation import Wave, Waves, exact, joints_of, reach_of, units, waves_of
@@ -27,7 +27,7 @@ from qbound.proofs.leaves import DEEPEST, WAVES_WORK, Leaf, Work, beyond_limits
 HALF_TURN = {True: Fraction(180), False: Fraction("3.1416")}
 """Both ends of a joint without limits, by whether angles are in degrees: a turn, or a bit more."""
 
-LETTER_WORK, PAIR_WORK = 200, 4
+LETTER_WORK, PAIR_WORK = 200, 8
 """Products for each letter, whose cell is kept, and for each pair of cells that is compared."""
 
 
@@ -45,9 +45,9 @@ class _Cell:
     """Another leaf of its group; None of the one that stands for all."""
 
 
-def check_parted(content: Content, parted: Parted) -> None:
+def check_disconnected(content: Content, disconnected: Disconnected) -> None:
     """Verify that no path of the joints that move leads from one configuration to the other."""
-    robot, work, tree = content.robot, Work(), parted.tree
+    robot, work, tree = content.robot, Work(), disconnected.tree
     ends = [tuple(map(exact, point)) for point in content.statement.points]
     for point in ends:
         beyond = beyond_limits(robot, point)
@@ -56,7 +56,7 @@ def check_parted(content: Content, parted: Parted) -> None:
     work.add(LETTER_WORK * len(tree))
     box = _whole(content)
     cells = _cells(box, tree)
-    _check_violated(_Violations(content, parted, box, work), cells)
+    _check_violated(_Violations(content, disconnected, box, work), cells)
     seams = _Seams(robot, content.statement.free, work)
     seams.unite(cells[0])
     start, goal = (seams.groups(cells[0], point) for point in ends)
@@ -109,8 +109,8 @@ def _cells(box: Box, tree: str) -> list[_Cell]:
 class _Violations:
     """Minus the boundary functions at the held values, each made when a leaf first names it."""
 
-    def __init__(self, content: Content, parted: Parted, box: Box, work: Work) -> None:
-        self.content, self.parted, self.work = content, parted, work
+    def __init__(self, content: Content, disconnected: Disconnected, box: Box, work: Work) -> None:
+        self.content, self.disconnected, self.work = content, disconnected, work
         self.reach = reach_of(content.robot, [box.low, box.high])
         self.known: dict[int, Leaf] = {}
         free, scale = content.statement.free, units(content.robot)
@@ -119,10 +119,10 @@ class _Violations:
 
     def of(self, number: str) -> Leaf:
         k = int(number)
-        if k >= len(self.parted.boundaries):
+        if k >= len(self.disconnected.boundaries):
             refuse(f"a leaf names boundary {k}, which is not there")
         if k not in self.known:
-            boundary, robot = self.parted.boundaries[k], self.content.robot
+            boundary, robot = self.disconnected.boundaries[k], self.content.robot
             self.work.add(WAVES_WORK * 3 ** sum(j not in self.held for j in joints_of(boundary)))
             margin = self.content.statement.margin
             kept = waves_of(robot, boundary, margin, self.reach, self.held)
@@ -134,7 +134,7 @@ class _Violations:
 def _check_violated(violations: _Violations, cells: Sequence[_Cell]) -> None:
     for cell in cells:
         if cell.number and not violations.of(cell.number).is_positive(cell.box):
-            name = violations.parted.boundaries[int(cell.number)].name
+            name = violations.disconnected.boundaries[int(cell.number)].name
             refuse(f"{shown(name)}: not violated all over a leaf")
 
 
@@ -194,7 +194,9 @@ class _Seams:
             a, b = todo.pop()
             if not (a.is_open and b.is_open) or self._apart(a.box, b.box, turns):
                 continue
-            if a.halves and (a.depth <= b.depth or not b.halves):
+            if a is b and a.halves and not any(turns):  # each pair once
+                todo += combinations_with_replacement(a.halves, 2)
+            elif a.halves and (a.depth <= b.depth or not b.halves):
                 todo += [(half, b) for half in a.halves]
             elif b.halves:
                 todo += [(a, half) for half in b.halves]

@@ -1,4 +1,4 @@
-"""Certificates, grammar 5: boxes that part two configurations while other joints are held."""
+"""Certificates, grammar 5: boxes that separate two configurations, other joints held."""
 
 import copy
 import hashlib
@@ -20,8 +20,8 @@ from qbound import check
 from qbound.model.robotfile import parse_robot
 from qbound.proofs import check_arb
 from qbound.proofs.connection import connection
+from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.parted import certify_parted
 from qbound.proofs.statements import units
 from support import brute_force, mutations, planar
 from support.elbow import SLIDE
@@ -48,7 +48,7 @@ def certificate(name):
     held = {j: ends[0, j] for j in range(len(start)) if j not in free}
     found = connection(exact_problem(exact_robot(robot), held), *ends[:, free])
     assert found.answer == "separated"
-    return certify_parted(text, *ends, found.paving)
+    return certify_disconnected(text, *ends, found.paving)
 
 
 def data_of(name):
@@ -339,7 +339,7 @@ def test_the_schema_knows_what_belongs_to_it():
 # --- mutants --------------------------------------------------------------------------------------
 
 
-def in_parted(rng, data):
+def in_disconnected(rng, data):
     """Change the tree, its numbers, what they name, what moves, or where it begins."""
     proof, statement = data.get("proof"), data.get("statement")
     if not isinstance(proof, dict) or not isinstance(statement, dict):
@@ -370,7 +370,9 @@ def mutant(seed):
     rng = random.Random(seed)
     data = data_of(rng.choice([*ASKED]))
     for _ in range(rng.choice((1, 1, 2))):
-        rng.choice((*mutations.CHANGES, in_parted, in_parted, in_parted, in_parted))(rng, data)
+        rng.choice(
+            (*mutations.CHANGES, in_disconnected, in_disconnected, in_disconnected, in_disconnected)
+        )(rng, data)
     return data
 
 
