@@ -34,6 +34,8 @@ ASKED = {
     "three joints": (planar.caged("deg"), ["0", "110", "0"], ["0", "-110", "10"], [0, 1, 2]),
     "wrist held": (planar.caged("deg"), ["0", "110", "20"], ["9", "-110", "20"], [0, 1]),
     "wrist held, radians": (planar.caged("rad"), ["0", "2", "0.3"], ["0", "-2", "0.3"], [0, 1]),
+    "shoulder held": (planar.caged("deg"), ["5", "110", "20"], ["5", "-110", "0"], [1, 2]),
+    "slide held": (planar.telescope(), ["0", "-0.3"], ["175", "-0.3"], [0]),
     "turning and sliding": (planar.telescope(), ["0", "-0.3"], ["175", "-0.3"], [0, 1]),
     "sliding, a turn held": (SLIDE, ["-1", "5"], ["1", "5"], [0]),
 }
@@ -116,6 +118,37 @@ def test_a_margin_widens_what_is_violated():
     data = data_of("three joints")
     data["statement"]["margin"] = "0.01"
     assert answers(data) == (True, True)
+
+
+def test_a_real_arm_in_a_cage_cannot_bend_its_elbow_the_other_way():
+    """What `qbound why --hold` wrote in four seconds: 41 boxes of base, shoulder and elbow."""
+    robot = planar.ur5_in_a_cage()
+    points = [["0", "-120", "120", "-90", "-90", "0"], ["0", "-60", "-120", "-90", "-90", "0"]]
+    data = data_of("wrist held") | {
+        "statement": {"set": "no path", "margin": "0", "points": [points], "free": [0, 1, 2]},
+        "robot": robot,
+        "sha256": hashlib.sha256(robot.encode()).hexdigest(),
+        "proof": {"boundaries": CAGE, "tree": TREE_OF_CAGE},
+    }
+    assert answers(data) == (True, True)
+    assert is_true(data)
+    data["proof"]["boundaries"] = [*CAGE[1:], CAGE[0]]
+    assert answers(data) == (False, False)
+
+
+CAGE = [
+    "back wrist_3_link/1",
+    "back forearm_link/9",
+    "back wrist_1_link/1",
+    "ceiling wrist_3_link/1",
+    "front wrist_3_link/1",
+    "front wrist_1_link/1",
+    "front forearm_link/9",
+]
+TREE_OF_CAGE = (
+    "cc.c.bbaca.a.b.0.ab0.ab1.bc1.a1.1..1.0.cab.0..b0.a0.2.b.b.c.3.bcb.3.3.cb3.bb3...abb.b.ca4."
+    "4.4.4.bb.accb3.4.4.4.cb3.a.a.b3..a4.ca4.ba4..4.4.a4..cccbbb.baaaaab.c3.......3.3.b.ab4.5.a6.bb.4.6...."
+)
 
 
 # --- what is refused ------------------------------------------------------------------------------
@@ -407,6 +440,7 @@ def is_true(data):
     limits = [joint.get("limits") for joint in robot["joint"]]
     whole = (-180.0, 180.0) if turn == 360 else (-3.1416, 3.1416)
     names = proof["boundaries"]
+    robot["boundary"] = [row for row in robot["boundary"] if row["name"] in names]
     boxes = []
     for low, high, number in leaves(proof["tree"], free, [limits[j] or whole for j in free]):
         if number != "":

@@ -20,6 +20,7 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb
 from support import brute_force
 from support.elbow import arm
+from support.planar import caged
 
 BODIES = "two-links-on-a-table"
 START, GOAL = [0.0, 1.0, 0.0], [0.3, 4.0, 0.0]
@@ -248,6 +249,18 @@ def test_the_command_writes_certificate_document_and_picture(file, tmp_path, cap
     assert "python-flint: proved" in said
     assert json.loads(files[1].read_text())["answer"] == "separated"
     assert files[2].read_bytes().startswith(b"<?xml")
+
+
+def test_the_command_certifies_what_a_paving_separates(tmp_path, capsys):
+    file, proof = tmp_path / "arm.toml", tmp_path / "c.json"
+    file.write_text(caged())
+    values = ["0", "110", "20", "9", "-110", "20"]
+    assert main(["why", str(file), *values, "--hold", "-o", str(proof)]) == 1
+    assert "separated, while wrist is held" in capsys.readouterr().out
+    assert main(["check", str(proof), str(file), "--arb"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "along which 'wrist' = 20 deg keeps every boundary" in said
+    assert "python-flint: proved" in said
 
 
 def test_the_command_refuses_what_it_cannot_write(file, tmp_path, capsys):
