@@ -284,13 +284,11 @@ def test_leaves_that_share_a_corner_are_joined():
     data["proof"] = {"boundaries": ["front"], "tree": "ab.0.b0.."}
     data["statement"]["points"] = [[["-40", "-90", "20"], ["40", "90", "20"]]]
     assert answers(data) == (False, False)
-    data["proof"]["tree"] = "ab.0.ba.0.a0.."
-    assert answers(data) == (False, False)
     data["proof"]["tree"] = "ab.0.b0.b0.."  # they share nothing any more
     assert answers(data) == (True, True)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_what_touches_is_what_a_lattice_says(seed):
     """Random trees over a robot that is violated everywhere: all that counts is which leaves touch.
 
@@ -343,6 +341,37 @@ def place_in(rng, low, high):
     return [
         f"{a + (b - a) * rng.choice((0, 0.5, 0.5, 1)):.12f}" for a, b in zip(low, high, strict=True)
     ]
+
+
+@pytest.mark.parametrize("unit", ["deg", "rad"])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_corners_touch_over_two_seams(unit, swapped):
+    """Two quarters of both joints, open in opposite corners of the square that is a torus."""
+    low, high = "bb.0.0.", "b0.b0.."
+    first, last = (high, low) if swapped else (low, high)
+    ends = (
+        [["-140", "-140"], ["140", "140"]] if unit == "deg" else [["-2.6", "-2.6"], ["2.6", "2.6"]]
+    )
+    if swapped:
+        ends = [[ends[0][0], ends[1][1]], [ends[1][0], ends[0][1]]]
+    limit = "[-180, 180]" if unit == "deg" else "[-3.1416, 3.1416]"
+    found = []
+    for limits in (("", ""), ("", limit), (limit, "")):
+        robot = planar.planar(*limits, unit=unit, posts=planar.wall("everywhere", 1, 0, 999))
+        data = data_of("two joints round")
+        data["statement"]["points"] = [ends]
+        data |= {"robot": robot, "sha256": hashlib.sha256(robot.encode()).hexdigest()}
+        data["proof"] = {"boundaries": ["everywhere"], "tree": f"aa{first}0.a0.{last}"}
+        found.append(answers(data))
+    assert found == [(False, False), (True, True), (True, True)]
+
+
+def test_a_slide_is_held_where_the_statement_says():
+    """Drawn in further, the boom passes between the posts."""
+    data = data_of("slide held")
+    for end in (0, 1):
+        data["statement"]["points"][0][end][1] = "-0.65"
+    assert answers(data) == (False, False)
 
 
 def test_a_number_of_a_leaf_that_is_not_violated_is_refused_by_its_name():
@@ -420,8 +449,8 @@ def judged(seed):
 
 @pytest.mark.parametrize("part", range(4))
 def test_both_checkers_answer_alike_about_mutants_and_tell_the_truth(part):
-    found = [judged(seed) for seed in range(60 * part, 60 * part + 60)]
-    assert 0 < sum(found) < 60
+    found = [judged(seed) for seed in range(50 * part, 50 * part + 50)]
+    assert 0 < sum(found) < 50
 
 
 # --- the judge ------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ name = "{name}"
 type = "{"prismatic" if slides else "revolute"}"
 parent = "{frames[j]}"
 frame = "{frames[j + 1]}"
-origin = [{LENGTHS[j - 1] if j else 0}, 0, 0]
+origin = [{LENGTHS[j - 1] if j and not slides else 0}, 0, 0]
 axis = {[1, 0, 0] if slides else [0, 0, 1]}
 {f"limits = {limit}" if limit else ""}
 """
