@@ -151,6 +151,16 @@ TREE_OF_CAGE = (
 )
 
 
+def test_what_is_joined_is_not_certified():
+    text, start, _, free = ASKED["two joints round"]
+    robot = parse_robot(tomllib.loads(text))
+    ends = np.array([start, ["60", "100"]], dtype=float) * units(robot)
+    found = connection(exact_problem(exact_robot(robot)), *ends[:, free])
+    assert found.answer == "connected"
+    with pytest.raises(ValueError, match="does not separate"):
+        certify_disconnected(text, *ends, found.paving)
+
+
 # --- what is refused ------------------------------------------------------------------------------
 
 

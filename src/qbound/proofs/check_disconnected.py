@@ -118,6 +118,7 @@ class _Violations:
         self.held = {j: scale[j] * exact(x) for j, x in enumerate(start) if j not in free}
 
     def of(self, number: str) -> Leaf:
+        """Return what is positive where the boundary of this number is violated."""
         k = int(number)
         if k >= len(self.disconnected.boundaries):
             refuse(f"a leaf names boundary {k}, which is not there")
@@ -168,7 +169,7 @@ class _Seams:
     def groups(self, root: _Cell, point: Sequence[Any]) -> set[int]:
         """Return the groups of all leaves without a number that may hold a configuration."""
         place = _Cell(Box(tuple(point), tuple(point)), 0, "", is_open=True)
-        away = [self._turns_to(root, point[j]) if g else 0 for j, g in self._each()]
+        away = [self._turns_to(point[j]) if g else 0 for j, g in self._each()]
         found = set()
         for steps in product(*((-1, 0, 1) if glued else (0,) for glued in self.glued)):
             turns = tuple(a + b for a, b in zip(away, steps, strict=True))
@@ -179,7 +180,8 @@ class _Seams:
     def _each(self) -> Iterator[tuple[int, bool]]:
         return zip(self.free, self.glued, strict=True)
 
-    def _turns_to(self, root: _Cell, x: Any) -> int:
+    def _turns_to(self, x: Any) -> int:
+        """Return about how many turns lie between 0 and a value."""
         from flint import arb
 
         return math.floor(float(arb(x) / self.turn))

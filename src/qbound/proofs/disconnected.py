@@ -51,7 +51,7 @@ def certify_disconnected(
     Raises
     ------
     ValueError
-        If a configuration is none of the robot's.
+        If a configuration is none of the robot's, or the paving does not separate the two.
     """
     robot = parse_robot(tomllib.loads(text))
     ends = np.stack([robot.configuration(q) for q in (one, other)])

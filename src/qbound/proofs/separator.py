@@ -64,6 +64,11 @@ def separator(paving: Paving, one: ArrayLike, other: ArrayLike) -> Separator:
     one, other : array_like, shape (n,)
         rad or length.
 
+    Raises
+    ------
+    ValueError
+        If the paving does not separate them.
+
     Examples
     --------
     >>> from qbound.proofs.connection import connection
@@ -84,6 +89,8 @@ def separator(paving: Paving, one: ArrayLike, other: ArrayLike) -> Separator:
     ]
     counts = first[-1 - len(closed) :]
     opened, label = _open_sizes(edges, counts, [found[found < counts[0]] for found in ends])
+    if not len(label):
+        raise ValueError("the paving does not separate the two configurations")
     left, groups = closed[opened:], int(label.max()) + 1
     depth = np.concatenate([_depths(paving, c) for c in left])
     levels = np.repeat([c.level for c in left], [len(c) for c in left])
