@@ -305,8 +305,8 @@ def test_what_touches_is_what_a_lattice_says(seed):
     Values are often those of faces, and joints without limits often have a leaf at the seam.
     """
     rng = random.Random(seed)
-    found = [is_as_the_lattice_says(rng) for _ in range(20)]
-    assert 3 < sum(found) < 17
+    found = [is_as_the_lattice_says(rng) for _ in range(15)]
+    assert 2 < sum(found) < 13
 
 
 def is_as_the_lattice_says(rng):
@@ -459,8 +459,8 @@ def judged(seed):
 
 @pytest.mark.parametrize("part", range(4))
 def test_both_checkers_answer_alike_about_mutants_and_tell_the_truth(part):
-    found = [judged(seed) for seed in range(50 * part, 50 * part + 50)]
-    assert 0 < sum(found) < 50
+    found = [judged(seed) for seed in range(40 * part, 40 * part + 40)]
+    assert 0 < sum(found) < 40
 
 
 # --- the judge ------------------------------------------------------------------------------------
