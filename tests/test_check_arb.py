@@ -18,7 +18,7 @@ import pytest
 from qbound import check
 from qbound.boundary.functions import clearance
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import cells, check_arb, grammar_robot, interpolation
+from qbound.proofs import cells, check_arb, grammar_robot, interpolation, leaves
 from support.robot_files import box_of, robot_file
 
 flint = pytest.importorskip("flint")
@@ -364,11 +364,11 @@ def many_boundaries(count):
 def test_what_would_cost_much_is_refused(name, monkeypatch):
     """Counted, not timed: the work of a check never passes its bound."""
     done = []
-    add = check_arb._Work.add
-    monkeypatch.setattr(check_arb._Work, "add", lambda self, n: (done.append(n), add(self, n)))
+    add = leaves.Work.add
+    monkeypatch.setattr(leaves.Work, "add", lambda self, n: (done.append(n), add(self, n)))
     with pytest.raises(ValueError, match=r"."):
         verdict(COSTLY[name]())
-    assert sum(done[:-1]) <= check_arb.MOST_WORK
+    assert sum(done[:-1]) <= leaves.MOST_WORK
 
 
 def hundred_turns(places):
@@ -514,7 +514,7 @@ def test_the_bound_of_a_leaf_is_below_the_boundary_function(seed):
         values = np.concatenate([form(places * units), form(corners * units)])
         with flint.ctx.workprec(160):
             exact, _, waves = interpolated(text, k, Fraction(0), *ends)
-            leaf = check_arb._Leaf(exact, waves, check_arb._Work())
+            leaf = leaves.Leaf(exact, waves, leaves.Work())
             box = cells.Box(*(tuple(map(interpolation.exact, end)) for end in ends))
             assert values.min() > -1e-9 or not leaf.is_positive(box)
             waves.rest -= 10 * sum(abs(wave.amplitude) for wave in waves.rows)
@@ -550,9 +550,9 @@ def test_both_checkers_follow_as_many_letters_as_the_page_says(joints, cells, ki
     content = proof_of(statement, cells, 2, text)
     content = json.dumps(content | {"proof": {name: ["."] * cells for name in names}})
     done = []
-    monkeypatch.setattr(check_arb._Work, "add", lambda _, n: done.append(n))
+    monkeypatch.setattr(leaves.Work, "add", lambda _, n: done.append(n))
     assert check_arb.verify(content) == "proved"
-    assert sum(done) / (3 * cells) <= check_arb.MOST_WORK / most
+    assert sum(done) / (3 * cells) <= leaves.MOST_WORK / most
     assert not check.check(content).refuted
     assert check.Ball.work / (3 * cells) <= check.MAX_WORK / most
 

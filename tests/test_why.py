@@ -20,6 +20,7 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb
 from support import brute_force
 from support.elbow import arm
+from support.planar import caged
 
 BODIES = "two-links-on-a-table"
 START, GOAL = [0.0, 1.0, 0.0], [0.3, 4.0, 0.0]
@@ -107,7 +108,10 @@ def test_held_joints_separate_what_others_do_not(tmp_path):
     found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], hold=True)
     assert found.answer == "separated"
     assert found.separation is None
-    assert found.certificate is None
+    assert (
+        "along which 'elbow' = 0 deg, 'wrist' = 0 deg" in check.check(found.certificate.text).said
+    )
+    assert check_arb.verify(found.certificate.text) == "proved"
     (said,) = why_lines(found)
     assert "while elbow, wrist are held" in said
     assert valid(found)["held"] == ["elbow", "wrist"]
@@ -119,11 +123,13 @@ def test_a_component_of_two_joints_that_no_joint_parts_is_separated_by_a_paving(
     from qbound import find_region
 
     centres = [c.centroid for c in find_region(load_robot("minervabot-v2")).components]
-    found = [why("minervabot-v2", centres[0], centre) for centre in centres[1:]]
+    pairs = [*((centres[0], centre) for centre in centres[1:]), centres[3:]]
+    found = [why("minervabot-v2", *pair) for pair in pairs]
     assert {each.answer for each in found} == {"separated"}
+    assert [each.separation is None for each in found] == [False] * 4 + [True]
     for each in found:
         valid(each)
-        assert (each.separation is None) == (each.certificate is None)
+        assert not check.check(each.certificate.text).refuted
 
 
 def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file):
@@ -243,6 +249,18 @@ def test_the_command_writes_certificate_document_and_picture(file, tmp_path, cap
     assert "python-flint: proved" in said
     assert json.loads(files[1].read_text())["answer"] == "separated"
     assert files[2].read_bytes().startswith(b"<?xml")
+
+
+def test_the_command_certifies_what_a_paving_separates(tmp_path, capsys):
+    file, proof = tmp_path / "arm.toml", tmp_path / "c.json"
+    file.write_text(caged())
+    values = ["0", "110", "20", "9", "-110", "20"]
+    assert main(["why", str(file), *values, "--hold", "-o", str(proof)]) == 1
+    assert "separated, while wrist is held" in capsys.readouterr().out
+    assert main(["check", str(proof), str(file), "--arb"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "along which 'wrist' = 20 deg keeps every boundary" in said
+    assert "python-flint: proved" in said
 
 
 def test_the_command_refuses_what_it_cannot_write(file, tmp_path, capsys):

@@ -16,6 +16,7 @@ refused here. Read from top to bottom:
     bodies        outlines in the plane of motion, and what separates two of them
     the bound     on each leaf of a tree, why the boundary is positive there
     no path       values of one joint that nothing passes, whatever the other joints
+    disconnected  boxes of up to three joints, the others held, that lie in every path
     the answer    a statement that is written from what was verified, and an exit status
 
 Exit status: 0 proved, 1 refuted by a witness that was verified, 2 anything else, 130 interrupted.
@@ -47,6 +48,9 @@ MAX_ROBOT = 500_000
 
 MAX_JOINTS, MAX_ROWS, MAX_CORNERS = 6, 2_000, 1_000
 """Joints; points, boundaries or bodies; corners of the outline of a body."""
+
+MAX_FREE = 3
+"""Joints that move where the others are held."""
 
 MAX_CONFIGURATIONS, MAX_TRIANGLES = 20_000, 20_000
 
@@ -725,6 +729,13 @@ class Statement:
     margin: Fraction
     loops: tuple[tuple[Point, ...], ...]
     cells: tuple[Cell, ...]
+    free: tuple[int, ...] = ()
+    """Of no path in grammar 5: the joints that move, by their numbers; all others are held."""
+
+    @property
+    def held(self) -> Held:
+        """Return the values of the joints that a path of grammar 5 leaves where they are."""
+        return {j: x for j, x in enumerate(self.loops[0][0]) if self.free and j not in self.free}
 
 
 def read_statement(value: Any, grammar: int, joints: int) -> Statement:
@@ -732,22 +743,35 @@ def read_statement(value: Any, grammar: int, joints: int) -> Statement:
     sort = value.get("set") if type(value) is dict else None
     sets = ("box", "path", "polygon") if grammar < 4 else (NO_PATH,)
     kind = one_of(sort, "statement: set", sets)
-    triangles = ("triangles",) if kind == "polygon" else ()
-    table = table_of(value, "statement", ("set", "margin", "points", *triangles))
+    more = ("triangles",) if kind == "polygon" else ("free",) if grammar == 5 else ()
+    table = table_of(value, "statement", ("set", "margin", "points", *more))
     margin = number(table["margin"], "statement: margin")
     demand(margin >= 0, "statement: margin: a length of 0 or more is wanted")
     most = 1 if kind in ("box", NO_PATH) else MAX_CONFIGURATIONS
     loops = _read_loops(table["points"], most, joints)
     cells: tuple[Cell, ...] = ()
+    free: tuple[int, ...] = ()
     if kind == NO_PATH:
         demand(len(loops[0]) == 2, "statement: points[0]: two configurations are wanted")
+        free = _read_free(table["free"], *loops[0]) if grammar == 5 else ()
     elif kind == "box":
         cells = _box_cells(loops[0], grammar)
     elif kind == "path":
         cells = _segments(loops)
     else:
         cells = _triangles(loops, table["triangles"])
-    return Statement(kind, margin, loops, cells)
+    return Statement(kind, margin, loops, cells, free)
+
+
+def _read_free(value: Any, start: Point, goal: Point) -> tuple[int, ...]:
+    """Read the joints that move: in all others start and goal agree."""
+    where, n = "statement: free", len(start)
+    free = [index_of(j, where, n) for j in list_of(value, where, 1, MAX_FREE)]
+    rises = all(a < b for a, b in itertools.pairwise(free))
+    demand(rises, f"{where}: joints are named by their numbers, each once, in order")
+    agree = all(start[j] == goal[j] for j in range(n) if j not in free)
+    demand(agree, f"{where}: start and goal differ in a joint that is held")
+    return tuple(free)
 
 
 def _read_loops(value: Any, most: int, joints: int) -> tuple[tuple[Point, ...], ...]:
@@ -1034,15 +1058,18 @@ def rotation_waves(axis: Vector) -> tuple[Matrix, Matrix, Matrix]:
     return along, forwards, backwards
 
 
+def turned(axis: Vector, phase: Ball) -> Matrix:
+    """Return the turn about a unit axis by the angle of a phase."""
+    still, forwards, backwards = rotation_waves(axis)
+    return combined((ONE, still), (phase, forwards), (phase.conjugate, backwards))
+
+
 def mount(joint: Joint, angle_unit: str) -> Matrix:
     """Return Rz(yaw) Ry(pitch) Rx(roll), the fixed rotation that a joint is mounted with."""
     total = IDENTITY
     for row, angle in zip(reversed(IDENTITY), reversed(joint.rpy), strict=True):
         if angle:
-            still, forwards, backwards = rotation_waves(row)
-            phase = phase_of(angle, angle_unit)
-            turn = combined((ONE, still), (phase, forwards), (phase.conjugate, backwards))
-            total = product(total, turn)
+            total = product(total, turned(row, phase_of(angle, angle_unit)))
     return total
 
 
@@ -1106,16 +1133,25 @@ def add_to(form: Form, key: Key, value: Ball) -> None:
     form[key] = form.get(key, ZERO) + value
 
 
-def motions(robot: Robot) -> list[Motion]:
-    """Return what each joint does."""
+Held = dict[int, Fraction]
+"""Values of joints that stay where they are."""
+
+
+def motions(robot: Robot, held: Held) -> list[Motion]:
+    """Return what each joint does; one that is held is no more than a part of its mount."""
     found = []
     for j, joint in enumerate(robot.joints):
         fixed, axis = mount(joint, robot.angle_unit), unit_vector(joint.axis)
-        waves = [(0, fixed)]
-        if joint.turns:
+        origin, waves = vector(joint.origin), [(0, fixed)]
+        if joint.turns and j in held:
+            waves = [(0, product(fixed, turned(axis, phase_of(held[j], robot.angle_unit))))]
+        elif joint.turns:
             turning = zip((0, 1, -1), rotation_waves(axis), strict=True)
             waves = [(k, product(fixed, matrix)) for k, matrix in turning]
-        found.append(Motion(j, vector(joint.origin), axis, waves, not joint.turns))
+        elif j in held:
+            origin = plus(origin, scaled(real(held[j]), image(fixed, axis)))
+        slides = not joint.turns and j not in held
+        found.append(Motion(j, origin, axis, waves, slides))
     return found
 
 
@@ -1126,8 +1162,8 @@ MAX_KNOWN = 200
 class Kinematics:
     """Where the points of a robot are; what two boundaries need is found once."""
 
-    def __init__(self, robot: Robot) -> None:
-        self.moves = motions(robot)
+    def __init__(self, robot: Robot, held: Held | None = None) -> None:
+        self.moves = motions(robot, held or {})
         self.known: dict[tuple[int, Place], tuple[VectorForm, Form]] = {}
 
     def seen(self, frame: int, place: Place) -> tuple[VectorForm, Form]:
@@ -1655,24 +1691,33 @@ def least_of_twice(
 TREE = re.compile(r"(?P<number>0|[1-9][0-9]{0,8})?[.]|.", re.DOTALL)
 
 
-def prove(asked: Asked, cell: Cell, tree: str, where: str) -> None:
-    """Walk a tree: a letter cuts the next cell in two; at a leaf, a dot, all is positive."""
+def walk(cell: Cell, tree: str, where: str) -> Iterator[tuple[Cell, bool, int | None]]:
+    """Visit the cells of a tree in its order: each, whether it is a leaf, and the leaf's number.
+
+    A letter cuts the next cell in two; a dot, after a number or not, makes it a leaf.
+    """
+    demand(type(tree) is str and tree, f"{where}: a tree is a text")
     todo = [(cell, 0)]
     for token in TREE.finditer(tree):
         spend(CELL_WORK)
         demand(todo, f"{where}: the tree goes on after its last leaf")
         cell, depth = todo.pop()
-        letter = token.group()
-        if letter.endswith("."):
-            number = token["number"]
-            for function in asked(None if number is None else int(number), where):
-                positive = is_positive(function, cell)
-                demand(positive, f"{where}: the bound is not positive on a leaf")
-        else:
+        letter, number = token.group(), token["number"]
+        is_leaf = letter.endswith(".")
+        if not is_leaf:
             demand(depth < MAX_DEPTH, f"{where}: more than {MAX_DEPTH} cuts on top of each other")
             first, second = cell.halves(letter)
             todo += [(second, depth + 1), (first, depth + 1)]
+        yield cell, is_leaf, None if number is None else int(number)
     demand(not todo, f"{where}: the tree ends before its last leaf")
+
+
+def prove(asked: Asked, cell: Cell, tree: str, where: str) -> None:
+    """Verify that on each leaf of a tree all is positive."""
+    for leaf, is_leaf, number in walk(cell, tree, where):
+        for function in asked(number, where) if is_leaf else ():
+            positive = is_positive(function, leaf)
+            demand(positive, f"{where}: the bound is not positive on a leaf")
 
 
 # --- proofs and witnesses -------------------------------------------------------------------------
@@ -1773,13 +1818,18 @@ def mean_of(value: Any, where: str, count: int) -> list[Fraction]:
     return weights
 
 
+def demand_within_limits(robot: Robot, points: Iterable[Point]) -> None:
+    """Refuse a configuration that is beyond a limit."""
+    for q in points:
+        beyond = robot.beyond(q)
+        demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
+
+
 def verify_proof(proving: Proving, statement: Statement, value: Any) -> None:
     """Verify that the whole set keeps all limits and all boundaries in use."""
     robot = proving.robot
     for cell in statement.cells:  # cells are convex: their corners stand for them
-        for q in cell.corners:
-            beyond = robot.beyond(q)
-            demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
+        demand_within_limits(robot, cell.corners)
     needed = [b for b in robot.boundaries if b.needs_proof(statement.margin)]
     proof = table_of(value, "proof", [boundary.name for boundary in needed])
     for boundary in needed:
@@ -1788,7 +1838,6 @@ def verify_proof(proving: Proving, statement: Statement, value: Any) -> None:
         trees = list_of(proof[boundary.name], where, count, count)
         pairs = ((asked, cell) for asked in proving.asked(boundary) for cell in statement.cells)
         for i, ((asked, cell), tree) in enumerate(zip(pairs, trees, strict=True)):
-            demand(type(tree) is str and tree, f"{where}: a tree is a text")
             prove(asked, cell, tree, f"{where}[{i}]")
 
 
@@ -1840,9 +1889,7 @@ class Blocked:
 def verify_no_path(robot: Robot, statement: Statement, value: Any) -> list[Blocked]:
     """Verify that no path within the limits keeps every boundary from one end to the other."""
     proof, [[start, goal]] = table_of(value, "proof", ("joint", "blocked")), statement.loops
-    for q in (start, goal):
-        beyond = robot.beyond(q)
-        demand(not beyond, f"statement: beyond the limit {shown(next(iter(beyond), ''))}")
+    demand_within_limits(robot, (start, goal))
     names = [joint.name for joint in robot.joints]
     j = names.index(one_of(proof["joint"], "proof: joint", names))
     count = 1 if robot.joints[j].limits else 2  # without limits there are two ways round
@@ -1884,10 +1931,7 @@ def _read_blocked(
 ) -> Blocked:
     """Read a range of joint j and prove that a boundary is violated all over it."""
     row = table_of(value, where, ("boundary", "from", "to", "tree"))
-    known = {b.name: b for b in robot.boundaries if all(isinstance(e, Place) for e in b.ends)}
-    named = type(row["boundary"]) is str and row["boundary"] in known
-    demand(named, f"{where}: boundary: {shown(row['boundary'])} is no boundary of points in use")
-    boundary = known[row["boundary"]]
+    boundary = boundary_of_points(robot, row["boundary"], f"{where}: boundary")
     frames = [0] * (boundary.normal is not None) + sorted(end.frame for end in boundary.ends)
     demand(frames[0] <= j < frames[-1], f"{where}: boundary: it does not depend on the joint")
     low, high = (number(row[key], f"{where}: {key}") for key in ("from", "to"))
@@ -1903,7 +1947,6 @@ def _read_blocked(
     function = function_of(robot, least_violation(robot, form, j, reach))
     [[start, _]], tree = statement.loops, row["tree"]
     ends = [(*start[:j], end, *start[j + 1 :]) for end in (low, high)]
-    demand(type(tree) is str and tree, f"{where}: a tree is a text")
 
     def asked(feature: int | None, where: str) -> list[Function]:
         demand(feature is None, f"{where}: a leaf has a number, but there are no features")
@@ -1911,6 +1954,14 @@ def _read_blocked(
 
     prove(asked, Box(*ends), tree, where)
     return Blocked(j, boundary, low, high)
+
+
+def boundary_of_points(robot: Robot, name: Any, where: str) -> Boundary:
+    """Return the boundary of this name, which is in use, and about points."""
+    known = {b.name: b for b in robot.boundaries if all(isinstance(e, Place) for e in b.ends)}
+    named = type(name) is str and name in known
+    demand(named, f"{where}: {shown(name)} is no boundary of points in use")
+    return known[name]
 
 
 def least_violation(robot: Robot, form: Form, j: int, reach: Point) -> Form:
@@ -1928,6 +1979,155 @@ def least_violation(robot: Robot, form: Form, j: int, reach: Point) -> Form:
         else:
             add_to(found, key, ZERO - amplitude)
     return found
+
+
+# --- disconnected ---------------------------------------------------------------------------------
+# The box of all values of the joints that move is cut into leaves. On one with a number a boundary
+# is violated throughout. So a path that violates none stays in the others, closed as they are, and
+# gets from one to another only where they touch, be it in a corner.
+
+WHOLE_TURN = {
+    "deg": (Fraction(-180), Fraction(180)),
+    "rad": (Fraction("-3.1416"), Fraction("3.1416")),
+}
+"""Values of a joint without limits: a turn, or a little more, whose ends are glued."""
+
+UNITS = 2**MAX_DEPTH
+"""Of a side of the box: ends of cells are whole counts, however often it was halved."""
+
+TURN_ERROR = 10
+"""Units that it may take to count a turn in whole units, in radians, up to five turns away."""
+
+VISITS = 2
+"""Cells that are compared with a span in the time of a multiplication."""
+
+Span = tuple[tuple[Fraction | int, Fraction | int], ...]
+"""A low and a high end for each joint that moves, in units from the low end of the box."""
+
+
+class Disconnected(NamedTuple):
+    """Leaves on each of which one of some boundaries is violated throughout."""
+
+    boundaries: list[Boundary]
+    leaves: int
+
+
+def verify_disconnected(robot: Robot, statement: Statement, value: Any) -> Disconnected:
+    """Verify that no path of the joints that move leads from start to goal; the others are held."""
+    proof, [[start, goal]] = table_of(value, "proof", ("boundaries", "tree")), statement.loops
+    demand_within_limits(robot, (start, goal))
+    where = "proof: boundaries"
+    names = list_of(proof["boundaries"], where, 1, MAX_ROWS)
+    boundaries = [boundary_of_points(robot, name, where) for name in names]
+    kinematics = Kinematics(robot, statement.held)
+    violations = [
+        function_of(robot, less({}, boundary_form(kinematics, b, b.gap(statement.margin))))
+        for b in boundaries
+    ]
+    box = free_box(robot, statement)
+    leaves = Leaves(robot, box, statement.free)
+    for cell, is_leaf, number in walk(box, proof["tree"], "proof: tree"):
+        leaves.add(cell, is_leaf=is_leaf, is_open=is_leaf and number is None)
+        if is_leaf and number is not None:
+            demand(number < len(violations), f"proof: tree: no boundary has the number {number}")
+            violated = is_positive(violations[number], cell)
+            demand(violated, f"proof: tree: {boundaries[number].name!a} may be kept on a leaf")
+    first, last = leaves.holding(start), leaves.holding(goal)
+    demand(first, "proof: tree: the start is in no leaf without a number")
+    demand(last, "proof: tree: the goal is in no leaf without a number")
+    joined = last & leaves.reached(first)
+    demand(not joined, "proof: tree: leaves without a number lead from the start to the goal")
+    return Disconnected(boundaries, sum(leaves.is_leaf) - sum(leaves.is_open))
+
+
+def free_box(robot: Robot, statement: Statement) -> Box:
+    """Return all values of the joints that move, and the one value of each that is held."""
+    held, largest = statement.held, LARGEST_ANGLE[robot.angle_unit]
+    ends = list[tuple[Fraction, Fraction]]()
+    for j, joint in enumerate(robot.joints):
+        if j in held:
+            ends.append((held[j], held[j]))
+        else:
+            ends.append(joint.limits or WHOLE_TURN[robot.angle_unit])
+            small = not joint.turns or max(map(abs, ends[-1])) <= largest
+            demand(small, f"statement: free: limits of more than {largest} {robot.angle_unit}")
+    low, high = zip(*ends, strict=True)
+    return Box(low, high)
+
+
+class Leaves:
+    """The cells of a tree in its order, by their spans, to tell which of its leaves touch.
+
+    A joint without limits is glued: its values a turn apart are the same.
+    """
+
+    def __init__(self, robot: Robot, box: Box, free: Sequence[int]) -> None:
+        self.free, self.low = free, box.low
+        self.scale = [
+            UNITS / (b - a) if a != b else 0 for a, b in zip(box.low, box.high, strict=True)
+        ]
+        in_degrees = robot.angle_unit == "deg"
+        turn = Fraction(360) if in_degrees else 2 * PI
+        glued = [robot.joints[j].limits is None for j in free]
+        self.turns = [int(turn * self.scale[j]) * g for j, g in zip(free, glued, strict=True)]
+        """Units of a turn, and 0 of a joint with limits."""
+        self.errors = [0 if in_degrees else TURN_ERROR * g for g in glued]
+        self.spans, self.is_leaf, self.is_open = list[Span](), list[bool](), list[bool]()
+
+    def add(self, cell: Cell, *, is_leaf: bool, is_open: bool) -> None:
+        """Add the next cell; open is a leaf without a number."""
+        low, high = cell.corners
+        self.spans.append(
+            tuple((int(self.units(low, j)), int(self.units(high, j))) for j in self.free)
+        )
+        self.is_leaf.append(is_leaf)
+        self.is_open.append(is_open)
+
+    def units(self, q: Point, j: int) -> Fraction:
+        """Return where a joint value lies, from the low end of the box."""
+        return (q[j] - self.low[j]) * self.scale[j]
+
+    @cached_property
+    def after(self) -> list[int]:
+        """Return of each cell the number of the next one that is no part of it."""
+        after = [k + 1 for k in range(len(self.spans))]
+        for k in reversed(range(len(after))):
+            if not self.is_leaf[k]:  # it ends where its second half does
+                after[k] = after[after[k + 1]]
+        return after
+
+    def holding(self, q: Point) -> set[int]:
+        """Return all open leaves that hold a configuration."""
+        places = [self.units(q, j) for j in self.free]
+        placed = [x % turn if turn else x for x, turn in zip(places, self.turns, strict=True)]
+        return {*self.touching(tuple((x, x) for x in placed))}
+
+    def touching(self, span: Span) -> Iterator[int]:
+        """Yield the open leaves that share a place with a span, over the seams as well."""
+        seams = [(0, -turn, turn) if turn else (0,) for turn in self.turns]
+        for shifts in itertools.product(*seams):
+            moved = [
+                (low + shift - error, high + shift + error)
+                for (low, high), shift, error in zip(span, shifts, self.errors, strict=True)
+            ]
+            k, count = 0, 0
+            while k < len(self.spans):
+                count += 1
+                pairs = zip(self.spans[k], moved, strict=True)
+                apart = any(b < low or high < a for (a, b), (low, high) in pairs)
+                if self.is_open[k] and not apart:
+                    yield k
+                k = self.after[k] if apart else k + 1
+            spend(count // VISITS)
+
+    def reached(self, first: Iterable[int]) -> set[int]:
+        """Return all open leaves that a chain of touching ones leads to."""
+        found, todo = {*first}, [*first]
+        while todo:
+            near = {*self.touching(self.spans[todo.pop()])} - found
+            found |= near
+            todo += near
+        return found
 
 
 # --- the answer -----------------------------------------------------------------------------------
@@ -1979,27 +2179,35 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
     _check_angles(robot, statement)
     if grammar == 4:
         blocked = verify_no_path(robot, statement, content["proof"])
-        lines = [no_path_of(robot, statement, blocked), *described(robot, statement)]
-        return Answer(False, "\n".join([f"robot {robot.name!a}, sha256 {sha256}", *lines]))
+        found = no_path_of(robot, statement, blocked)
+    elif grammar == 5:
+        found = disconnected_of(
+            robot, statement, verify_disconnected(robot, statement, content["proof"])
+        )
+    else:
+        found = _verified(robot, statement, content, refuted=refuted)
+    lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
+    return Answer(refuted, "\n".join(lines))
+
+
+def _verified(robot: Robot, statement: Statement, content: Table, *, refuted: bool) -> str:
+    """Verify the proof or the witness of a set, and say what it shows."""
     proving = Proving(robot, content.get("parts", {}), statement.margin)
     if refuted:
         name = text_of(content["boundary"], "boundary", 1_000)
         q = read_witness(content, statement, len(robot.joints))
         verify_witness(proving, name, q, content.get("places"))
-        found = refutation(robot, statement, name, q)
-    else:
-        verify_proof(proving, statement, content["proof"])
-        found = proof_of(robot, statement)
-    lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
-    return Answer(refuted, "\n".join(lines))
+        return refutation(robot, statement, name, q)
+    verify_proof(proving, statement, content["proof"])
+    return proof_of(robot, statement)
 
 
 def _read_heading(content: Any) -> tuple[int, bool]:
     """Return the number of the grammar, and whether the file refutes; verify its keys."""
     demand(type(content) is dict, "the file is no JSON object")
     schema = text_of(content.get("schema"), "schema", 100)
-    known = re.fullmatch("qbound/certificate/([1-4])", schema, re.ASCII)
-    demand(known, "schema: qbound/certificate/1, 2, 3 or 4 is wanted")
+    known = re.fullmatch("qbound/certificate/([1-5])", schema, re.ASCII)
+    demand(known, "schema: qbound/certificate/1, 2, 3, 4 or 5 is wanted")
     grammar = int(schema[-1])
     verdicts = ("proved", "refuted") if grammar < 4 else ("proved",)
     refuted = one_of(content.get("verdict"), "verdict", verdicts) == "refuted"
@@ -2033,17 +2241,32 @@ def proof_of(robot: Robot, statement: Statement) -> str:
 
 def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -> str:
     """Say between which configurations there is no path, and which joint cannot pass what."""
-    j, margin = blocked[0].joint, f"{written(statement.margin)} {robot.length_unit}"
+    j = blocked[0].joint
     unit = robot.unit(j)
     ranges = " nor ".join(
         f"from {written(b.low)} {unit} to {written(b.high)} {unit}, where {b.boundary.name!a} is"
         " violated whatever the other joints are"
         for b in blocked
     )
+    said = _no_path_keeps(robot, statement)
+    return f"{said}: {robot.joints[j].name!a} cannot pass {ranges}"
+
+
+def disconnected_of(robot: Robot, statement: Statement, proof: Disconnected) -> str:
+    """Say between which configurations there is no path, and what is violated between them."""
+    names = " or ".join(sorted({ascii(boundary.name) for boundary in proof.boundaries}))
+    boxes = f"one of the boxes ({proof.leaves}) all over which {names} is violated"
+    return f"{_no_path_keeps(robot, statement)}: each meets {boxes}"
+
+
+def _no_path_keeps(robot: Robot, statement: Statement) -> str:
     [[start, goal]] = statement.loops
-    ends = f"from {_point(start)} to {_point(goal)}"
-    keeps = f"keeps every boundary with a margin of {margin} and all limits"
-    return f"proved: no path {ends} {keeps}: {robot.joints[j].name!a} cannot pass {ranges}"
+    ends, margin = f"from {_point(start)} to {_point(goal)}", written(statement.margin)
+    values = statement.held.items()
+    held = [f"{robot.joints[j].name!a} = {written(x)} {robot.unit(j)}" for j, x in values]
+    still = f" along which {', '.join(held)}" if held else ""
+    keeps = f"keeps every boundary with a margin of {margin} {robot.length_unit} and all limits"
+    return f"proved: no path {ends}{still} {keeps}"
 
 
 def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:

@@ -28,8 +28,10 @@ from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify
 from qbound.proofs.connection import Connection, connection
+from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
+from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.region import violated
 
@@ -88,7 +90,8 @@ class Why:
     held : Connection or None
         What a paving of the joints in which the ends differ proves, the others held.
     certificate : Certificate or None
-        Of the path, of the separation, or of a violated boundary; what `check` reads.
+        Of the path, of what separates (a joint, or a paving), or of a violated boundary; what
+        `check` reads.
     tried : tuple of str
         What was tried, in sentences.
     """
@@ -147,8 +150,8 @@ def why(
     Notes
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
-    with one of "no path"; a paving is a proof by itself and has no certificate. Nor has an arm with
-    a parallelogram, which certificates do not know: paths of it are found by pavings alone.
+    and a paving that separates with one of "no path". An arm with a parallelogram has none, since
+    certificates do not know it: paths of it are found by pavings alone.
 
     Examples
     --------
@@ -161,6 +164,12 @@ def why(
     >>> found = why("minervabot-v2", [0.0, 0.0], [0.0, 2.3])
     >>> found.answer, found.separation.travel.name
     ('separated', 'q2')
+
+    Where no joint does so by itself, boxes of joint values are in the way:
+
+    >>> found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
+    >>> found.answer, found.separation, found.certificate.verdict.value
+    ('separated', None, 'proved')
     """
     text, _ = robot_text(source)
     robot = parse_robot(tomllib.loads(text))
@@ -350,9 +359,19 @@ def _paved(asked: _Asked, source: str | Path) -> Why:
         connected = _connected(asked, path, found)
         if connected is not None:
             return connected
-    proved = found.answer == "separated" and (asked.hold or len(moving) == n)
     said = _said_of_paving(robot, moving, found)
-    return asked.answer("separated" if proved else "undecided", held=found, tried=(said,))
+    if found.answer == "separated" and (asked.hold or len(moving) == n):
+        proved = _disconnected(asked, found.paving)
+        return asked.answer("separated", held=found, certificate=proved, tried=(said,))
+    return asked.answer("undecided", held=found, tried=(said,))
+
+
+def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
+    """Certify that a paving separates; it is a proof without that, too."""
+    if not _certifiable(asked.robot):
+        return None
+    certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
+    return certificate if certificate.verdict is Verdict.PROVED else None
 
 
 def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:

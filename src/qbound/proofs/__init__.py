@@ -16,9 +16,10 @@
 - certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
   which polygon), `unrolled` (what goes all the way round a joint, cut open), `minorant` (lower
   bounds), `boxes` (the search over a box) and `forest` (the cuts of a search), `certify` (the
-  search, and the file), `no_path` (that nothing leads past a range), `witness` (what refutes);
+  search, and the file), `no_path` (that nothing leads past a range), `separator` (few boxes that
+  separate) and `disconnected` (that nothing leads round them), `witness` (what refutes);
 - the second checker, after `qbound.check`: `grammar`, `grammar_robot` and `grammar_values` (what a
   file may say), `cells` (what makes up the set), `interpolation` (boundary functions), `flat_balls`
-  (bodies in the plane of motion), `check_arb`;
+  (bodies in the plane of motion), `leaves` (bounds on leaves), `check_disconnected`, `check_arb`;
 - `reports`: what was proved, as JSON and in words.
 """

@@ -88,6 +88,7 @@ class BoxBound:
         size, sliding = np.abs(waves.amplitudes), waves.powers.any(axis=1)
         turns = waves.turns[~sliding]
         self.form, self.sliding = form, sliding
+        self.size = float(size.sum())
         self.slack = NEGLIGIBLE * size.sum()
         self.matrix = np.einsum("k,ki,kj->ij", size[~sliding], turns, turns)
         self.largest = np.einsum("k,ki,kj->ij", size[~sliding], abs(turns), abs(turns))
@@ -134,6 +135,11 @@ class BoxBound:
         total = np.stack(totals, axis=1)
         flat = np.isclose(total.min(axis=1), self._bending(centres, halves), rtol=1e-9, atol=0)
         return np.asarray(np.where(flat, halves.argmax(axis=1), total.argmin(axis=1)))
+
+    def losses(self, centres: Floats, halves: Floats) -> Floats:
+        """Return what each joint takes off the bound, by slope and by bending, shape (N, n)."""
+        bend = halves * (halves @ self.largest) / 2
+        return np.asarray(np.abs(self.form.gradient(centres)) * halves + bend)
 
     def _bending(self, centres: Floats, halves: Floats) -> Floats:
         bend = ((halves @ self.largest) * halves).sum(axis=1)

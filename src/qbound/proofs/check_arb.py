@@ -3,14 +3,14 @@
 It is written from the book's page "The certificate" and shares no line with `check`: `grammar`
 reads the file into exact rationals; `interpolation` finds a boundary function from its values at
 third parts of a turn; trees are walked with a stack of cells. On each leaf it proves the inequality
-of that page.
+of that page (`leaves`). Boxes that separate two configurations are checked in
+`check_disconnected`.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -19,6 +19,7 @@ from typing import Any
 
 from qbound.extras import require
 from qbound.proofs.cells import Box, Cell, Simplex, cells_of
+from qbound.proofs.check_disconnected import check_disconnected
 from qbound.proofs.flat_balls import Core, Features, FlatArm, cores_of
 from qbound.proofs.grammar import Barrier, Blocked, Content, Witness, read_certificate
 from qbound.proofs.grammar_robot import Boundary, Place, Robot
@@ -34,6 +35,15 @@ from qbound.proofs.interpolation import (
     values_of,
     waves_of,
 )
+from qbound.proofs.leaves import (
+    WAVES_WORK,
+    Functions,
+    Leaf,
+    Work,
+    beyond_limits,
+    covers,
+    without_number,
+)
 from qbound.proofs.verdict import Verdict
 
 BITS = 160
@@ -41,16 +51,6 @@ BITS = 160
 
 WITNESS_BITS = 640
 """Bits at a witness, which may violate a boundary in the fortieth digit only."""
-
-DEEPEST = 120
-"""Cuts on top of each other."""
-
-MOST_WORK = 32_000_000
-"""Products that a check may take, some 15 seconds; counted before they are made."""
-
-WAVES_WORK, CUT_WORK = 30, 50
-"""Products for each value of a boundary function that is interpolated, and for each letter."""
-
 
 PART_WORK = 2
 """Products for each corner of a part and each of its edges."""
@@ -65,7 +65,7 @@ def verify(text: str | bytes) -> Verdict:
     Parameters
     ----------
     text : str or bytes
-        The certificate, grammar 1, 2, 3 or 4.
+        The certificate, grammar 1, 2, 3, 4 or 5.
 
     Raises
     ------
@@ -107,6 +107,9 @@ def _verified(text: str | bytes) -> Verdict:
     if content.barrier is not None:
         _check_barrier(content, content.barrier)
         return content.verdict
+    if content.disconnected is not None:
+        check_disconnected(content, content.disconnected)
+        return content.verdict
     cells = _exact_cells(content)
     asked = _Asked(content)
     if content.witness is not None:
@@ -128,23 +131,11 @@ def _exact_cells(content: Content) -> list[Cell]:
 # --- the proof ------------------------------------------------------------------------------------
 
 
-class _Work:
-    """What a check has cost, in products; it stops where the cost is too high."""
-
-    def __init__(self) -> None:
-        self.done = 0
-
-    def add(self, count: int) -> None:
-        self.done += count
-        if self.done > MOST_WORK:
-            refuse("it asks for too much work")
-
-
 def _check_proof(asked: _Asked, cells: Sequence[Cell]) -> None:
     content, robot, work = asked.content, asked.robot, asked.work
     margin = content.statement.margin
     for point in content.statement.points:
-        beyond = _beyond_limits(robot, [exact(x) for x in point])
+        beyond = beyond_limits(robot, [exact(x) for x in point])
         if beyond:
             refuse(f"a point of the set is beyond {shown(beyond[0])}")
     needed = [b for b in robot.boundaries if b.used and _can_be_violated(b, margin)]
@@ -159,7 +150,7 @@ def _check_proof(asked: _Asked, cells: Sequence[Cell]) -> None:
         for k, functions in enumerate(asked.of(boundary)):
             own = trees[k * len(cells) : (k + 1) * len(cells)]
             for cell, tree in zip(cells, own, strict=True):
-                if not _covers(functions, cell, tree, work):
+                if not covers(functions, cell, tree, work):
                     refuse(f"{shown(boundary.name)}: not proved on every leaf")
 
 
@@ -169,15 +160,11 @@ def _can_be_violated(boundary: Boundary, margin: Any) -> bool:
     return boundary.normal is not None or crossing or boundary.least + margin != 0
 
 
-Functions = Callable[[str], list["_Leaf"]]
-"""From what stands before the point of a leaf to the functions that are positive there."""
-
-
 class _Asked:
     """What has to be positive, for each boundary, or for each pair of parts of two bodies."""
 
     def __init__(self, content: Content) -> None:
-        self.content, self.work, self.robot = content, _Work(), content.robot
+        self.content, self.work, self.robot = content, Work(), content.robot
         self.reach = reach_of(self.robot, content.statement.points)
         self.cores = self._cores()
 
@@ -218,8 +205,8 @@ class _Asked:
                 waves_of(self.robot, single, margin, self.reach)
                 for single in self.singles(boundary)
             ]
-            leaves = [_Leaf(self.robot, wave, self.work) for wave in waves]
-            yield partial(_without_number, leaves)
+            leaves = [Leaf(self.robot, wave, self.work) for wave in waves]
+            yield partial(without_number, leaves)
             return
         for one, other in product(*(self.cores[body.name] for body in boundary.bodies)):
             yield _ByNumber(self, self.features(boundary, one, other))
@@ -240,20 +227,14 @@ class _Asked:
         ]
 
 
-def _without_number(leaves: list[_Leaf], number: str) -> list[_Leaf]:
-    if number:
-        refuse("a leaf names a feature where there are none")
-    return leaves
-
-
 class _ByNumber:
     """The functions of features, each made when a leaf first names it."""
 
     def __init__(self, asked: _Asked, features: Features) -> None:
         self.asked, self.features = asked, features
-        self.known: dict[int, list[_Leaf]] = {}
+        self.known: dict[int, list[Leaf]] = {}
 
-    def __call__(self, number: str) -> list[_Leaf]:
+    def __call__(self, number: str) -> list[Leaf]:
         if not number or int(number) >= self.features.count:
             refuse("a leaf names no feature of its parts")
         k = int(number)
@@ -262,62 +243,8 @@ class _ByNumber:
                 self.known.clear()
             self.asked.work.add(WAVES_WORK * self.features.size(k))
             robot, work = self.asked.robot, self.asked.work
-            self.known[k] = [_Leaf(robot, waves, work) for waves in self.features.waves(k)]
+            self.known[k] = [Leaf(robot, waves, work) for waves in self.features.waves(k)]
         return self.known[k]
-
-
-def _covers(functions: Functions, cell: Cell, tree: str, work: _Work) -> bool:
-    """Tell whether a tree ends with its last leaf, and all is positive on every leaf."""
-    todo = [(cell, 0)]
-    work.add(CUT_WORK * len(tree))
-    for letter in re.findall("[a-z]|[0-9]*[.]", tree):
-        if not todo:
-            refuse("something follows a tree")
-        top, depth = todo.pop()
-        if letter.endswith("."):
-            if not all(leaf.is_positive(top) for leaf in functions(letter[:-1])):
-                return False
-        elif depth == DEEPEST:
-            refuse(f"more than {DEEPEST} cuts on top of each other")
-        else:
-            first, second = top.halves(ord(letter) - ord("a"))
-            todo += [(second, depth + 1), (first, depth + 1)]
-    if todo:
-        refuse("a tree ends before its last leaf")
-    return True
-
-
-class _Leaf:
-    """One boundary function, to be bounded from below on leaf after leaf."""
-
-    def __init__(self, robot: Robot, waves: Waves, work: _Work) -> None:
-        self.waves, self.work = waves, work
-        self.units = [units(robot)[j] for j in waves.joints]
-
-    def is_positive(self, cell: Cell) -> bool:
-        """Tell whether the concave bound is positive at every corner."""
-        from flint import arb_mat
-
-        waves, joints = self.waves, self.waves.joints
-        steps = [self._scaled(step) for step in cell.steps(joints)]
-        n = len(joints)
-        self.work.add(len(waves.rows) * (n + 6) + len(steps) * (2 * n + 4) + len(waves.slides) * 12)
-        middle = cell.centre
-        value, slope = waves.expanded(self._scaled([middle[j] for j in joints]))
-        if waves.slides:
-            corners = [self._scaled([corner[j] for j in joints]) for corner in cell.corners]
-            value -= waves.bending(corners, steps[-1:] if isinstance(cell, Box) else steps) / 2
-        rows = arb_mat(steps)
-        rises = (rows * arb_mat(n, 1, slope)).entries()
-        for step, rise, bent in zip(steps, rises, (rows * waves.matrix).tolist(), strict=True):
-            bend = sum((x * y for x, y in zip(step, bent, strict=True)), 0)
-            if not value + rise - bend / 2 > 0:
-                return False
-        return True
-
-    def _scaled(self, values: Sequence[Any]) -> list[Any]:
-        """Turn the file's units into radians and lengths."""
-        return [unit * x for unit, x in zip(self.units, values, strict=True)]
 
 
 # --- no path --------------------------------------------------------------------------------------
@@ -325,10 +252,10 @@ class _Leaf:
 
 def _check_barrier(content: Content, barrier: Barrier) -> None:
     """Verify that every path between two configurations violates one of the boundaries named."""
-    robot, j, work = content.robot, barrier.joint, _Work()
+    robot, j, work = content.robot, barrier.joint, Work()
     start, goal = ([exact(x) for x in point] for point in content.statement.points)
     for point in (start, goal):
-        beyond = _beyond_limits(robot, point)
+        beyond = beyond_limits(robot, point)
         if beyond:
             refuse(f"a configuration is beyond {shown(beyond[0])}")
     for blocked in barrier.blocked:
@@ -337,8 +264,8 @@ def _check_barrier(content: Content, barrier: Barrier) -> None:
         work.add(WAVES_WORK * values_of(robot, blocked.boundary))
         ends = [[*start[:j], exact(end), *start[j + 1 :]] for end in (blocked.low, blocked.high)]
         waves = _violation(content, barrier, blocked)
-        functions = partial(_without_number, [_Leaf(robot, waves, work)])
-        if not _covers(functions, Box(*map(tuple, ends)), blocked.tree, work):
+        functions = partial(without_number, [Leaf(robot, waves, work)])
+        if not covers(functions, Box(*map(tuple, ends)), blocked.tree, work):
             refuse(f"{shown(blocked.boundary.name)}: not violated all the way")
     if not _is_between(robot, barrier, start[j], goal[j]):
         refuse("both configurations are on one side of what is blocked")
@@ -388,21 +315,11 @@ def _is_between(robot: Robot, barrier: Barrier, start: Any, goal: Any) -> bool:
 # --- the witness ----------------------------------------------------------------------------------
 
 
-def _beyond_limits(robot: Robot, point: Sequence[Any]) -> list[str]:
-    """Return the names of all limits that a configuration is beyond: exact."""
-    found = []
-    for joint, x in zip(robot.joints, point, strict=True):
-        if joint.limits is not None:
-            low, high = map(exact, joint.limits)
-            found += [f"{joint.name}.lower"] * (x < low) + [f"{joint.name}.upper"] * (x > high)
-    return found
-
-
 def _check_witness(asked: _Asked, cells: Sequence[Cell], witness: Witness) -> None:
     from flint import ctx
 
     point, robot = _place(cells, witness), asked.robot
-    if witness.boundary in _beyond_limits(robot, point):
+    if witness.boundary in beyond_limits(robot, point):
         return
     for boundary in robot.boundaries:
         if boundary.name == witness.boundary and boundary.used:

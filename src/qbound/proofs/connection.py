@@ -163,7 +163,7 @@ def separating_cells(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
     held = groups.containing(paving, q)
     own = np.concatenate([np.isin(label, list(held)) for label in groups.label])
     everything = (*groups.cells, *paving.infeasible)
-    edges = _touching(everything, _circles(paving), corners=True)
+    edges = touching(everything, all_round(paving), corners=True)
     inside = np.concatenate([own, np.zeros(sum(map(len, paving.infeasible)), dtype=bool)])
     one, other = edges.T
     met = np.zeros(len(inside), dtype=bool)
@@ -195,13 +195,18 @@ def _classify(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
 
 
 def _groups(paving: Paving, cells: Sequence[Cells], *, corners: bool) -> Groups:
+    edges = touching(cells, all_round(paving), corners=corners)
+    label = joined(sum(map(len, cells)), edges)
+    ends = np.cumsum([len(c) for c in cells])[:-1]
+    return Groups(tuple(cells), tuple(np.split(label, ends)), edges)
+
+
+def joined(count: int, edges: Ints) -> Ints:
+    """Return a number for each cell, equal where a chain of edges leads from one to another."""
     require("scipy")
     from scipy.sparse.csgraph import connected_components
 
-    edges = _touching(cells, _circles(paving), corners=corners)
-    _, label = connected_components(_graph(sum(map(len, cells)), edges), directed=False)
-    ends = np.cumsum([len(c) for c in cells])[:-1]
-    return Groups(tuple(cells), tuple(np.split(label, ends)), edges)
+    return np.asarray(connected_components(_graph(count, edges), directed=False)[1])
 
 
 def _graph(count: int, edges: Ints) -> Any:
@@ -211,12 +216,12 @@ def _graph(count: int, edges: Ints) -> Any:
     return coo_array((np.ones(len(edges)), tuple(edges.T)), shape=(count, count)).tocsr()
 
 
-def _circles(paving: Paving) -> NDArray[np.bool_]:
+def all_round(paving: Paving) -> NDArray[np.bool_]:
     """Tell which joints turn all the way round."""
     return np.array([r is None for r in paving.problem.ranges])
 
 
-def _touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: bool) -> Ints:
+def touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: bool) -> Ints:
     """Return all pairs of touching cells, numbered through.
 
     Of two touching cells the larger holds a neighbour, of the smaller one's size, of the smaller.
@@ -273,7 +278,7 @@ def _path(paving: Paving, one: Floats, other: Floats) -> Floats | None:
         return None
     places = zip(*map(paving.bounds.places, groups.cells), strict=True)
     low, high = (np.concatenate(ends)[chain] for ends in places)
-    centres, circles = (low + high) / 2, _circles(paving)
+    centres, circles = (low + high) / 2, all_round(paving)
     corners = [one]
     for k, centre in enumerate(centres):
         corners.append(_near(centre, corners[-1], circles))

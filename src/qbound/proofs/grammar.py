@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NoReturn
@@ -18,6 +19,7 @@ from qbound.proofs.grammar_robot import (
     LARGEST_ANGLE,
     LARGEST_NUMBER,
     MOST_CORNERS,
+    MOST_ROWS,
     Boundary,
     Robot,
     read_robot,
@@ -28,10 +30,12 @@ from qbound.proofs.verdict import Verdict
 MOST_BYTES = 2_000_000
 MOST_POINTS = 20_000
 MOST_TRIANGLES = 20_000
-GRAMMAR, GRAMMAR_OF_BODIES, GRAMMAR_OF_NO_PATH = 2, 3, 4
-"""What the producers write: of robots without pairs of bodies, of others, and of no path."""
+MOST_FREE = 3
+GRAMMAR, GRAMMAR_OF_BODIES, GRAMMAR_OF_NO_PATH, GRAMMAR_OF_DISCONNECTED = 2, 3, 4, 5
+"""What the producers write: of robots without pairs of bodies, of others; of no path by a range of
+one joint, and by boxes of up to three."""
 
-SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3, 4)}
+SCHEMAS = {f"qbound/certificate/{number}": number for number in (1, 2, 3, 4, 5)}
 
 NO_PATH = "no path"
 """Stands for a set: of all paths from one configuration to another none keeps every boundary."""
@@ -57,12 +61,15 @@ class Statement:
         Two corners of a box, the lists of a path, the loops of a polygon; both ends of no path.
     triangles : tuple of (int, int, int)
         Of a polygon: indices into all points, list after list.
+    free : tuple of int
+        Of no path in grammar 5: the joints that move.
     """
 
     kind: str
     margin: Fraction
     lists: tuple[tuple[Point, ...], ...]
     triangles: tuple[tuple[int, int, int], ...] = ()
+    free: tuple[int, ...] = ()
 
     @property
     def points(self) -> list[Point]:
@@ -101,20 +108,30 @@ class Barrier:
 
 
 @dataclass(frozen=True, eq=False)
+class Disconnected:
+    """A tree over the values of some joints; a leaf's number names the boundary violated on it."""
+
+    boundaries: tuple[Boundary, ...]
+    tree: str
+
+
+@dataclass(frozen=True, eq=False)
 class Content:
     """A certificate that follows the grammar; nothing in it is proved yet.
 
     Attributes
     ----------
     grammar : int
-        1, 2, 3 or 4.
+        1, 2, 3, 4 or 5.
     proof : dict of str to tuple of str
         Trees by the name of the boundary; empty where it is refuted, and of no path.
     witness : Witness or None
     parts : dict of str to tuple of tuple of int
         Corners of the convex parts of outlines, by the name of the body.
     barrier : Barrier or None
-        The proof that there is no path.
+        The proof that there is no path, in grammar 4.
+    disconnected : Disconnected or None
+        The proof of that in grammar 5.
     """
 
     grammar: int
@@ -126,6 +143,7 @@ class Content:
     witness: Witness | None
     parts: dict[str, tuple[tuple[int, ...], ...]]
     barrier: Barrier | None = None
+    disconnected: Disconnected | None = None
 
 
 def read_certificate(text: str | bytes) -> Content:
@@ -146,19 +164,21 @@ def read_certificate(text: str | bytes) -> Content:
     if schema not in SCHEMAS:
         refuse(f"schema: {shown(schema)} is none of {', '.join(SCHEMAS)}")
     grammar = SCHEMAS[schema]
-    if (grammar == GRAMMAR_OF_NO_PATH) != (kind == NO_PATH):
-        refuse(f"set: {NO_PATH} has the grammar {GRAMMAR_OF_NO_PATH}, and nothing else has it")
-    if grammar == GRAMMAR_OF_NO_PATH and verdict != "proved":
+    if (grammar >= GRAMMAR_OF_NO_PATH) != (kind == NO_PATH):
+        refuse(f"set: {NO_PATH} has the grammars 4 and 5, and nothing else has them")
+    if grammar >= GRAMMAR_OF_NO_PATH and verdict != "proved":
         refuse(f"the verdict is {shown(verdict)}: of {NO_PATH} only proved is written")
     others = ("places",) if (grammar, verdict) == (3, "refuted") else ()
     keys(data, "the file", _keys_of(grammar, verdict, kind), others)
     robot = read_robot(text_of(data["robot"], "robot"))
     if grammar < GRAMMAR_OF_BODIES and any(b.used and b.apart for b in robot.boundaries):
         refuse(f"schema: pairs of bodies need {GRAMMAR_OF_BODIES}")
-    if grammar == GRAMMAR_OF_NO_PATH:
-        ends, sha256 = read_statement(statement, robot), _sha256(data)
-        barrier = _barrier(data["proof"], robot)
-        return Content(grammar, Verdict.PROVED, ends, robot, sha256, {}, None, {}, barrier)
+    if grammar >= GRAMMAR_OF_NO_PATH:
+        ends = read_statement(statement, robot, grammar)
+        barrier = _barrier(data["proof"], robot) if grammar == GRAMMAR_OF_NO_PATH else None
+        boxes = _disconnected(data["proof"], robot) if grammar == GRAMMAR_OF_DISCONNECTED else None
+        sha256 = _sha256(data)
+        return Content(grammar, Verdict.PROVED, ends, robot, sha256, {}, None, {}, barrier, boxes)
     return Content(
         grammar,
         Verdict(verdict),
@@ -274,13 +294,14 @@ def index(value: Any, where: str, size: int) -> int:
 # --- statement, proof, witness --------------------------------------------------------------------
 
 
-def read_statement(data: Any, robot: Robot) -> Statement:
+def read_statement(data: Any, robot: Robot, grammar: int = GRAMMAR) -> Statement:
     """Read a set of joint values of a robot, and a margin."""
     kind = data.get("set") if isinstance(data, dict) else None
     if kind not in ("box", "path", "polygon", NO_PATH):
         refuse(f"set: {shown(kind)} is no box, path or polygon, nor {NO_PATH}")
     triangles = ("triangles",) if kind == "polygon" else ()
-    keys(data, "statement", ("set", "margin", "points", *triangles))
+    moving = ("free",) if grammar == GRAMMAR_OF_DISCONNECTED else ()
+    keys(data, "statement", ("set", "margin", "points", *triangles, *moving))
     margin = decimal(data["margin"], "margin")
     if margin < 0:
         refuse("the margin is negative")
@@ -288,7 +309,21 @@ def read_statement(data: Any, robot: Robot) -> Statement:
     count = sum(map(len, lists))
     if kind == "box" and any(low > high for low, high in zip(*lists[0], strict=True)):
         refuse("points: the low corner of the box is not below the high one")
-    return Statement(kind, margin, lists, _triangles(data, count) if triangles else ())
+    free = _free(data["free"], lists[0]) if moving else ()
+    return Statement(kind, margin, lists, _triangles(data, count) if triangles else (), free)
+
+
+def _free(value: Any, ends: Sequence[Point]) -> tuple[int, ...]:
+    """Read which joints move; between the two ends no other one differs."""
+    start, goal = ends
+    rows = items(value, "free", 1, MOST_FREE)
+    free = tuple(index(row, "free", len(start)) for row in rows)
+    if list(free) != sorted(set(free)):
+        refuse("free: the numbers of joints do not ascend")
+    for j, pair in enumerate(zip(start, goal, strict=True)):
+        if j not in free and pair[0] != pair[1]:
+            refuse("free: a joint that is held has two values")
+    return free
 
 
 def _lists(data: Any, kind: str, robot: Robot) -> tuple[tuple[Point, ...], ...]:
@@ -337,19 +372,33 @@ def _barrier(data: Any, robot: Robot) -> Barrier:
     return Barrier(j, tuple(_blocked(row, robot, j) for row in rows))
 
 
-def _blocked(row: Any, robot: Robot, j: int) -> Blocked:
-    keys(row, "blocked", ("boundary", "from", "to", "tree"))
-    name = text_of(row["boundary"], "boundary")
+def _disconnected(data: Any, robot: Robot) -> Disconnected:
+    """Read a tree whose leaves may name boundaries."""
+    keys(data, "proof", ("boundaries", "tree"))
+    names = items(data["boundaries"], "boundaries", 1, MOST_ROWS)
+    (tree,) = _trees("boundaries", [data["tree"]])
+    return Disconnected(tuple(_of_points(name, robot) for name in names), tree)
+
+
+def _of_points(value: Any, robot: Robot) -> Boundary:
+    """Return a boundary in use that is about points."""
+    name = text_of(value, "boundary")
     used = {b.name: b for b in robot.boundaries if b.used and not b.bodies}
     if name not in used:
         refuse(f"boundary: {shown(name)} is no boundary of points in use")
+    return used[name]
+
+
+def _blocked(row: Any, robot: Robot, j: int) -> Blocked:
+    keys(row, "blocked", ("boundary", "from", "to", "tree"))
+    boundary = _of_points(row["boundary"], robot)
     low, high = decimal(row["from"], "from"), decimal(row["to"], "to")
     if not low < high:
         refuse("from is not less than to")
     if robot.joints[j].turns and max(-low, high) > LARGEST_ANGLE[robot.degrees]:
         refuse("blocked: an angle is too large")
-    (tree,) = _trees(name, [row["tree"]])
-    return Blocked(used[name], low, high, tree)
+    (tree,) = _trees(boundary.name, [row["tree"]])
+    return Blocked(boundary, low, high, tree)
 
 
 def _witness(data: dict[str, Any], robot: Robot) -> Witness:

@@ -9,7 +9,7 @@ Numbers are balls.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -250,10 +250,27 @@ def _rotation(axis: Sequence[Any], angle: Any) -> Any:
 # --- from values to waves -------------------------------------------------------------------------
 
 
-def waves_of(robot: Robot, boundary: Boundary, margin: Fraction, reach: Sequence[Any]) -> Waves:
-    """Return a boundary function as waves."""
-    joints = joints_of(boundary)
-    kinds = [kind_of(robot, j, straight=boundary.normal is not None) for j in joints]
+def waves_of(
+    robot: Robot,
+    boundary: Boundary,
+    margin: Fraction,
+    reach: Sequence[Any],
+    held: Mapping[int, Any] | None = None,
+) -> Waves:
+    """Return a boundary function as waves.
+
+    Parameters
+    ----------
+    reach : sequence of arb
+        The largest length of each joint.
+    held : mapping of int to arb, optional
+        Values of joints that stay where they are, rad or length: no wave depends on them.
+    """
+    joints, straight = joints_of(boundary), boundary.normal is not None
+    kinds = [
+        held_kind(held[j]) if held and j in held else kind_of(robot, j, straight=straight)
+        for j in joints
+    ]
     values = _values(robot, boundary, margin, [kind.nodes for kind in kinds])
     return interpolated(joints, kinds, values, [reach[j] for j in joints])
 
@@ -314,6 +331,13 @@ def kind_of(robot: Robot, j: int, *, straight: bool = False) -> JointKind:
     half = fmpq(1, 2)
     square = acb_mat(3, 3, [1, 0, 0, 0, half, -half, -1, half, half])
     return JointKind([arb(0), arb(1), arb(-1)], square, (0, 0, 0), (0, 1, 2))
+
+
+def held_kind(value: Any) -> JointKind:
+    """Return the kind of a joint that has one value: its one node is all."""
+    from flint import acb_mat
+
+    return JointKind([value], acb_mat(1, 1, [1]), (0,), (0,))
 
 
 def _gathered(joints: range, rows: Sequence[Wave], reach: Sequence[Any]) -> Waves:
