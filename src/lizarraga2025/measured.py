@@ -228,13 +228,14 @@ def duration(seconds: float) -> str:
 
 
 def unbroken(text: str) -> str:
-    r"""Return a text in which no line ends between a number and its unit.
+    r"""Return a text in which no line ends within a number, or between one and its unit.
 
     Examples
     --------
-    >>> print(ascii(unbroken("at most 3 ms, or 5 of 7")))
-    'at most 3\xa0ms, or 5\xa0of 7'
+    >>> print(ascii(unbroken("at most 3 ms, or 5 of 7, to 1e-4")))
+    'at most 3\xa0ms, or 5\xa0of 7, to 1e\u20114'
     """
+    text = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", text)
     return re.sub(r"(?<=\d) (?=(?:[mµn]?s|rad|MiB|%|of)(?!\w))", "\N{NO-BREAK SPACE}", text)
 
 
