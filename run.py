@@ -236,11 +236,12 @@ def install_what_can_be(venv: Path, lock: Path) -> dict[str, str]:
     """
     blocks = re.split(r"^(?=[A-Za-z0-9])", lock.read_text(encoding="utf-8"), flags=re.MULTILINE)
     pins = dict[str, str]()
-    for block in blocks:
-        if named := re.match(r"[\w.-]+(?===)", block):  # twice, where Pythons need their own
-            pins[named[0]] = pins.get(named[0], "") + block
+    for block in blocks[1:]:
+        name = block.partition("==")[0]
+        pins[name] = pins.get(name, "") + block  # twice, where Pythons need their own
     ours = [name for name in NEEDED if name in pins]
-    if (why := trial(venv, [pins.pop(name) for name in ours])) is not None:
+    why = trial(venv, [pins.pop(name) for name in ours])
+    if why is not None:
         raise Failed(
             f"{', '.join(ours)}: not installed ({why}). Without these nothing is measured."
         )
@@ -248,7 +249,8 @@ def install_what_can_be(venv: Path, lock: Path) -> dict[str, str]:
     while left:
         names = left.pop()
         say(f"-- Installing {len(names)} packages, {names[0]} to {names[-1]}")
-        if (why := trial(venv, [pins[name] for name in names])) is None:
+        why = trial(venv, [pins[name] for name in names])
+        if why is None:
             continue
         if len(names) == 1:
             missing[names[0]] = why
