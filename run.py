@@ -65,6 +65,8 @@ CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache",
 DIST = ROOT / "dist"
 BENCH = ".venv-bench"  # the environment of the comparison with other tools
 COMPARISON = Path("benchmarks", "side_by_side")
+ABSENT = "not-installed.json"  # of that environment: packages of its lock, each with the reason
+NEEDED = ["numpy", "msgspec", "setuptools"]  # by ourselves
 CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
@@ -225,6 +227,58 @@ def install_pinned(venv: Path, lock: Path) -> None:
         if call(title, command, quiet=True) == 0:
             return
     must(title, [*pip(venv), "--no-compile", *options], quiet=True)
+
+
+def install_what_can_be(venv: Path, lock: Path) -> dict[str, str]:
+    """Install the packages of a lock without those that cannot be; return these, each with why.
+
+    Halves that fail are halved again, hashes kept; dependencies are in the lock like all else.
+    """
+    blocks = re.split(r"^(?=[A-Za-z0-9])", lock.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    pins = dict[str, str]()
+    for block in blocks[1:]:
+        name = block.partition("==")[0]
+        pins[name] = pins.get(name, "") + block  # twice, where Pythons need their own
+    ours = [name for name in NEEDED if name in pins]
+    why = trial(venv, [pins.pop(name) for name in ours])
+    if why is not None:
+        raise Failed(
+            f"{', '.join(ours)}: not installed ({why}). Without these nothing is measured."
+        )
+    missing, left = dict[str, str](), [list(pins)]
+    while left:
+        names = left.pop()
+        say(f"-- Installing {len(names)} packages, {names[0]} to {names[-1]}")
+        why = trial(venv, [pins[name] for name in names])
+        if why is None:
+            continue
+        if len(names) == 1:
+            missing[names[0]] = why
+        else:
+            left += [names[len(names) // 2 :], names[: len(names) // 2]]
+    return missing
+
+
+def trial(venv: Path, blocks: list[str]) -> str | None:
+    """Install pinned packages as they are, without what they need; return why not, or None."""
+    with tempfile.TemporaryDirectory() as scratch:
+        part = Path(scratch, "part.lock")
+        part.write_text("".join(blocks), encoding="utf-8")
+        options = ["--no-compile", "--no-deps", "--require-hashes", "--requirement", part]
+        done = subprocess.run(
+            [*pip(venv), *options],
+            cwd=ROOT,
+            env=environment(),
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="replace",
+            check=False,
+        )
+    if done.returncode == 0:
+        return None
+    said = [line.strip() for line in done.stderr.splitlines() if line.strip()] or ["no reason told"]
+    errors = [line for line in said if line.lower().startswith("error:")]
+    return re.sub("^error: *", "", (errors or said)[-1], flags=re.IGNORECASE)
 
 
 def install_ourselves(venv: Path) -> None:
@@ -840,9 +894,16 @@ def prepare_bench() -> Path:
     if not (made.exists() and made.read_text() == made_from):
         remove(venv)
         make_venv(venv)
-        install_pinned(venv, lock)
+        try:
+            install_pinned(venv, lock)
+            missing = {}
+        except Failed:
+            missing = install_what_can_be(venv, lock)
+        (venv / ABSENT).write_text(json.dumps(missing), encoding="utf-8")
         install_ourselves(venv)
         made.write_text(made_from)
+    for name, why in json.loads((venv / ABSENT).read_text(encoding="utf-8")).items():
+        say(f"Missing: {name} ({why})")
     return venv
 
 
@@ -870,7 +931,8 @@ def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     chosen, rest = parser.parse_known_args(words)
     known = chosen.function is test or (chosen.function is bench and rest == ["--quick"])
     if rest and not known:
-        parser.error(f"{chosen.command} takes no arguments, found: {' '.join(rest)}")
+        taken = "--quick and nothing else" if chosen.function is bench else "no arguments"
+        parser.error(f"{chosen.command} takes {taken}, found: {' '.join(rest)}")
     return chosen, rest
 
 

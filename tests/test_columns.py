@@ -1,16 +1,20 @@
 """Pavings by columns: what they prove holds, and they bracket the area."""
 
+import json
 from dataclasses import replace
 from functools import lru_cache
+from importlib import resources
 
 import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from jsonschema import validate
 
 from qbound import find_region, load_robot
 from qbound.boundary.functions import clearance
+from qbound.cli import main
 from qbound.model.robot import HalfSpace, Pair, Point, Revolute, Robot
 from qbound.proofs.columns import ColumnPaving, pave_columns
 from qbound.proofs.exact import exact_problem, exact_robot
@@ -201,3 +205,52 @@ def test_a_robot_without_boundaries_is_feasible_everywhere() -> None:
     paving = pave_columns(problem, 1e-3)
     assert paving.bracket[0] == pytest.approx(paving.volume)
     assert paving.verdicts([0.1, 0.2]) == {Verdict.PROVED}
+
+
+@pytest.mark.parametrize("robot", ["minervabot-v2", "pr-gantry-arm"])
+def test_the_command_solves_for_a_joint_and_brackets_the_same_area(
+    robot: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["pave", robot, "--columns", "--tolerance", "0.01"]
+    assert main([*words, "--json", "-"]) == 0
+    content = json.loads(capsys.readouterr().out)
+    schema = json.loads(
+        (resources.files("qbound") / "schemas" / "columns.schema.json").read_text("utf-8")
+    )
+    validate(content, schema)
+    volume, columns = content["volume"], content["columns"]
+    area = find_region(load_robot(robot)).area
+    assert volume["inner"] <= area <= volume["outer"]
+    assert content["undecided"] <= 0.01
+    base = [name for name in content["joints"] if name != content["lift"]]
+    ends = dict(zip(content["joints"], content["range"], strict=True))
+    cells = np.array([[c["from"], c["to"]] for c in columns])
+    widths = np.prod(cells[:, 1] - cells[:, 0], axis=1)
+    assert widths.sum() == pytest.approx(np.prod([np.ptp(ends[name]) for name in base]))
+    assert sum(c["feasible"] for c in columns) == pytest.approx(volume["inner"], rel=1e-6)
+    assert main(words) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith(f"volume between {volume['inner']:.9g} ")
+    assert said[2] == f"{len(columns)} columns"
+
+
+def test_the_command_says_what_has_no_columns(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["pave", "two-links-on-a-table", "--columns"]) == 2
+    assert "bodies" in capsys.readouterr().err
+
+
+def test_a_held_joint_is_none_of_the_columns(capsys: pytest.CaptureFixture[str]) -> None:
+    held = [f"{joint.name}=-40deg" for joint in load_robot("ur5").joints[2:]]
+    words = ["pave", "ur5", "--columns", "--tolerance", "0.9", "--json", "-", "--slice", *held]
+    assert main(words) == 0
+    content = json.loads(capsys.readouterr().out)
+    assert content["joints"] == [joint.name for joint in load_robot("ur5").joints[:2]]
+    assert content["lift"] == content["joints"][1]
+
+
+def test_a_paving_tells_how_far_it_is() -> None:
+    told: list[float] = []
+    pave_columns(exact_problem(exact_robot("minervabot-v2")), 0.01, tell=told.append)
+    assert told == sorted(told)
+    assert told[0] < 1
+    assert told[-1] == 1

@@ -13,7 +13,7 @@ import zipfile
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import pytest
 import yaml
@@ -113,6 +113,22 @@ def test_a_wrong_command_line_exits_with_2(words: list[str]) -> None:
     )
     assert done.returncode == 2
     assert "usage: run.py" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["lint", "src"], "lint takes no arguments, found: src"),
+        (["bench", "--nope"], "bench takes --quick and nothing else, found: --nope"),
+        (["bench", "--quick", "x"], "bench takes --quick and nothing else, found: --quick x"),
+    ],
+)
+def test_what_a_command_takes_is_told(
+    run: ModuleType, words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        run.read_command_line(words)
+    assert capsys.readouterr().err.endswith(f"error: {told}\n")
 
 
 def test_further_words_of_test_go_to_pytest(run: ModuleType) -> None:
@@ -270,6 +286,104 @@ def test_the_comparison_has_an_environment_of_its_own(
     assert run.main(["bench", "--quick"]) == run.main(["bench", "--quick"]) == 0
     assert steps == ["lock", "lock", "qbound", "--quick", "--quick"]
     assert not run.VENV.exists()
+
+
+BENCH_LOCK = """\
+contourpy==1.3.3 ; python_full_version < '3.12' \\
+    --hash=sha256:a
+contourpy==1.4.0 ; python_full_version >= '3.12' \\
+    --hash=sha256:b
+drake==1 \\
+    --hash=sha256:c
+msgspec==1 \\
+    --hash=sha256:d
+no-such.package==9 \\
+    --hash=sha256:e
+numpy==2 \\
+    --hash=sha256:f
+pin==4 \\
+    --hash=sha256:g
+setuptools==84 \\
+    --hash=sha256:h
+shapely==2 \\
+    --hash=sha256:i
+"""
+
+
+def test_what_cannot_be_installed_for_the_comparison_is_missing_and_nothing_else(
+    run: ModuleType,
+    house: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    lock = house / run.COMPARISON / "requirements.lock"
+    lock.parent.mkdir(parents=True)
+    lock.write_text(BENCH_LOCK)
+    installed: list[str] = []
+
+    def trial(venv: Path, blocks: list[str]) -> str | None:
+        assert venv == house / run.BENCH
+        if any("no-such.package" in block for block in blocks):
+            return "No matching distribution"
+        installed.extend(blocks)
+        return None
+
+    def fail(*_: object) -> None:
+        raise run.Failed("Stopped at: the lock")
+
+    monkeypatch.setattr(run, "make_venv", lambda place: place.mkdir())
+    monkeypatch.setattr(run, "install_pinned", fail)
+    monkeypatch.setattr(run, "install_ourselves", lambda _: None)
+    monkeypatch.setattr(run, "trial", trial)
+    monkeypatch.setattr(run, "must", lambda *_: None)
+    told = "Missing: no-such.package (No matching distribution)"
+    assert run.main(["bench"]) == 0
+    assert capsys.readouterr().out.count(told) == 1
+    absent = json.loads((house / run.BENCH / run.ABSENT).read_text())
+    assert absent == {"no-such.package": "No matching distribution"}
+    lines = "".join(installed).splitlines(keepends=True)
+    wanted = [
+        line for k, line in enumerate(BENCH_LOCK.splitlines(keepends=True)) if k not in (8, 9)
+    ]
+    assert sorted(lines) == sorted(wanted)  # each once, with its hashes
+    assert "numpy" in installed[0]
+    assert run.main(["bench"]) == 0  # it is not tried again, and told again
+    assert capsys.readouterr().out.count(told) == 1
+    assert len(lines) == len("".join(installed).splitlines())
+
+
+def test_without_what_we_need_ourselves_nothing_is_compared(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lock = house / "requirements.lock"
+    lock.write_text(BENCH_LOCK)
+    tried: list[int] = []
+    monkeypatch.setattr(run, "trial", lambda _, blocks: tried.append(len(blocks)) or "no network")
+    with pytest.raises(run.Failed, match=r"numpy, msgspec, setuptools: not installed \(no network"):
+        run.install_what_can_be(house / "env", lock)
+    assert tried == [3]
+
+
+@pytest.mark.parametrize(
+    ("status", "said", "reason"),
+    [
+        (0, "WARNING: slow", None),
+        (1, "a\nERROR: no version of it (1, 2)\nERROR: No match for x\n", "No match for x"),
+        (1, "  error: metadata-generation-failed\nhint: see above\n", "metadata-generation-failed"),
+        (1, "Segmentation fault\n", "Segmentation fault"),
+        (1, "", "no reason told"),
+    ],
+)
+def test_a_trial_installs_by_hash_alone_and_says_why_not(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch, status: int, said: str, reason: str | None
+) -> None:
+    def fake(command: list[object], **_: object) -> SimpleNamespace:
+        assert {"--require-hashes", "--no-deps"} <= set(command)
+        assert Path(str(command[-1])).read_text() == "x==1 --hash=sha256:a\n"
+        return SimpleNamespace(returncode=status, stderr=said)
+
+    monkeypatch.setattr(run.subprocess, "run", fake)
+    assert run.trial(Path("env"), ["x==1 --hash=sha256:a\n"]) == reason
 
 
 # --- run.py: the book -----------------------------------------------------------------------------

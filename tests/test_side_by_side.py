@@ -179,6 +179,16 @@ def test_a_peer_that_is_not_installed_is_reported_so(bench: Any, tmp_path: Path)
     assert peer.ask({"task": "stream"}, 1) == {"missing": "there is no such program"}
 
 
+def test_a_peer_tells_what_of_it_could_not_be_installed(
+    bench: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bench.serve.sys, "prefix", str(tmp_path))
+    assert bench.serve.why_not(["drake"]) == ""
+    (tmp_path / "not-installed.json").write_text('{"drake": "no wheel"}')
+    assert bench.serve.why_not(["numpy"]) == ""
+    assert bench.serve.why_not(["numpy", "drake"]) == "drake: not installed (no wheel)"
+
+
 # --- jobs and goals -------------------------------------------------------------------------------
 
 

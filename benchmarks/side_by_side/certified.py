@@ -11,39 +11,6 @@ from quality import quality
 
 from qbound.model.robotfile import robot_text
 
-WALLS = """\
-schema = 1
-name = "Between walls"
-length_unit = "m"
-angle_unit = "rad"
-home = { q1 = 0.0, q2 = 0.0 }
-tool = "ball"
-point = [{ name = "ball", frame = "lower", at = [0, 0, -1], radius = 0.5 }]
-boundary = [
-  { name = "right wall", type = "half-space", point = "ball", normal = [-1, 0, 0], offset = -1.83 },
-  { name = "left wall", type = "half-space", point = "ball", normal = [1, 0, 0], offset = -1.83 },
-]
-
-[[joint]]
-name = "q1"
-type = "revolute"
-parent = "base"
-frame = "upper"
-origin = [0, 0, 0]
-axis = [0, 1, 0]
-limits = [-1.57, 1.57]
-
-[[joint]]
-name = "q2"
-type = "revolute"
-parent = "upper"
-frame = "lower"
-origin = [0, 0, -2]
-axis = [0, 1, 0]
-limits = [-1.57, 1.57]
-"""
-"""The robot file of `scenes.walls`."""
-
 
 def text_of(scene: str) -> str:
     """Return the robot file of a scene: a certificate is about a text.
@@ -53,7 +20,7 @@ def text_of(scene: str) -> str:
     KeyError
         If the scene has none.
     """
-    return {"walls": lambda: WALLS, "paper": lambda: robot_text("minervabot-v2")[0]}[scene]()
+    return robot_text(scenes.FILES[scene])[0]
 
 
 def rings_of(certificate: str, degrees: bool) -> list[list[list[list[float]]]]:

@@ -61,7 +61,7 @@ PAPER_100K = "stream-paper-100k-"
 GOALS = (
     at_least(
         "streams-numpy-pinocchio",
-        "10^7 random configurations of the paper's robot, in NumPy: 8 times as fast as pinocchio "
+        "10⁷ random configurations of the paper's robot, in NumPy: 8 times as fast as pinocchio "
         "with coal, one thread each.",
         PAPER_10M + "qbound-numpy",
         PAPER_10M + "pinocchio-coal",
@@ -70,7 +70,7 @@ GOALS = (
     ),
     at_least(
         "streams-numpy-fcl",
-        "10^5 random configurations of the paper's robot, in NumPy: 100 times as fast as "
+        "10⁵ random configurations of the paper's robot, in NumPy: 100 times as fast as "
         "python-fcl.",
         PAPER_100K + "qbound-numpy",
         PAPER_100K + "python-fcl",
@@ -79,7 +79,7 @@ GOALS = (
     ),
     at_least(
         "streams-compiled-pinocchio",
-        "10^7 random configurations of the paper's robot, compiled: 100 times as fast as pinocchio "
+        "10⁷ random configurations of the paper's robot, compiled: 100 times as fast as pinocchio "
         "with coal, one thread each.",
         PAPER_10M + "qbound-compiled",
         PAPER_10M + "pinocchio-coal",
@@ -88,7 +88,7 @@ GOALS = (
     ),
     at_least(
         "streams-compiled-limit",
-        "10^7 random configurations of the paper's robot, compiled, on two threads: half as fast "
+        "10⁷ random configurations of the paper's robot, compiled, on two threads: half as fast "
         "as both cores can take sines and cosines of both joints from memory.",
         PAPER_10M + "qbound-compiled-two",
         "limit-machine-both-2-limits",
@@ -141,7 +141,7 @@ GOALS = (
     Goal(
         "region-alpha",
         "regions",
-        "The region of the paper's robot: 10^4 times as fast as sampling with an alpha shape that "
+        "The region of the paper's robot: 10⁴ times as fast as sampling with an alpha shape that "
         "comes within 1e-2 rad.",
         "region-paper-1e-02-qbound-arcs",
         "region-paper-1e-02-alpha-shape",
@@ -161,7 +161,7 @@ GOALS = (
     Goal(
         "region-growth",
         "regions",
-        "From 100 to 300 boundaries the time grows no faster than k^2 log k.",
+        "From 100 to 300 boundaries the time grows no faster than k² log k.",
         "growth-boundaries-100-qbound-arcs",
         "growth-boundaries-300-qbound-arcs",
         "at most",

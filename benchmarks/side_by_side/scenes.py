@@ -26,7 +26,9 @@ SEED = 15
 WALLS_AREA = 3.21682
 """Of the region between the two walls, rad^2, as the literature on IRIS has it by grids."""
 
-LIMIT = 1.57
+FILES = {"paper": "minervabot-v2", "walls": Path(__file__).resolve().parent / "walls.toml"}
+"""Robot files of scenes: packaged, or beside this module."""
+
 NAMES = ("paper", "walls", "hundred", "obstacles10", "ur5")
 
 
@@ -45,8 +47,8 @@ def robot(name: str) -> Robot:
     if kind == "joints" and number.isdecimal():
         return chain(int(number))
     makers = {
-        "paper": lambda: load_robot("minervabot-v2"),
-        "walls": walls,
+        "paper": lambda: load_robot(FILES["paper"]),
+        "walls": lambda: load_robot(FILES["walls"]),
         "hundred": lambda: boundaries(100),
         "obstacles10": lambda: among(10, SEED),
         "ur5": lambda: load_robot("ur5"),
@@ -58,24 +60,6 @@ def robot(name: str) -> Robot:
 def boundaries(count: int) -> Robot:
     """Return the planar arm with so many pairs and walls at random places."""
     return many_boundaries(count, SEED)
-
-
-def walls() -> Robot:
-    """Return two links of 2 and 1 that hang between walls at +-1.83, a ball of 0.5 at the tip.
-
-    The double pendulum on which Drake tests its IRIS; straight down at zero.
-    """
-    axis, mount, ends = np.array([0.0, 1.0, 0.0]), np.eye(3), (-LIMIT, LIMIT)
-    joints = (
-        Revolute("q1", "base", "upper", np.zeros(3), mount, axis, ends),
-        Revolute("q2", "upper", "lower", np.array([0.0, 0.0, -2.0]), mount, axis, ends),
-    )
-    ball = Point("ball", "lower", np.array([0.0, 0.0, -1.0]), 0.5)
-    sides = tuple(
-        HalfSpace(name, "ball", np.array([x, 0.0, 0.0]), -1.83)
-        for name, x in (("right wall", -1.0), ("left wall", 1.0))
-    )
-    return Robot("Between walls", joints, (ball,), sides, np.zeros(2), "ball", "m", "rad")
 
 
 def three() -> Robot:

@@ -7,6 +7,7 @@ copy. The book reads that file alone, so that making it again changes no number.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -213,26 +214,38 @@ def times(ratio: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Return a time in the unit that suits it, in two or three digits.
+    r"""Return a time in the unit that suits it, in two or three digits; no line ends between them.
 
     Examples
     --------
-    >>> duration(1.234), duration(0.0123), duration(4.56e-6), duration(7.8e-8)
-    ('1.23 s', '12.3 ms', '4.56 µs', '78 ns')
+    >>> print(*map(ascii, [duration(1.234), duration(0.0123), duration(7.8e-8)]))
+    '1.23\xa0s' '12.3\xa0ms' '78\xa0ns'
     """
     for size, unit in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")):
         if seconds >= size:
-            return f"{float(f'{seconds / size:.3g}'):g} {unit}"
-    return f"{float(f'{seconds / 1e-9:.3g}'):g} ns"
+            return unbroken(f"{float(f'{seconds / size:.3g}'):g} {unit}")
+    return unbroken(f"{float(f'{seconds / 1e-9:.3g}'):g} ns")
+
+
+def unbroken(text: str) -> str:
+    r"""Return a text in which no line ends within a number, or between one and its unit.
+
+    Examples
+    --------
+    >>> print(ascii(unbroken("at most 3 ms, or 5 of 7, to 1e-4")))
+    'at most 3\xa0ms, or 5\xa0of 7, to 1e\u20114'
+    """
+    text = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", text)
+    return re.sub(r"(?<=\d) (?=(?:[mµn]?s|rad|MiB|%|of)(?!\w))", "\N{NO-BREAK SPACE}", text)
 
 
 def wanted(goal: Mapping[str, Any]) -> str:
-    """Return what a goal asks for: a time, or a ratio.
+    r"""Return what a goal asks for: a time, or a ratio.
 
     Examples
     --------
     >>> wanted({"sense": "at most", "goal": 0.003, "of": ["ours", None]})
-    'at most 3 ms'
+    'at most 3\xa0ms'
     >>> wanted({"sense": "at least", "goal": 8, "of": ["ours", "theirs"]})
     'at least 8'
     """
@@ -241,12 +254,12 @@ def wanted(goal: Mapping[str, Any]) -> str:
 
 
 def reached(goal: Mapping[str, Any]) -> str:
-    """Return what was measured of a goal: a time, a ratio, or why there is none.
+    r"""Return what was measured of a goal: a time, a ratio, or why there is none.
 
     Examples
     --------
     >>> reached({"of": ["ours", None], "ours": 0.0065, "ratio": None})
-    '6.5 ms'
+    '6.5\xa0ms'
     >>> reached({"of": ["ours", "theirs"], "ours": 2.0, "ratio": 9.04})
     '9'
     >>> reached({"of": ["ours", None], "ours": None, "ratio": None, "why": "not measured: ours"})

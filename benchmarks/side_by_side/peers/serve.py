@@ -19,7 +19,8 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 Timed = tuple[float, float, Any]
@@ -60,11 +61,26 @@ def serve(peer: str, needs: Mapping[str, str], tasks: Mapping[str, Task]) -> Non
             importlib.import_module(module)
         versions = {name: importlib.metadata.version(name) for name in needs.values()}
     except Exception as error:  # a library may fail in any way while it loads
-        say({"peer": peer, "missing": str(error)})
+        say({"peer": peer, "missing": why_not(needs.values()) or str(error)})
         return
     say({"peer": peer, "versions": versions})
     for line in sys.stdin:
         say(_answer(tasks, json.loads(line)))
+
+
+def why_not(packages: Iterable[str]) -> str:
+    """Return which of some packages could not be installed, and why; nothing if all could."""
+    absent = not_installed()
+    return "; ".join(
+        f"{name}: not installed ({absent[name]})" for name in packages if name in absent
+    )
+
+
+def not_installed() -> dict[str, str]:
+    """Return what of the lock `run.py bench` could not install, each with the reason."""
+    file = Path(sys.prefix, "not-installed.json")
+    found: dict[str, str] = json.loads(file.read_text("utf-8")) if file.exists() else {}
+    return found
 
 
 def _answer(tasks: Mapping[str, Task], request: dict[str, Any]) -> dict[str, Any]:

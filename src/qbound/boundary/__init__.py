@@ -5,7 +5,8 @@
 - `contacts`: how two convex parts touch, as forms; `body_contacts`: all contacts of a robot;
 - `separation`: how far bodies are apart, at millions of configurations; `nearest`: and where;
 - `evaluator`: all of them as one table, for one configuration or for millions; `monomials`: what
-  its columns stand for; `screen`: most signs in single precision, with a bound of its error;
+  its columns stand for; `screen`: most signs in single precision, with a bound of its error, by
+  the rows that can decide (`binding`);
 - `lengths`: from the value of a form to a margin;
 - `compiled`, `machine`: the same answers in machine code, for hundreds of millions;
 - `chain`, `balls`: the same for an arm of many joints, by places and distances in place of forms.

@@ -135,6 +135,8 @@ class Balls:
     def feasible(self, q: ArrayLike) -> Bools:
         """Tell where no boundary and no limit is violated, shape (..., joints) to (...).
 
+        By distances in double precision; the evaluator is ten times as quick.
+
         Raises
         ------
         ValueError

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.boundary.evaluator import evaluator
-from qbound.boundary.machine import SINES, machine, program
+from qbound.boundary.machine import SINES, is_programmable, machine, program
 from qbound.model.robot import Robot, refuse_no_robot
 
 Floats = NDArray[np.float64]
@@ -72,7 +72,7 @@ def compiled_feasible(
         raise ValueError(f"threads {threads}: one thread or more")
     (run, run_one), table = machine(), evaluator(robot, limits=limits)
     screen, one = table.screen(SINES), (table.joints,)
-    if screen is None:
+    if screen is None or not is_programmable(screen):
         return table.feasible
     plan, numbers = program(screen)
 

@@ -6,17 +6,19 @@ loop that the processor takes sixteen numbers at a time.
 
 Notes
 -----
-Sine and cosine are polynomials on one turn, the Chebyshev interpolants of degrees 11 and 12 in
-single precision. Their error, in units of :math:`2^{-24}`: 1.7 of the interpolation, 4 of the
-reduction to one turn, at most 60 of Horner's rule, by the sum over its steps of two roundings of
-each partial result; `SINES` is above the sum. Over every number of single precision from
-:math:`2^{-14}` to 32 rad the largest found is 9.9, with products and sums fused.
+Joint values are brought to half a turn about zero, where the Chebyshev interpolants of degrees 9
+and 8 are their sine and cosine, in single precision. The error, in units of :math:`2^{-24}`: of the
+cosine 0.8 of the interpolation, 1.1 of the reduction, 0.8 of the square, 2 of the coefficients and
+3.5 of Horner's rule, by the sum over its steps of two roundings of each partial result; of the sine
+0.1, 1.1, 0.5, 2.4 and 3.9. `SINES` is above both sums. Over every number of single precision from
+:math:`2^{-14}` to 32 rad the largest found is 3.3, with products and sums fused.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -32,31 +34,46 @@ Bools = NDArray[np.bool_]
 Machine = Callable[[Floats, Integers, Singles, Bools, Integers], int]
 MachineOfOne = Callable[[Floats, Integers, Singles], int]
 
-SINES = 72.0
-"""Bound of the error of `_sines` of an exact argument, in `qbound.boundary.screen.UNIT`."""
+SINES = 12.0
+"""Bound of the error of `_cos_sin`, in `qbound.boundary.screen.UNIT`."""
+
+HEAD = 5
+"""Entries of a program's order that tell how many there are of each kind."""
 
 WIDTH = 256
 """Configurations at a time: a robot's monomials stay in the first cache."""
 
-SHIFT, PER_TURN = np.float32(1.5 * 2**23), np.float32(0.5 / np.pi)
-"""Added and taken away again, the first rounds to an integer."""
+SHIFT, PER_HALF = np.float32(1.5 * 2**23), np.float32(1 / np.pi)
+"""Added and taken away again, the first rounds to an integer; half turns a radian."""
 
-TURN, TURN_REST = np.float32(6.28125), np.float32(2 * np.pi - 6.28125)
-"""A turn in two parts; a small integer times the first is exact."""
+FARTHEST = 2.0**17
+"""Reach of a turning joint, rad, up to which that integer is small enough."""
 
-C0, C1, C2 = np.float32(9.99999989e-1), np.float32(-4.99999890e-1), np.float32(4.16664874e-2)
-C3, C4 = np.float32(-1.38877951e-3), np.float32(2.47697094e-5)
-C5, C6 = np.float32(-2.70773821e-7), np.float32(1.72392527e-9)
-S0, S1, S2 = np.float32(9.99999594e-1), np.float32(-1.66665513e-1), np.float32(8.33239475e-3)
-S3, S4, S5 = np.float32(-1.98084325e-4), np.float32(2.69950095e-6), np.float32(-2.03539944e-8)
+LAST_BIT = np.int32(31)
+"""The number's last bit is moved so far to be its sign."""
+
+HALF_TURN, HALF_TURN_REST = np.float32(3.140625), np.float32(np.pi - 3.140625)
+"""Half a turn in two parts; a small integer times the first is exact."""
+
+C0, C1, C2 = np.float32(9.99999953e-1), np.float32(-4.99999047e-1), np.float32(4.16635722e-2)
+C3, C4 = np.float32(-1.38536226e-3), np.float32(2.31522567e-5)
+S0, S1, S2 = np.float32(9.99999996e-1), np.float32(-1.66666579e-1), np.float32(8.33305009e-3)
+S3, S4 = np.float32(-1.98090111e-4), np.float32(2.60509296e-6)
 ZERO, ONE, TWO = np.float32(0), np.float32(1), np.float32(2)
+
+
+def is_programmable(screen: Screen) -> bool:
+    """Tell whether `judge` can take the sines of all joints that turn as far as they may."""
+    kinds = screen.monomials.factors
+    return all(screen.reach[j] <= FARTHEST for j, (kind, _) in kinds if kind == "revolute")
 
 
 def program(screen: Screen) -> tuple[Integers, Singles]:
     """Return a screen as two arrays, the order of `judge`'s work and its numbers.
 
     The rows of the scratch are the joint values, then cosine and sine of each joint that turns,
-    then products. Each row of the table is its constant and pairs of terms.
+    then products. Each row of the table is its constant and pairs of terms; those of one pair come
+    first, and the head of the order tells how many these are.
     """
     monomials, joints = screen.monomials, screen.monomials.joints
     turning = sorted({j for j, (kind, _) in monomials.factors if kind == "revolute"})
@@ -73,14 +90,16 @@ def program(screen: Screen) -> tuple[Integers, Singles]:
         place.append(first + len(products) // 2)
         products += place[one], place[other]
     starts, where, weights = [0], list[int](), list[float]()
-    for row in screen.table:
+    rows = sorted(screen.table, key=lambda row: max(2, np.count_nonzero(row[1:])))
+    for row in rows:
         terms = [k for k in np.flatnonzero(row).tolist() if k > 0]
         where += [0, *(place[k] for k in terms)]
         weights += row[[0, *terms]].tolist()
         odd = max(0, 2 - len(terms)) or len(terms) % 2
         where, weights = where + odd * [0], weights + odd * [0.0]
         starts.append(len(where))
-    head = [joints, len(turning), len(products) // 2, len(screen.table)]
+    single = sum(end - start == 3 for start, end in pairwise(starts))
+    head = [joints, len(turning), len(products) // 2, len(rows), single]
     plan = np.array([*head, *turning, *products, *starts, *where], np.int64)
     return plan, np.array([*screen.reach, *weights], np.float32)
 
@@ -103,40 +122,42 @@ def judge(q: Floats, plan: Integers, numbers: Singles, safe: Bools, near: Intege
     int
         How many these are.
     """
-    joints, turning, products = plan[0], plan[1], plan[2]
+    joints, turning, products, count = plan[0], plan[1], plan[2], plan[3]
     reach, weights = numbers[:joints], numbers[joints:]
-    pairs = plan[4 + turning : 4 + turning + 2 * products]
-    rows = plan[4 + turning + 2 * products :]
-    scratch = np.empty((joints + 2 * turning + products + 2, WIDTH), np.float32)
-    sums, least = scratch[-2], scratch[-1]
-    found = 0
+    pairs = HEAD + turning
+    rows = plan[pairs + 2 * products :]
+    first = joints + 2 * turning
+    least = first + products
+    scratch = np.empty((least + 2, WIDTH), np.float32)
+    low, found = scratch[least], 0
     for start in range(0, len(safe), WIDTH):
         n = min(WIDTH, len(safe) - start)
-        _columns(q[start * joints : (start + n) * joints], joints, n, scratch)
-        for k in range(turning):
-            _sines(n, scratch[plan[4 + k]], scratch[joints + 2 * k], scratch[joints + 2 * k + 1])
-        for k in range(products):
-            one, other = scratch[pairs[2 * k]], scratch[pairs[2 * k + 1]]
-            product = scratch[joints + 2 * turning + k]
-            for i in range(n):
-                product[i] = one[i] * other[i]
+        here = q[start * joints : (start + n) * joints]
+        _columns(here, joints, n, scratch)
         for i in range(n):
-            least[i] = TWO
-        for k in range(plan[3]):
-            first, end = rows[k], rows[k + 1]
-            where = rows[plan[3] + 1 + first : plan[3] + 1 + end]
-            _row(n, where, weights[first:end], scratch, sums, least)
-        for j in range(joints):
-            _within(n, reach[j], scratch[j], least)
-        found = _told(start, n, least, safe, near, found)
+            low[i] = TWO
+        for k in range(turning):
+            row = joints + 2 * k
+            _sines(n, scratch[plan[HEAD + k]], scratch[row], scratch[row + 1])
+        for k in range(products):
+            one, other = plan[pairs + 2 * k], plan[pairs + 2 * k + 1]
+            for i in range(n):
+                scratch[first + k, i] = scratch[one, i] * scratch[other, i]
+        both = plan[4] // 2
+        for k in range(both):
+            _two_rows(n, rows, 2 * k, count + 1, weights, scratch, least)
+        for k in range(2 * both, count):
+            _row(n, rows, k, count + 1, weights, scratch, least)
+        _within(n, here, joints, reach, scratch, low)
+        found = _told(start, n, low, safe, near, found)
     return int(found)
 
 
 def judge_one(q: Floats, plan: Integers, numbers: Singles) -> int:
     """Return 1 where one configuration is certainly feasible, 0 where not; -1: too near to say."""
     joints, turning, products = plan[0], plan[1], plan[2]
-    weights, pairs = numbers[joints:], plan[4 + turning : 4 + turning + 2 * products]
-    rows = plan[4 + turning + 2 * products :]
+    weights, pairs = numbers[joints:], plan[HEAD + turning : HEAD + turning + 2 * products]
+    rows = plan[HEAD + turning + 2 * products :]
     where = rows[plan[3] + 1 :]
     terms = np.empty(joints + 2 * turning + products, np.float32)
     for j in range(joints):
@@ -144,7 +165,7 @@ def judge_one(q: Floats, plan: Integers, numbers: Singles) -> int:
         if not abs(terms[j]) <= numbers[j]:
             return -1
     for k in range(turning):
-        terms[joints + 2 * k], terms[joints + 2 * k + 1] = _cos_sin(terms[plan[4 + k]])
+        terms[joints + 2 * k], terms[joints + 2 * k + 1] = _cos_sin(terms[plan[HEAD + k]])
     for k in range(products):
         terms[joints + 2 * turning + k] = terms[pairs[2 * k]] * terms[pairs[2 * k + 1]]
     least = TWO
@@ -176,54 +197,82 @@ def _sines(n: int, x: Singles, cosine: Singles, sine: Singles) -> None:
 
 
 def _cos_sin(x: np.float32) -> tuple[np.float32, np.float32]:
-    """Return cosine and sine, by polynomials on one turn."""
-    turns = (x * PER_TURN + SHIFT) - SHIFT
-    r = (x - turns * TURN) - turns * TURN_REST
+    """Return cosine and sine, by polynomials on half a turn; an odd number of them negates both."""
+    shifted = np.float32(x * PER_HALF + SHIFT)
+    turns, odd = shifted - SHIFT, np.int32(shifted.view(np.int32) << LAST_BIT)
+    r = (x - turns * HALF_TURN) - turns * HALF_TURN_REST
     z = r * r
-    cosine = C0 + z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6)))))
-    return cosine, r * (S0 + z * (S1 + z * (S2 + z * (S3 + z * (S4 + z * S5)))))
+    cosine = C0 + z * (C1 + z * (C2 + z * (C3 + z * C4)))
+    sine = r * (S0 + z * (S1 + z * (S2 + z * (S3 + z * S4))))
+    return _flipped(cosine, odd), _flipped(sine, odd)
+
+
+def _flipped(x: np.float32, sign: np.int32) -> np.float32:
+    """Return a number with its bits flipped where those of the sign are set."""
+    return np.int32(np.float32(x).view(np.int32) ^ sign).view(np.float32)
+
+
+def _two_rows(
+    n: int, rows: Integers, k: int, at: int, weights: Singles, scratch: Singles, least: int
+) -> None:
+    """Take the least of what there is and two rows of the table, each of one pair of terms."""
+    one, other = rows[k], rows[k + 1]
+    c, a, b = weights[one], weights[one + 1], weights[one + 2]
+    d, e, f = weights[other], weights[other + 1], weights[other + 2]
+    x, y, u, v = rows[at + one + 1], rows[at + one + 2], rows[at + other + 1], rows[at + other + 2]
+    for i in range(n):
+        value = min(
+            c + a * scratch[x, i] + b * scratch[y, i], d + e * scratch[u, i] + f * scratch[v, i]
+        )
+        scratch[least, i] = min(value, scratch[least, i])
 
 
 def _row(
-    n: int, where: Integers, weights: Singles, scratch: Singles, sums: Singles, least: Singles
+    n: int, rows: Integers, k: int, at: int, weights: Singles, scratch: Singles, least: int
 ) -> None:
     """Take the least of what there is and a row of the table: a constant and pairs of terms."""
-    constant, last = weights[0], len(weights) - 2
-    for k in range(1, last, 2):
-        a, b, one, other = weights[k], weights[k + 1], scratch[where[k]], scratch[where[k + 1]]
-        if k == 1:
+    start, last, sums = rows[k], rows[k + 1] - 2, least + 1
+    constant = weights[start]
+    for m in range(start + 1, last, 2):
+        a, b, one, other = weights[m], weights[m + 1], rows[at + m], rows[at + m + 1]
+        if m == start + 1:
             for i in range(n):
-                sums[i] = constant + a * one[i] + b * other[i]
+                scratch[sums, i] = constant + a * scratch[one, i] + b * scratch[other, i]
         else:
             for i in range(n):
-                sums[i] += a * one[i] + b * other[i]
-    a, b = weights[last], weights[last + 1]
-    one, other = scratch[where[last]], scratch[where[last + 1]]
-    if last == 1:
+                scratch[sums, i] += a * scratch[one, i] + b * scratch[other, i]
+    a, b, one, other = weights[last], weights[last + 1], rows[at + last], rows[at + last + 1]
+    if last == start + 1:
         for i in range(n):
-            value = constant + a * one[i] + b * other[i]
-            least[i] = min(value, least[i])
+            value = constant + a * scratch[one, i] + b * scratch[other, i]
+            scratch[least, i] = min(value, scratch[least, i])
     else:
         for i in range(n):
-            value = sums[i] + a * one[i] + b * other[i]
-            least[i] = min(value, least[i])
+            value = scratch[sums, i] + a * scratch[one, i] + b * scratch[other, i]
+            scratch[least, i] = min(value, scratch[least, i])
 
 
-def _within(n: int, reach: np.float32, x: Singles, least: Singles) -> None:
-    """Make those too near to say whose joint value is beyond its reach, or NaN."""
-    for i in range(n):
-        least[i] = least[i] if abs(x[i]) <= reach else ZERO
+def _within(n: int, q: Floats, joints: int, reach: Singles, scratch: Singles, low: Singles) -> None:
+    """Make those too near to say who have a joint value beyond its reach, or NaN."""
+    shortest, within = min(reach), True
+    for i in range(n * joints):
+        within &= abs(q[i]) <= shortest
+    if not within:
+        for j in range(joints):
+            for i in range(n):
+                if not abs(scratch[j, i]) <= reach[j]:
+                    low[i] = ZERO
 
 
-def _told(start: int, n: int, least: Singles, safe: Bools, near: Integers, found: int) -> int:
+def _told(start: int, n: int, low: Singles, safe: Bools, near: Integers, found: int) -> int:
     """Write answers, and the indices of those too near to say after the `found` first ones."""
-    here, count = safe[start : start + n], 0
+    here, some = safe[start : start + n], False
     for i in range(n):
-        here[i] = least[i] >= ONE
-        count += abs(least[i]) < ONE
-    if count:
+        here[i] = low[i] >= ONE
+        some |= abs(low[i]) < ONE
+    if some:
         for i in range(n):
-            if abs(least[i]) < ONE:
+            if abs(low[i]) < ONE:
                 near[found] = start + i
                 found += 1
     return found
@@ -243,7 +292,8 @@ def machine() -> tuple[Machine, MachineOfOne]:
     from numba.extending import register_jitable
 
     fast: dict[str, Any] = {"fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-    for step in (_columns, _cos_sin, _sines, _row, _within, _told):
+    steps = (_columns, _flipped, _cos_sin, _sines, _two_rows, _row, _within, _told)
+    for step in steps:
         register_jitable(**fast)(step)
     try:
         return tuple(njit(cache=True, nogil=True, **fast)(each) for each in (judge, judge_one))

@@ -24,6 +24,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.binding import binding
 from qbound.boundary.monomials import Monomials, padded
 from qbound.forms.factors import Kind
 
@@ -143,8 +144,9 @@ def screen(
     table = table[(table != 0).any(axis=1)]  # a row of zeros holds everywhere
     errors = _errors(monomials, reach, sines) + len(monomials) + 2
     bounds = np.maximum(ROOM * UNIT * (np.abs(table) @ (errors * sizes)), LEAST)
-    scaled = (table / bounds[:, None]).astype(np.float32)
-    return Screen(scaled, monomials, reach.astype(np.float32))
+    scaled = table / bounds[:, None]
+    asked = binding(scaled, monomials, reach)
+    return Screen(scaled[asked].astype(np.float32), monomials, reach.astype(np.float32))
 
 
 def _errors(monomials: Monomials, reach: Floats, sines: float) -> Floats:

@@ -11,9 +11,15 @@ from qbound.cli.progress import progress
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
+from qbound.proofs.columns import pave_columns
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
-from qbound.proofs.reports import paving_document, paving_lines
+from qbound.proofs.reports import (
+    columns_document,
+    columns_lines,
+    paving_document,
+    paving_lines,
+)
 
 STEPS = 1000
 """Of the progress that is shown."""
@@ -34,6 +40,11 @@ def add_to(commands: Any) -> None:
         metavar="PART",
         help="undecided part of the joint range at which to stop (default 0.01)",
     )
+    parser.add_argument(
+        "--columns",
+        action="store_true",
+        help="solve for one joint over cells of the others: many times as fast, not for bodies",
+    )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     add_slice(parser)
     parser.set_defaults(run=run)
@@ -47,7 +58,17 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice)
     problem = exact_problem(exact_robot(options.robot), values)
     shown = progress("paving", STEPS)
-    paving = pave(problem, options.tolerance, tell=lambda part: shown(int(part * STEPS)))
+
+    def tell(part: float) -> None:
+        shown(int(part * STEPS))
+
+    if options.columns:
+        free = [j for j in range(len(robot.joints)) if j not in values]
+        columns = pave_columns(problem, options.tolerance, tell=tell)
+        document = (options.json, lambda: json_text(columns_document(robot, columns, free)))
+        deliver([document], columns_lines(robot, columns))
+        return 0 if columns.undecided_fraction <= options.tolerance else 3
+    paving = pave(problem, options.tolerance, tell=tell)
     document = (options.json, lambda: json_text(paving_document(robot, paving)))
     deliver([document], paving_lines(robot, paving))
     return 0 if paving.undecided_fraction <= options.tolerance else 3

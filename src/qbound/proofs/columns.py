@@ -14,6 +14,7 @@ taken off; cosines and sines by `trigonometry`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,6 +24,7 @@ from numpy.typing import NDArray
 from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import BITS, BoxBounds
 from qbound.proofs.exact import ExactProblem
+from qbound.proofs.paving import part_done
 from qbound.proofs.sectors import Sectors, covered, hidden, pieces, sectors_of
 from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
 from qbound.proofs.verdict import Verdict
@@ -149,6 +151,7 @@ def pave_columns(
     *,
     lift: int | None = None,
     most: int = MOST_COLUMNS,
+    tell: Callable[[float], None] = lambda part: None,
 ) -> ColumnPaving:
     """Halve cells until the undecided parts of the columns over them fill no more than asked.
 
@@ -162,6 +165,8 @@ def pave_columns(
         The turning joint that is solved for; default the last one.
     most : int
         Cells at which to stop early; `ColumnPaving.undecided_fraction` tells.
+    tell : callable
+        Told how far it is, from 0 to 1.
 
     Raises
     ------
@@ -185,6 +190,8 @@ def pave_columns(
         if len(finer.columns) == len(paving.columns):
             break
         paving = finer
+        tell(part_done(paving.undecided_fraction, tolerance))
+    tell(1.0)
     return paving
 
 
@@ -192,9 +199,9 @@ def _lift(problem: ExactProblem, lift: int | None) -> int:
     """Return the joint to solve for, or say why there is none."""
     turning = [j for j, kind in enumerate(problem.kinds) if kind == "revolute"]
     if problem.bodies:
-        raise ValueError("columns are of boundaries of points; bodies are for `paving.pave`")
+        raise ValueError("columns are of boundaries of points; this robot's bodies take cells")
     if len(problem.kinds) < 2 or not turning:
-        raise ValueError("columns take two joints or more, one of which turns: see `paving.pave`")
+        raise ValueError("columns take two joints or more, one of which turns; others take cells")
     if lift is not None and lift not in turning:
         raise ValueError(f"joint {lift} does not turn: columns are solved for one that does")
     return turning[-1] if lift is None else lift

@@ -229,10 +229,20 @@ def pave(
         if paving.level >= DEEPEST:
             break
         paving = paving.refined()
-        left = math.log(max(tolerance, float(paving.undecided_fraction)))
-        tell(left / math.log(tolerance) if tolerance < 1 else 1.0)
+        tell(part_done(float(paving.undecided_fraction), tolerance))
     tell(1.0)
     return paving
+
+
+def part_done(undecided: float, tolerance: float) -> float:
+    """Return how far a paving is, from 0 to 1, where what is undecided falls as a power.
+
+    Examples
+    --------
+    >>> part_done(0.1, 0.01), part_done(0.005, 0.01)
+    (0.5, 1.0)
+    """
+    return math.log(max(tolerance, undecided)) / math.log(tolerance) if tolerance < 1 else 1.0
 
 
 def start(problem: ExactProblem) -> Paving:

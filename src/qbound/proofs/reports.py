@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from textwrap import wrap
 from typing import Any
 
@@ -13,11 +13,15 @@ from qbound.export.formats import heading
 from qbound.model.robot import Robot
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate
+from qbound.proofs.columns import ColumnPaving
 from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
 from qbound.units import counted, file_units
+
+COLUMN = ("low", "high", "feasible", "undecided")
+"""What a document tells of each column."""
 
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
@@ -44,19 +48,57 @@ def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
 
 def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
     """Say in sentences what a paving encloses."""
-    inner, outer = paving.bracket
-    unit = _volume_unit(robot, paving)
-    yield f"volume between {max(below(inner), 0.0):.9g} {unit} and {above(outer):.9g} {unit}"
-    yield f"{100 * float(paving.undecided_fraction):.3g} % of the range is undecided"
+    inner, outer = (float(below(paving.bracket[0])), float(above(paving.bracket[1])))
+    undecided = float(paving.undecided_fraction)
+    yield from _bracket_lines(_volume_unit(robot, paving.problem.kinds), inner, outer, undecided)
     counts = {word: sum(map(len, cells)) for word, cells in _groups(paving).items()}
     yield ", ".join(f"{counted(count, 'cell')} {word}" for word, count in counts.items())
 
 
-def _volume_unit(robot: Robot, paving: Paving) -> str:
+def columns_document(robot: Robot, paving: ColumnPaving, free: Sequence[int]) -> dict[str, Any]:
+    """Return the JSON form of a paving of columns, schema qbound/columns/1; rad, or length.
+
+    A column is a closed cell of all joints but one, the lift, with the volumes over it: what is
+    proved feasible, at least, and what is undecided, at most.
+
+    Parameters
+    ----------
+    free : sequence of int
+        Which of the robot's joints move.
+    """
+    inner, outer = paving.bracket
+    names, lift = [robot.joints[j].name for j in free], paving.lift
+    return {
+        **heading("qbound/columns/1", robot),
+        "volume": {"inner": inner, "outer": outer},
+        "undecided": paving.undecided_fraction,
+        "joints": names,
+        "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
+        "lift": names[lift],
+        "columns": [
+            {"from": low, "to": high, "feasible": feasible, "undecided": undecided}
+            for low, high, feasible, undecided in zip(
+                *(getattr(paving.columns, name).tolist() for name in COLUMN), strict=True
+            )
+        ],
+    }
+
+
+def columns_lines(robot: Robot, paving: ColumnPaving) -> Iterator[str]:
+    """Say in sentences what a paving of columns encloses."""
+    unit = _volume_unit(robot, paving.problem.kinds)
+    yield from _bracket_lines(unit, *paving.bracket, paving.undecided_fraction)
+    yield counted(len(paving.columns), "column")
+
+
+def _bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
+    yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
+    yield f"{100 * undecided:.3g} % of the range is undecided"
+
+
+def _volume_unit(robot: Robot, kinds: Iterable[str]) -> str:
     """Write the product of the joints' units, such as rad^2 cm."""
-    units = Counter(
-        "rad" if kind == "revolute" else robot.length_unit for kind in paving.problem.kinds
-    )
+    units = Counter("rad" if kind == "revolute" else robot.length_unit for kind in kinds)
     return " ".join(unit if n == 1 else f"{unit}^{n}" for unit, n in units.items())
 
 
