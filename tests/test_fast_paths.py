@@ -4,6 +4,7 @@ import gc
 import re
 import subprocess
 import sys
+from itertools import groupby
 
 import numpy as np
 import pytest
@@ -17,11 +18,11 @@ from qbound.measures import nearest
 from qbound.model.frames import cross
 from qbound.region import critical, pieces
 from qbound.region.arcs import NODES, legendre
-from qbound.region.components import CELL_NODES
+from qbound.region.components import CELL_NODES, _smooth_rules
 from qbound.region.critical import base_values
 from qbound.region.decomposition import critical_values
 from qbound.region.pieces import find_pieces
-from qbound.region.plane import HIGHEST, LOWEST, Plane, Root
+from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, runs
 from qbound.region.problem import clearance_problem
 from support.forms import ROUND, RR, forms
 
@@ -39,6 +40,44 @@ def test_nodes_are_those_of_numpy_and_integrate_exactly(n):
 def test_cells_are_measured_with_more_nodes_each_time():
     assert CELL_NODES[0] == NODES[0]
     assert all(np.diff(CELL_NODES) > 0)
+
+
+def test_two_rules_in_one_call_are_both():
+    sines, weights = _smooth_rules((24, 32))
+    height = np.sqrt(1 - sines**2) * (0.3 + 0.5 * sines)  # a fold at either end
+    assert height @ weights == pytest.approx([0.15 * np.pi] * 2, abs=1e-14)
+    for n, own in zip((24, 32), weights.T, strict=True):
+        alone, (part,) = _smooth_rules((n,))[0], _smooth_rules((n,))[1].T
+        assert (sines[own != 0] == alone).all()
+        assert (own[own != 0] == part).all()
+
+
+@pytest.mark.parametrize("values", [[], [3], [1, 1, 2, 2, 2, 0], [5, 4, 4]])
+def test_runs_are_those_of_groupby(values):
+    rows = [[i for i, _ in own] for _, own in groupby(enumerate(values), key=lambda pair: pair[1])]
+    first, last = runs(np.array(values, dtype=np.int64))
+    assert first.tolist() == [own[0] for own in rows]
+    assert last.tolist() == [own[-1] for own in rows]
+
+
+@pytest.mark.parametrize("name", ["minervabot-v2", "two-links-on-a-table", "pp-portal"])
+def test_a_loop_begins_at_its_lowest_vertex_and_vertices_are_where_labels_change(name):
+    for component in find_region(load_robot(name)).components:
+        found = iter(component.vertices)
+        for loop in component.loops:
+            corners = [
+                (arc.start, (before.boundary, arc.boundary))
+                for before, arc in zip((loop[-1], *loop), loop, strict=False)
+                if before.label != arc.label
+            ]
+            own = [next(found) for _ in corners]
+            assert [vertex.boundaries for vertex in own] == [names for _, names in corners]
+            assert all((vertex.q == q).all() for vertex, (q, _) in zip(own, corners, strict=True))
+            if corners and np.abs(loop[-1].end - loop[0].start).max() < np.pi:
+                places = [q[::-1].round(9).tolist() for q, _ in corners]
+                assert (loop[0].start == corners[0][0]).all()
+                assert places[0] == min(places)
+        assert next(found, None) is None
 
 
 @pytest.mark.parametrize("count", [3, 300])

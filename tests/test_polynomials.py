@@ -44,6 +44,25 @@ def test_each_root_stands_with_its_own_polynomial():
     assert np.sort(z.real[rows == 1]) == pytest.approx([-0.4, 0.2], abs=1e-13)
 
 
+def test_polynomials_of_all_degrees_are_solved_together():
+    rng = np.random.default_rng(3)
+    roots = [rng.normal(size=(d, 2)) @ [1, 1j] for d in (1, 2, 3, 6, 2)]
+    stack = np.zeros((len(roots) + 1, 9), dtype=complex)  # the last is zero everywhere
+    for k, own in enumerate(roots):
+        low = k % 3  # so many roots at zero
+        stack[k, low : low + len(own) + 1] = polynomial(own)[0]
+    rows, z = polynomial_roots(stack)
+    for k, own in enumerate(roots):
+        expected = [*own, 0.0] if k % 3 else own  # zero stands there once
+        assert np.sort_complex(z[rows == k]) == pytest.approx(np.sort_complex(expected), abs=1e-12)
+    assert len(z) == sum(map(len, roots)) + 3
+
+
+def test_a_quadratic_loses_no_digits_of_its_smaller_root():
+    _, z = polynomial_roots(np.array([[1e-9, -1.0, 1e-3]], dtype=complex))
+    assert np.sort(np.abs(z)) == pytest.approx([1e-9, 1e3], rel=1e-11)
+
+
 def test_ends_that_are_rounding_are_no_roots_at_infinity():
     rows, z = polynomial_roots(np.array([[0, -0.5, 1, 1e-15]], dtype=complex))
     assert rows.tolist() == [0, 0]

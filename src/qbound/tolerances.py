@@ -98,6 +98,10 @@ slabs as wide as critical values are."""
 TRANSVERSAL: Final = 1e-6
 """Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
 
+NEWTON_DONE: Final = 1e-11
+"""A step of Newton this short is the last: what it leaves is its square, over `TRANSVERSAL` at the
+most, and that is rounding."""
+
 SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line, or of a cell that ends there."""
 

@@ -12,6 +12,7 @@ from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
 from qbound.region.cells import CellComplex
 from qbound.region.decomposition import decompose
+from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.plane import Plane
 from support.forms import Piece, Ranges
 
@@ -187,10 +188,11 @@ def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     """Area, wraps (in the order of the joints) and number of loops, largest area first."""
     cells = CellComplex(decompose(Plane(stack, ranges, base)))
     found = []
-    for sheets, wraps in cells.components():
-        area = sum(area_of(cells, k) for k in sheets)
+    rings = find_loops(cells, half_edges(cells))
+    for own, wraps, loops in zip(cells.parts.cells, cells.parts.wraps, rings, strict=True):
+        area = sum(area_of(cells, k) for k in own)
         one, other = wraps if base == 0 else wraps[::-1]
-        found.append((area, (bool(one), bool(other)), len(cells.loops(set(sheets)))))
+        found.append((area, (bool(one), bool(other)), len(loops)))
     return sorted(found, reverse=True)
 
 

@@ -315,13 +315,13 @@ def compiled(
     spans : sequence of (low, high) or None, optional
         Where the values of each joint will lie, mostly; default: the ranges.
     """
-    n = len(forms.kinds)
     bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
     monomials, place = occurring(forms.coefficients, forms.kinds, [j for j, *_ in bounded])
-    coefficients = forms.coefficients.reshape(len(names), 3**n)
     table = np.zeros((len(names) + 2 * len(bounded), len(monomials)))
-    for index, row in place.items():
-        table[: len(names), row] = coefficients[:, np.ravel_multi_index(index, (3,) * n)]
+    n = len(forms.kinds)
+    indices = np.ravel_multi_index(tuple(zip(*place, strict=True)), (3,) * n)
+    coefficients = forms.coefficients.reshape(len(names), 3**n)
+    table[: len(names), list(place.values())] = coefficients[:, indices]
     for k, (j, low, high) in enumerate(bounded):
         q, at = 1 + monomials.factors.index((j, VALUE)), len(names) + 2 * k
         table[at : at + 2, [0, q]] = [[-low, 1], [high, -1]]

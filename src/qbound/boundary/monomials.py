@@ -7,9 +7,9 @@ a joint and one product a monomial, however many forms there are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -88,7 +88,7 @@ class Monomials:
 
 def occurring(
     coefficients: Array, kinds: Sequence[Kind], bounded: Sequence[int]
-) -> tuple[Monomials, dict[Index, int]]:
+) -> tuple[Monomials, Mapping[Index, int]]:
     """Return the monomials that occur in forms, and at which place each index stands.
 
     Parameters
@@ -100,7 +100,16 @@ def occurring(
     bounded : sequence of int
         Joints whose value itself is wanted too.
     """
-    singles, several = _indices(coefficients)
+    found = np.argwhere((coefficients != 0).any(axis=0)).tolist()
+    return _monomials(tuple(map(tuple, found)), tuple(kinds), tuple(bounded))
+
+
+@lru_cache(maxsize=64)
+def _monomials(
+    found: Sequence[Index], kinds: Sequence[Kind], bounded: Sequence[int]
+) -> tuple[Monomials, Mapping[Index, int]]:
+    """Return the same of the indices that occur; slices, and robots of one build, share them."""
+    singles, several = _indices(found)
     factors = [(j, (kinds[j], i)) for j, i in map(_last, singles)]
     factors += [(j, VALUE) for j in bounded if (j, VALUE) not in factors]
     place = {(0,) * len(kinds): 0} | {index: row for row, index in enumerate(singles, 1)}
@@ -117,11 +126,11 @@ def padded(q: Floats, width: int, dtype: type = np.float64) -> Array:
     return columns
 
 
-def _indices(coefficients: Array) -> tuple[list[Index], list[Index]]:
+def _indices(occurring: Sequence[Index]) -> tuple[list[Index], list[Index]]:
     """Return the monomials that occur, and those they are made from: of one joint, of several."""
     found = set[Index]()
-    for occurs in np.argwhere((coefficients != 0).any(axis=0)).tolist():
-        index = tuple(occurs)
+    for occurs in occurring:
+        index = occurs
         while any(index):
             found |= {index, _tail(index)}
             index = _head(index)

@@ -16,7 +16,7 @@ TURN: Final = math.tau
 
 def whole_turns(angle: ArrayLike) -> Floats:
     """Return the number of full turns nearest to an angle, shape (...)."""
-    return np.asarray(np.round(np.asarray(angle, dtype=float) / TURN))
+    return np.asarray(np.rint(np.asarray(angle, dtype=float) / TURN))
 
 
 def turns_up_to(low: ArrayLike, q: ArrayLike) -> Floats:
@@ -39,5 +39,5 @@ def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
 def turns_within(low: float, high: float, q: ArrayLike) -> range:
     """Return every number k of full turns for which some of q + k TURN lies in [low, high]."""
     q = np.asarray(q, dtype=float)
-    least, most = float(np.nanmin(q)), float(np.nanmax(q))
+    least, most = np.fmin.reduce(q, axis=None), np.fmax.reduce(q, axis=None)
     return range(math.ceil((low - most) / TURN), math.floor((high - least) / TURN) + 1)

@@ -17,6 +17,10 @@ Kind = Literal["revolute", "prismatic"]
 Array = NDArray[Any]
 
 
+NUMBERS = np.ndarray, np.generic, float, int
+"""Types whose sines are NumPy's; a union of them would be made anew in each call."""
+
+
 @dataclass(frozen=True, eq=False)
 class Factor:
     r"""Three functions :math:`e = (1, e_1, e_2)` of the value q of one joint.
@@ -63,7 +67,7 @@ def cos_sin(q: Any) -> tuple[Any, Any]:
     if isinstance(q, np.ndarray) and q.dtype == object:
         cosine, sine = np.frompyfunc(cos_sin, 1, 2)(q)
         return cosine, sine
-    if isinstance(q, np.ndarray | np.generic | float | int):
+    if isinstance(q, NUMBERS):
         return np.cos(q), np.sin(q)
     if hasattr(q, "sin_cos"):
         sine, cosine = q.sin_cos()

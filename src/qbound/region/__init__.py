@@ -5,7 +5,8 @@
 - `plane`: forms over a base, their roots and signs;
 - `critical`: where roots may meet; `polynomials`: where stacks of them vanish;
 - `pieces`: where bodies touch, and where such contacts cross;
-- `decomposition`: cells in which all is free; `cells`: which of them are adjacent;
+- `decomposition`: cells in which all is free; `cells`: which of them are adjacent; `halfedges`:
+  what goes round them;
 - `emptiness`: which boundaries leave no room, where there are none;
 - `loops`, `arcs`: the boundary of each component; `components`: what else is known of it;
 - `region`: the answer, and what it can be asked; `slices`: a row of such answers.

@@ -106,8 +106,10 @@ class Arc:
     boundary : str
     branch : int or None
         -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
-    pieces : Pieces
-        What the arc is made of, the region on its left.
+    laid : Pieces
+        Pieces of boundary, among them those of the arc, the region on their left.
+    span : tuple of two int
+        The first of the arc's, and where they end.
     feature : str
         Of two bodies, what touches: "corner 2 on edge 3", the first body's first.
     row : int
@@ -116,7 +118,8 @@ class Arc:
 
     boundary: str
     branch: int | None
-    pieces: Pieces
+    laid: Pieces
+    span: tuple[int, int]
     feature: str = ""
     row: int = -1
 
@@ -132,6 +135,11 @@ class Arc:
         """Boundary and feature: where they change is a vertex."""
         return self.boundary, self.feature
 
+    @cached_property
+    def pieces(self) -> Pieces:
+        """What the arc is made of, the region on its left."""
+        return self.laid[slice(*self.span)]
+
     @property
     def form(self) -> HarmonicForm | None:
         """What vanishes along it, largest coefficient 1; None at a joint limit.
@@ -139,17 +147,17 @@ class Arc:
         Of two bodies it is the form of the feature that touches there, which says nothing of the
         bodies elsewhere.
         """
-        return self.pieces.plane.form(self.row) if self.row >= 0 else None
+        return self.laid.plane.form(self.row) if self.row >= 0 else None
 
     @property
     def start(self) -> Floats:
         """Joint values at the start, shape (2,)."""
-        return ordered(self.pieces.start[0], self.pieces.base)
+        return ordered(self.laid.start[self.span[0]], self.laid.base)
 
     @property
     def end(self) -> Floats:
         """Joint values at the end, shape (2,)."""
-        return ordered(self.pieces.end[-1], self.pieces.base)
+        return ordered(self.laid.end[self.span[1] - 1], self.laid.base)
 
     @cached_property
     def points(self) -> Floats:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import accumulate, chain
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,7 @@ from qbound.forms.angles import TURN, nearest_turn
 from qbound.printable import printable
 from qbound.region.arcs import NODES, Arc, legendre, ordered
 from qbound.region.cells import CellComplex, Placed
-from qbound.region.loops import Windings, behind
+from qbound.region.loops import behind
 from qbound.region.problem import Problem
 from qbound.tolerances import QUADRATURE
 
@@ -81,12 +82,13 @@ def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list
     """
     if q.shape != (2,):
         raise ValueError(f"one configuration of two joint values is wanted, found shape {q.shape}")
-    if not problem.evaluator.feasible(q):
+    feasible = problem.evaluator.feasible
+    if not feasible(q):
         return []
     return [
         one
         for one in cells.placed(ordered(q, base))
-        if problem.evaluator.feasible(q + ordered(one.off, base) / 2)
+        if not one.off.any() or feasible(q + ordered(one.off, base) / 2)
     ]
 
 
@@ -94,7 +96,7 @@ def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list
 class Found:
     """A component before its boundary is laid out; base before lift."""
 
-    windings: Windings
+    part: int
     wraps: tuple[bool, bool]
     area: float
     middle: Floats
@@ -108,62 +110,39 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     at_home = {one.cell: one for one in closures(problem, cells, base, home)}
     home = ordered(home, base)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
-    parts = cells.components()
-    table = winding_table(cells, [windings for windings, _ in parts])
-    count = [len(windings) for windings, _ in parts]
-    owner, order = np.repeat(np.arange(len(parts)), count), [k for one, _ in parts for k in one]
-    moments[:, 1:] += moments[:, :1] * TURN * table
-    sums = np.array([np.bincount(owner, column[order], len(parts)) for column in moments.T])
-    middles = (sums[1:] / sums[0]).T
+    parts = cells.parts
+    moments[:, 1:] += moments[:, :1] * TURN * parts.windings
+    first = list(accumulate(map(len, parts.cells[:-1]), initial=0))
+    sums = np.add.reduceat(moments[list(chain(*parts.cells))], first)
+    middles = sums[:, 1:] / sums[:, :1]
     nearest = (nearest_turn(middles, 0) - middles) * circles
     found = []
-    for k, (windings, wraps) in enumerate(parts):
-        own = next((one for cell, one in at_home.items() if cell in windings), None)
+    for k, wraps in enumerate(parts.wraps):
+        own = next((at_home[cell] for cell in at_home if cell in parts.cells[k]), None)
         shift = np.zeros(2)
         if own is not None:
-            shift = home - own.place - TURN * np.array(windings[own.cell])
+            shift = home - own.place - TURN * parts.windings[own.cell]
         elif not any(wraps):
             shift = nearest[k]
-        area = float(sums[0, k])
-        found.append(Found(windings, wraps, area, middles[k], shift, own is not None))
+        area = float(sums[k, 0])
+        found.append(Found(k, wraps, area, middles[k], shift, own is not None))
     return found
 
 
-def winding_table(cells: CellComplex, windings: Sequence[Windings]) -> Ints:
-    """Return the winding of every cell, shape (cells, 2), of those of all components."""
-    table = np.zeros((len(cells.slabs), 2), dtype=np.int64)
-    for one in windings:
-        table[list(one)] = list(one.values())
-    return table
-
-
-def bounded(found: Found, base: int, loops: list[tuple[Arc, ...]]) -> Component:
-    """Return a component with its boundary; each loop begins at its lowest vertex."""
+def bounded(
+    found: Found, base: int, loops: Sequence[tuple[tuple[Arc, ...], list[bool]]]
+) -> Component:
+    """Return a component with its boundary: loops of arcs, which of these begin at a vertex."""
     centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
     wraps = found.wraps[base], found.wraps[1 - base]
-    loops = [_from_lowest(loop) for loop in loops]
-    corners = tuple(_vertices(loops))
-    return Component(found.area, centroid, wraps, tuple(loops), corners, found.contains_home)
-
-
-def _from_lowest(loop: tuple[Arc, ...]) -> tuple[Arc, ...]:
-    """Let a loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
-
-    One that goes round a joint is left alone.
-    """
-    starts = [i for i, arc in enumerate(loop) if loop[i - 1].label != arc.label]
-    (q1, q2), (p1, p2) = loop[-1].end.tolist(), loop[0].start.tolist()
-    if not starts or max(abs(q1 - p1), abs(q2 - p2)) >= math.pi:
-        return loop
-    k = min(starts, key=lambda i: [round(x, 9) for x in loop[i].start[::-1].tolist()])
-    return loop[k:] + loop[:k]
-
-
-def _vertices(loops: Sequence[Sequence[Arc]]) -> Iterator[Vertex]:
-    for arcs in loops:
-        for before, arc in zip(behind(arcs), arcs, strict=True):
-            if before.label != arc.label:
-                yield Vertex(arc.start, (before.boundary, arc.boundary))
+    vertices = tuple(
+        Vertex(arc.start, (before.boundary, arc.boundary))
+        for arcs, corners in loops
+        for before, arc, corner in zip(behind(arcs), arcs, corners, strict=True)
+        if corner
+    )
+    rings = tuple(arcs for arcs, _ in loops)
+    return Component(found.area, centroid, wraps, rings, vertices, found.contains_home)
 
 
 def _cell_moments(cells: CellComplex) -> Floats:
@@ -172,20 +151,22 @@ def _cell_moments(cells: CellComplex) -> Floats:
     Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n raised for
     those cells whose moments still change.
     """
-    result = np.full((len(cells.slabs), 3), np.inf)
     left = np.arange(len(cells.slabs))
-    for n in CELL_NODES:
-        now = _moments(cells, left, n)
-        settled = np.abs(now - result[left]) <= QUADRATURE * (1 + np.abs(now))
-        result[left] = now
+    before, now = _moments(cells, left, CELL_NODES[:2])
+    result: Floats = now.copy()
+    for n in CELL_NODES[2:]:
+        settled = np.abs(now - before) <= QUADRATURE * (1 + np.abs(now))
         left = left[~settled.all(axis=1)]
         if not len(left):
             break
+        before, (now,) = result[left], _moments(cells, left, (n,))
+        result[left] = now
     return result
 
 
-def _moments(cells: CellComplex, chosen: Ints, n: int) -> Floats:
-    sines, weights = _smooth_rule(n)
+def _moments(cells: CellComplex, chosen: Ints, nodes: tuple[int, ...]) -> Floats:
+    """Return the moments of cells by rules of some numbers of nodes, shape (rules, k, 3)."""
+    sines, weights = _smooth_rules(nodes)
     start, end = cells.spans(chosen).T[:, :, None]
     half = (end - start) / 2
     t = (start + end) / 2 + half * sines
@@ -196,8 +177,16 @@ def _moments(cells: CellComplex, chosen: Ints, n: int) -> Floats:
 
 
 @cache
-def _smooth_rule(n: int) -> tuple[Floats, Floats]:
-    """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1]."""
-    nodes, weights = legendre(n)
-    angle = nodes * math.pi / 2
-    return np.sin(angle), weights * math.pi / 2 * np.cos(angle)
+def _smooth_rules(nodes: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1].
+
+    Nodes of all rules together, shape (n,); of each rule the weights are a column, (n, rules), with
+    zeros at the others' nodes.
+    """
+    rules = [legendre(n) for n in nodes]
+    angle = np.concatenate([x for x, _ in rules]) * math.pi / 2
+    weights = np.zeros((len(angle), len(nodes)))
+    ends = np.cumsum([0, *nodes])
+    for k, (_, own) in enumerate(rules):
+        weights[ends[k] : ends[k + 1], k] = own
+    return np.sin(angle), weights * math.pi / 2 * np.cos(angle)[:, None]

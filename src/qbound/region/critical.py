@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, turns_within
-from qbound.forms.factors import basis
+from qbound.forms.factors import FACTORS, Kind, basis
 from qbound.region.plane import Plane
 from qbound.region.polynomials import polynomial_roots
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 
 BLOCK = 2**14
@@ -28,6 +29,9 @@ BLOCK = 2**14
 
 FEW = 2**9
 """Polynomials of a kind up to which they are solved with others: one call costs more than they."""
+
+NEXT, LAST = [1, 2, 0], [2, 0, 1]
+"""Of three coefficients, those that each entry of a cross product is made of."""
 
 Events = Iterator[tuple[Ints, Complexes]]
 """Rows and their polynomials, stacks of equal length; a row may occur in several."""
@@ -38,11 +42,14 @@ def univariate(plane: Plane, table: Floats) -> Complexes:
 
     Ascending powers. Revolute: of z = exp(i q), times z. Prismatic: of q itself.
     """
-    c = np.moveaxis(table, 1, -1).astype(complex)
-    if plane.base_kind == "prismatic":
-        return c
-    one, cosine, sine = np.moveaxis(c, -1, 0)
-    return np.stack([(cosine + 1j * sine) / 2, one, (cosine - 1j * sine) / 2], axis=-1)
+    return np.asarray(table.swapaxes(1, 2) @ _by_power(plane.base_kind))
+
+
+@cache
+def _by_power(kind: Kind) -> Complexes:
+    """Return the matrix that turns a joint's three coefficients into those of ascending powers."""
+    factor = FACTORS[kind]
+    return np.asarray(factor.waves[np.argsort(factor.turns + factor.powers)].T, dtype=complex)
 
 
 def own_events(plane: Plane, c: Complexes) -> Events:
@@ -50,7 +57,7 @@ def own_events(plane: Plane, c: Complexes) -> Events:
     rows = np.arange(len(c))
     c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
     if plane.lift_kind == "revolute":
-        yield rows, _times(c1, c1) + _times(c2, c2) - _times(c0, c0)
+        yield rows, _excess(c)
     else:
         yield rows, _times(c1, c1) - 4 * _times(c0, c2)
         yield rows, c1
@@ -74,13 +81,11 @@ def _circle(a: Complexes, b: Complexes) -> Events:
     Where both have no constant part it is the square of the determinant.
     """
     rows = np.arange(len(a))
-    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, 1, 0), np.moveaxis(b, 1, 0)
-    determinant = _times(a1, b2) - _times(a2, b1)
-    cosine = _times(a2, b0) - _times(a0, b2)
-    sine = _times(a0, b1) - _times(a1, b0)
-    parallel = (np.abs(determinant) <= NEGLIGIBLE).all(axis=-1)
-    plain = (np.abs(cosine) <= NEGLIGIBLE).all(-1) & (np.abs(sine) <= NEGLIGIBLE).all(-1)
-    resultant = _times(cosine, cosine) + _times(sine, sine) - _times(determinant, determinant)
+    crossed = _times(a[:, NEXT], b[:, LAST]) - _times(a[:, LAST], b[:, NEXT])
+    determinant, cosine, sine = crossed.swapaxes(0, 1)
+    resultant = _excess(crossed)
+    none: Bools = np.asarray((np.abs(crossed) <= NEGLIGIBLE).all(axis=-1))
+    parallel, plain = none[:, 0], none[:, 1] & none[:, 2]
     # Two forms that share one root for every base value share the other where they are parallel.
     sharing = ~parallel & (np.abs(resultant) <= NEGLIGIBLE).all(axis=-1)
     apart = ~parallel & ~plain
@@ -88,6 +93,15 @@ def _circle(a: Complexes, b: Complexes) -> Events:
     yield rows[parallel], cosine[parallel]
     yield rows[parallel], sine[parallel]
     yield rows[sharing | plain], determinant[sharing | plain]
+
+
+def _excess(c: Complexes) -> Complexes:
+    """Return c1^2 + c2^2 - c0^2 of rows of three polynomials, shape (k, 3, length).
+
+    It vanishes where c0 + c1 cos + c2 sin has a double root, or c0 times (cos, sin) is (c1, c2).
+    """
+    first, second, third = _times(c, c).swapaxes(0, 1)
+    return np.asarray(second + third - first)
 
 
 def _line(a: Complexes, b: Complexes) -> Events:
@@ -165,11 +179,13 @@ def _blocks(events: Events) -> Events:
         elif len(stack):
             few.append((rows, stack))
     if few:
-        length = np.array([len(rows) for rows, _ in few])
-        padded = np.zeros((length.sum(), max(stack.shape[1] for _, stack in few)), dtype=complex)
-        for at, (_, stack) in zip(np.cumsum(length) - length, few, strict=True):
+        owner = np.concatenate([rows for rows, _ in few])
+        padded = np.zeros((len(owner), max(stack.shape[1] for _, stack in few)), dtype=complex)
+        at = 0
+        for _, stack in few:
             padded[at : at + len(stack), : stack.shape[1]] = stack
-        yield np.concatenate([rows for rows, _ in few]), padded
+            at += len(stack)
+        yield owner, padded
 
 
 def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
@@ -180,4 +196,4 @@ def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
     near = np.abs(np.abs(z) - 1) <= NEAR_CIRCLE
     rows, t = rows[near], np.angle(z[near])
     turns = np.array(turns_within(*plane.ends, [-math.pi, math.pi]))
-    return np.repeat(rows, len(turns)), (t[:, None] + TURN * turns).ravel()
+    return rows.repeat(len(turns)), (t[:, None] + TURN * turns).ravel()

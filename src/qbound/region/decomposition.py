@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from qbound.forms.angles import TURN, turns_up_to
 from qbound.region.critical import base_values, meetings, own_events, univariate
 from qbound.region.pieces import INSIDE, Pieces, crossings, find_pieces
-from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges
+from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges, runs, which
 from qbound.tolerances import (
     BEYOND_JUMP,
     NEGLIGIBLE,
@@ -81,7 +81,7 @@ class Decomposition:
         free = self.plane.open(t, low, high, POSITIVE)
         if len(self.walls):
             near = np.abs(self.walls[:, None] - t).min(axis=0) <= 2 * SAME_CRITICAL
-            wall = np.flatnonzero(free & near)
+            wall = which(free & near)
             free[wall] = self.plane.apart(t[wall], low[wall], high[wall], POSITIVE)
         return free
 
@@ -97,8 +97,9 @@ def decompose(plane: Plane) -> Decomposition:
     while True:
         # Off the middle where bodies touch: it may be a place of symmetry.
         part = INSIDE if plane.contacts.pairs else 0.5
-        slabs, roots, doubtful = _cells(plane, lines[:-1] + part * np.diff(lines), pieces)
-        unreal = np.flatnonzero(doubtful & (np.diff(lines) < BEYOND_JUMP))
+        widths = lines[1:] - lines[:-1]
+        slabs, roots, doubtful = _cells(plane, lines[:-1] + part * widths, pieces)
+        unreal = which(doubtful & (widths < BEYOND_JUMP))
         if not len(unreal):
             return _without_idle_lines(Decomposition(plane, lines, slabs, roots, pieces.walls))
         last = len(lines) - 1
@@ -119,9 +120,9 @@ def critical_values(plane: Plane, pieces: Pieces | None = None) -> Floats:
     if pieces is not None and plane.contacts.pairs:
         found += [pieces.lines, pieces.walls, crossings(plane, pieces)]
     values, (low, high) = np.concatenate(found), plane.ends
-    inner = values[(values > low + SAME_CRITICAL) & (values < high - SAME_CRITICAL)]
-    lines = np.sort(np.concatenate([[low, high], inner]))
-    return np.asarray(lines[np.diff(lines, prepend=-np.inf) > SAME_CRITICAL])
+    inner = np.sort(values[(values > low + SAME_CRITICAL) & (values < high - SAME_CRITICAL)])
+    lines = np.concatenate([[low], inner, [high]])
+    return np.concatenate([lines[:1], lines[1:][lines[1:] - lines[:-1] > SAME_CRITICAL]])
 
 
 def _of_forms(plane: Plane) -> Floats:
@@ -174,8 +175,7 @@ class _Fibres:
         n = len(self.slab)
         after, tops = np.arange(1, n + 1), np.full(n, np.nan)
         tops[:-1] = self.values[1:]
-        edges = np.flatnonzero(np.diff(self.slab, prepend=-1, append=len(self.t)))
-        first, last = edges[:-1], edges[1:] - 1
+        first, last = runs(self.slab)
         if self.circle:
             after[last], tops[last] = first, self.values[first] + TURN
         else:
@@ -193,7 +193,7 @@ def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[Ints, Ints, B
     if plane.contacts.pairs:
         fibres, doubtful = _once(plane, fibres, pieces)
     after, tops = fibres.gaps()
-    wide = np.flatnonzero(tops > fibres.values)
+    wide = which(tops > fibres.values)
     if plane.contacts.pairs:
         apart, doubtful = _apart(plane, fibres, pieces, tops, doubtful)
         wide = wide[apart[wide]]
@@ -229,7 +229,7 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
             roots[:, 2] = turns
     every = np.arange(len(t))
     if plane.lift_range is None:
-        ends = [(np.flatnonzero(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
+        ends = [(which(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
     else:
         inside = (values > low) & (values < high)
         slab, values, roots, piece = slab[inside], values[inside], roots[inside], piece[inside]
@@ -239,7 +239,7 @@ def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
             slab = np.concatenate([slab, where])
             values = np.concatenate([values, np.full(len(where), value)])
             roots = np.concatenate([roots, np.tile(root, (len(where), 1))])
-    piece = np.concatenate([piece, np.full(len(slab) - len(piece), -1)])
+            piece = np.concatenate([piece, np.full(len(where), -1)])
     order = np.lexsort([values, slab])
     circle = plane.lift_range is None
     return _Fibres(t, slab, values, roots, piece, circle).only(order)
@@ -265,8 +265,7 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     rows, group = touching[order], group[order]
     enters, values = pieces.enters[fibres.piece[rows]], fibres.values[rows]
     before = np.roll(np.arange(len(rows)), 1)
-    first = np.flatnonzero(np.diff(group, prepend=-1))
-    last = np.append(first[1:], len(group))[: len(first)] - 1
+    first, last = runs(group)
     before[first] = last  # on a circle the first comes after the last
     gap = np.abs(values - values[before])
     again = (enters == enters[before]) & (before != np.arange(len(rows)))
@@ -282,7 +281,7 @@ def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools
     dropped = rows[again & ~doubtful[fibres.slab[rows]]]
     kept = np.ones(len(fibres.slab), dtype=np.bool_)
     kept[dropped] = False
-    return fibres.only(np.flatnonzero(kept)), doubtful
+    return fibres.only(which(kept)), doubtful
 
 
 def _apart(
@@ -319,12 +318,12 @@ def _apart(
         doubtful = doubtful | (np.bincount(fibres.slab, change, slabs) != 0)
     possible = ~blocked[fibres.slab] & (widths > 0)
     thin = (count == 0) & (widths < THIN * plane.lift_unit)
-    looked = np.flatnonzero(possible & (thin | doubtful[fibres.slab]))
+    looked = which(possible & (thin | doubtful[fibres.slab]))
     apart: Bools = np.asarray(possible & (count == 0))
     t, low = fibres.t[fibres.slab[looked]], fibres.values[looked]
     apart[looked] = plane.apart(t, low, tops[looked], NEGLIGIBLE)
     if pieces.resting.any():
-        resting, looked = Separation(plane, pieces.resting), np.flatnonzero(apart)
+        resting, looked = Separation(plane, pieces.resting), which(apart)
         middle = fibres.values[looked] + INSIDE * (tops - fibres.values)[looked]
         heights = resting.heights(fibres.t[fibres.slab[looked]], middle)
         apart[looked] = (heights > NEGLIGIBLE).all(axis=1)
@@ -333,7 +332,7 @@ def _apart(
 
 def _counted(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
     """Return the rows that are contacts of pairs that are counted: those at rest are tested."""
-    touching = np.flatnonzero(fibres.piece >= 0)
+    touching = which(fibres.piece >= 0)
     pair = plane.contacts.pair[pieces.feature[fibres.piece[touching]]]
     return touching[~pieces.resting[pair]]
 
@@ -341,7 +340,7 @@ def _counted(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
 def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
     """Return in each slab the place of the largest width, the first where there are several."""
     most = np.maximum.reduceat(widths, start)
-    where = np.flatnonzero(widths == most[slab])
+    where = which(widths == most[slab])
     _, first = np.unique(slab[where], return_index=True)
     return where[first] - start
 
@@ -359,17 +358,18 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     plane, lines, slabs, roots = found.plane, found.lines, found.slabs, found.roots
     count = np.bincount(slabs, minlength=len(lines) - 1)
     # Cell by cell: is there the same, in its turn, over the slab before?
-    number = np.arange(len(slabs)) - (np.cumsum(count) - count)[slabs]
+    number = np.arange(len(slabs)) - (count.cumsum() - count)[slabs]
     back = np.concatenate([[0], count])[slabs]
     there = number < back
-    there[there] = (roots[there] == roots[np.flatnonzero(there) - back[there]]).all(axis=(1, 2))
+    k = which(there)
+    there[k] = (roots[k] == roots[k - back[k]]).all(axis=(1, 2))
     same = np.zeros(len(lines), dtype=np.bool_)
     same[1:-1] = count[1:] == count[:-1]
     same[slabs[~there]] = False
-    k = np.flatnonzero(same[slabs])
+    k = which(same[slabs])
     same[slabs[k[~_goes_on(found, slabs[k], roots[k])]]] = False
     kept = ~same
-    renumbered, left = np.cumsum(kept) - 1, kept[slabs]
+    renumbered, left = kept.cumsum() - 1, kept[slabs]
     return Decomposition(plane, lines[kept], renumbered[slabs[left]], roots[left], found.walls)
 
 
@@ -383,7 +383,7 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     twins = own * np.array([1, -1, 1])  # of the other branch
     values = plane.follow(np.concatenate([own, twins]), t)
     (lower, upper), height = values[:2], (values[1] - values[0]).min(axis=1)
-    smooth = np.ptp(lower, axis=1) + np.ptp(upper, axis=1) < UNCHANGED * height
+    smooth = np.ptp(values[:2], axis=2).sum(axis=0) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
     going[going] = found.joined(at[going], lower[going, 1], upper[going, 1])

@@ -6,7 +6,8 @@ an arc, and the corners where two forms meet are brought onto both. All loops ar
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeVar
@@ -16,17 +17,16 @@ from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.factors import basis_and_slope
-from qbound.region.arcs import FIBRE, Arc, Pieces
-from qbound.region.cells import DOWN, UP, UPPER, CellComplex
-from qbound.region.plane import Plane
-from qbound.tolerances import TRANSVERSAL
+from qbound.region.arcs import FIBRE, Arc, Pieces, ordered
+from qbound.region.cells import CellComplex
+from qbound.region.halfedges import DOWN, UP, UPPER, HalfEdges
+from qbound.region.plane import Plane, runs, which
+from qbound.tolerances import NEWTON_DONE, TRANSVERSAL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Item = TypeVar("Item")
-
-Windings = Mapping[int, tuple[int, int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +76,8 @@ class Layout:
     Parameters
     ----------
     cells : CellComplex
+    edges : HalfEdges
+        Those round the cells.
     base : int
         Which joint is the base.
     names : sequence of str
@@ -85,53 +87,59 @@ class Layout:
     """
 
     def __init__(
-        self, cells: CellComplex, base: int, names: Sequence[str], limits: Sequence[tuple[str, str]]
+        self,
+        cells: CellComplex,
+        edges: HalfEdges,
+        base: int,
+        names: Sequence[str],
+        limits: Sequence[tuple[str, str]],
     ) -> None:
-        self.cells, self.plane, self.base = cells, cells.plane, base
+        self.cells, self.edges, self.plane, self.base = cells, edges, cells.plane, base
         contacts = cells.plane.contacts
         self.names = [*names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
         self.features = [*[""] * len(names), *contacts.names]
         self.limits = [*limits[base], *limits[1 - base]]
 
-    def arcs(self, loops: Sequence[BoundaryLoop], windings: Ints) -> list[tuple[Arc, ...]]:
-        """Return the arcs of each loop, the component on their left.
+    def arcs(
+        self, loops: Sequence[BoundaryLoop], windings: Ints
+    ) -> list[tuple[tuple[Arc, ...], list[bool]]]:
+        """Return the arcs of each loop, the component on their left, and which begin at a vertex.
 
         Cells lie at their windings, (cells, 2): turns of base and lift.
         """
         if not loops:
             return []
         laid = self._laid(loops, windings)
-        begins = laid.first | (laid.label != np.roll(laid.label, 1, axis=0)).any(axis=1)
-        begin = np.flatnonzero(begins)
+        changes = (laid.label != laid.label[laid.before]).any(axis=1)
+        begin = which(laid.first | changes)
         pieces = self._pieces(laid, begin)
-        starts, labels = begin.tolist(), laid.label[begin].tolist()
-        spans = pairwise([*starts, len(begins)])
-        arcs = [
-            self._arc(form, branch, end, pieces[start:stop])
-            for (form, branch, end), (start, stop) in zip(labels, spans, strict=True)
-        ]
-        place = [*np.flatnonzero(laid.first[begin]).tolist(), len(begin)]
-        return [tuple(arcs[i:j]) for i, j in pairwise(place)]
+        order, corners = _from_lowest(laid, begin, pieces)
+        spans, labels = list(pairwise([*begin.tolist(), len(changes)])), laid.label[begin].tolist()
+        arcs = [self._arc(labels[k], pieces, spans[k]) for k in order.tolist()]
+        place = pairwise([*which(laid.first[begin]).tolist(), len(arcs)])
+        at_vertex = corners[order].tolist()
+        return [(tuple(arcs[i:j]), at_vertex[i:j]) for i, j in place]
 
-    def _arc(self, form: int, branch: int, end: int, pieces: Pieces) -> Arc:
+    def _arc(self, label: Sequence[int], pieces: Pieces, span: tuple[int, int]) -> Arc:
+        form, branch, end = label
         name = self.names[form] if form >= 0 else self.limits[end]
         feature = self.features[form] if form >= 0 else ""
-        return Arc(name, branch or None, pieces, feature, form)
+        return Arc(name, branch or None, pieces, span, feature, form)
 
     def _laid(self, loops: Sequence[BoundaryLoop], windings: Ints) -> _Laid:
         """Put all loops one behind the other, each from where an arc begins."""
         rows = np.concatenate([loop.edges for loop in loops])
         length = np.array([len(loop.edges) for loop in loops])
-        loop, start = np.repeat(np.arange(len(loops)), length), np.cumsum(length) - length
+        loop, start = np.arange(len(loops)).repeat(length), length.cumsum() - length
         label, number = self._labels(rows), np.arange(len(rows)) - start[loop]
         before = start[loop] + (number - 1) % length[loop]
-        new = np.flatnonzero((label != label[before]).any(axis=1))
+        new = which((label != label[before]).any(axis=1))
         shift = np.zeros(len(loops), dtype=np.int64)
         shift[loop[new][::-1]] = number[new][::-1]  # the first of each loop comes last
         order = start[loop] + (number + shift[loop]) % length[loop]
         if self.base == 1:  # seen with the joints in their order, the loop runs backwards
             order = order[start[loop] + length[loop] - 1 - number]
-        winding = windings[self.cells.half_edges.cell[rows]]
+        winding = windings[self.edges.cell[rows]]
         turns = TURN * winding + np.array([one.shift for one in loops])[loop]
         after = start[loop] + (number + 1) % length[loop]
         return _Laid(rows[order], turns[order], number == 0, before, after, label[order])
@@ -140,15 +148,17 @@ class Layout:
 
     def _labels(self, rows: Ints) -> Ints:
         """Return form, branch (0 for none) and end of a range of half-edges; form -1 at an end."""
-        edges, plane = self.cells.half_edges, self.plane
+        edges, plane = self.edges, self.plane
         kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
         label = np.zeros((len(rows), 3), dtype=np.int64)
         root = self.cells.roots[cell, (kind == UPPER).astype(int)]
         label[:, 0] = root[:, 0]
         label[:, 1] = root[:, 1] if plane.lift_kind == "revolute" else 0
-        label[:, 2] = np.where(root[:, 0] < 0, 1 - root[:, 0], 0)  # 2 and 3: of the lift
-        label[root[:, 0] < 0, :2] = [-1, 0]
-        line = np.flatnonzero(element >= 0)
+        ends = which(root[:, 0] < 0)
+        if len(ends):
+            label[ends, 2] = 1 - root[ends, 0]  # 2 and 3: of the lift
+            label[ends, :2] = [-1, 0]
+        line = which(element >= 0)
         if len(line):
             label[line] = self._line_labels(element[line], kind[line] == UP)
         return label
@@ -163,7 +173,7 @@ class Layout:
         if plane.base_range is not None:
             label[:, 2] = up
             label[:, 0] = np.where(t == np.array(plane.ends)[up.astype(int)], -1, 0)
-        inner = np.flatnonzero(label[:, 0] == 0)
+        inner = which(label[:, 0] == 0)
         middle = (found.low[element] + found.high[element]) / 2
         label[inner, 0] = plane.vanishing(t[inner], middle[inner]) if len(inner) else 0
         # A form falls along the base at theta + arccos; there the component lies before it.
@@ -181,8 +191,8 @@ class Layout:
         # From one to the next the windings may change by whole turns, which add up.
         jumps = whole_turns((end + laid.turns)[laid.before] - start - laid.turns) * circles
         jumps[laid.first] = 0
-        jumps = np.cumsum(jumps, axis=0)
-        jumps -= jumps[laid.first][np.cumsum(laid.first) - 1]
+        jumps = jumps.cumsum(axis=0)
+        jumps -= jumps[laid.first][laid.first.cumsum() - 1]
         turns = laid.turns + TURN * jumps
         starts, ends = start + turns, end + turns
         # At a fold both sides stop a rounding's square root short of each other.
@@ -194,7 +204,7 @@ class Layout:
 
     def _places(self, rows: Ints) -> tuple[Ints, Floats, Floats]:
         """Return what half-edges follow, and start and end in the cell's coordinates, (n, 2)."""
-        cells, edges = self.cells, self.cells.half_edges
+        cells, edges = self.cells, self.edges
         kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
         side = ((kind == UP) | (kind == UPPER)).astype(int)
         roots, across = cells.roots[cell, side], element >= 0
@@ -203,7 +213,7 @@ class Layout:
         places = np.empty((2, n, 2))  # low end first
         places[:, :, 0] = cells.abscissae[cells.slabs[cell] + np.array([[0], [1]])]
         places[:, :, 1] = cells.ends[cell, :, side].T
-        k = np.flatnonzero(across)
+        k = which(across)
         at, right = element[k], side[k]
         places[:, k, 0] = places[right, k, 0]
         places[:, k, 1] = [found.low[at], found.high[at]]
@@ -228,6 +238,24 @@ class Layout:
         starts[corner] = q
 
 
+def _from_lowest(laid: _Laid, begin: Ints, pieces: Pieces) -> tuple[Ints, Bools]:
+    """Let each loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
+
+    Of arcs that begin at these rows: their order, and which of them begin at a vertex. A loop that
+    goes round a joint is left alone.
+    """
+    loop, start = laid.first[begin].cumsum() - 1, pieces.start[begin]
+    first, last = runs(loop)
+    label = laid.label[:, [0, 2]]  # at a change of branch alone is no vertex
+    corner: Bools = np.asarray((label[begin] != label[laid.before[begin]]).any(axis=1))
+    q1, q2 = np.round(ordered(start, pieces.base), 9).T
+    lowest = np.lexsort([q1, q2, ~corner, loop])[first]
+    around = np.abs(pieces.end[laid.before[begin[first]]] - start[first]).max(axis=1) >= math.pi
+    shift, length = np.where(corner[lowest] & ~around, lowest - first, 0), last + 1 - first
+    number = np.arange(len(loop)) - first[loop]
+    return first[loop] + (number + shift[loop]) % length[loop], corner
+
+
 def behind(ring: Sequence[Item]) -> list[Item]:
     """Return for each entry of a ring the one before it."""
     return [ring[-1], *ring[:-1]]
@@ -241,7 +269,10 @@ def _newton(plane: Plane, pairs: Ints, q: Floats) -> Floats:
         lift = basis_and_slope(plane.lift_kind, q[:, 1])
         both = base[:, None] @ table @ lift[:, None].swapaxes(2, 3)  # values and slopes
         value, slopes = both[:, :, 0, 0], np.array([both[:, :, 1, 0], both[:, :, 0, 1]])
-        q = q - _least_step(slopes.transpose(1, 2, 0), value)
+        step = _least_step(slopes.transpose(1, 2, 0), value)
+        q = q - step
+        if (np.abs(step) <= NEWTON_DONE).all():
+            break
     return q
 
 

@@ -103,8 +103,12 @@ class Plane:
         self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
         # Ends of the lift's range are roots of forms -1 and -2: two of zeros at the end.
         rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
+        self._rows: Floats = self.table[: self.count].reshape(-1, 9).T
         self._columns: Floats = rows.transpose(1, 2, 0).copy()
         self._column_sizes: Floats = np.concatenate([self.sizes, np.zeros((2, 3))]).T.copy()
+        # How much of a coefficient along the lift is rounding; on a circle of all three together.
+        doubt = ROUNDING * self._column_sizes
+        self._doubt: Floats = doubt.sum(axis=0) if self.lift_kind == "revolute" else doubt
         self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
         if self.lift_kind == "revolute":
             self.affine[:] = False
@@ -134,6 +138,10 @@ class Plane:
         """Return the coefficients of all forms but features' along the lift, (3, len(t), m)."""
         return self._over(t[:, None], self._columns[:, :, None, : self.count])
 
+    def coefficients(self, form: Ints, t: Floats) -> Floats:
+        """Return coefficients of forms (..., k) along the lift over (k, n), (3, ..., k, n)."""
+        return self._over(t, self._columns[:, :, form, None])
+
     def _over(self, t: Floats, columns: Floats) -> Floats:
         """Contract columns (3, 3, ...), base before lift, with the base's factors, (3, ...)."""
         one, other = FACTORS[self.base_kind].functions(t)
@@ -143,7 +151,7 @@ class Plane:
         """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
         products, m = self.products(t, v), self.count
         if m <= FEW:
-            return np.asarray((products @ self.table[:m].reshape(m, 9).T > least).all(axis=1))
+            return np.asarray((products @ self._rows > least).all(axis=1))
         left = np.arange(len(t))
         for forms in np.split(self.table[:m].reshape(-1, 9), range(FEW, m, FEW)):
             left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
@@ -167,7 +175,7 @@ class Plane:
         One place may be where a form touches zero, so there are three, at uneven parts.
         """
         v = low[:, None] + (high - low)[:, None] * PROBES
-        found = self.positive(np.repeat(t, len(PROBES)), v.ravel(), least)
+        found = self.positive(t.repeat(len(PROBES)), v.ravel(), least)
         return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
 
     def apart(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
@@ -184,23 +192,23 @@ class Plane:
         or theta -+ pi, two ends that keep their order. Prismatic: the lower and the upper root of
         a quadratic; the one root of an affine form stands first.
         """
-        return self.roots_of(self.along_lift(t), self._column_sizes[:, None, : self.count])
+        return self.roots_of(self.along_lift(t), self._doubt[..., None, : self.count])
 
-    def roots_of(self, c: Floats, sizes: Floats | None = None) -> Floats:
+    def roots_of(self, c: Floats, doubt: Floats | None = None) -> Floats:
         """Return both roots of coefficients along the lift, (3, ...) to (2, ...), as in `roots`.
 
-        With the sizes of the terms that they are sums of, double roots are exact.
+        With what of the coefficients is rounding, double roots are exact.
         """
         if self.lift_kind == "prismatic":
-            return _quadratic_roots(*(c if sizes is None else _settled(c, sizes)))
-        theta, alpha, ratio = _polar(c, sizes)
+            return _quadratic_roots(*(c if doubt is None else _settled(c, doubt)))
+        theta, alpha, ratio = _polar(c, doubt)
         found = (np.abs(ratio) <= 1) & ((c[1] != 0) | (c[2] != 0))
         return np.where(found, [theta - alpha, theta + alpha], np.nan)
 
     def vanishing(self, t: Floats, v: Floats) -> Ints:
         """Return the form nearest to zero at places, (k,); of a feature, if it is a contact."""
         products = self.products(t, v)
-        values = np.abs(products @ self.table[: self.count].reshape(-1, 9).T)
+        values = np.abs(products @ self._rows)
         if self.contacts.pairs:
             sides = (self.sides / self.powers).reshape(-1, 9)
             held = (products @ sides.T >= -WALL).reshape(len(t), -1, SIDES).all(axis=2)
@@ -216,23 +224,28 @@ class Plane:
         its form just there (at a fold, but for rounding) stays at the fold.
         """
         rows = np.asarray(roots, dtype=np.int64)
-        form, branch, turns = rows[..., 0], rows[..., 1], rows[..., 2]
-        columns, sizes = self._columns[:, :, form, None], self._column_sizes[:, form, None]
-        c = self._over(t, columns)
+        return self.values(rows, self.coefficients(rows[..., 0], t))
+
+    def values(self, roots: Ints, c: Floats) -> Floats:
+        """Evaluate roots from their forms' coefficients along the lift, as `follow` does."""
+        form, branch, turns = roots[..., 0], roots[..., 1], roots[..., 2]
+        doubt = self._doubt[..., form, None]
         if self.lift_kind == "revolute":
-            theta, alpha, _ = _polar(c, sizes)
+            theta, alpha, _ = _polar(c, doubt)
             values = theta + branch[..., None] * alpha + (TURN * turns)[..., None]
         else:
-            lower, upper = _quadratic_roots(*_settled(c, sizes), folds=True)
+            lower, upper = _quadratic_roots(*_settled(c, doubt), folds=True)
             values = np.clip(np.where(branch[..., None] < 0, lower, upper), *self.lift_ends)
-        for end, value in zip((LOWEST, HIGHEST), self.lift_ends, strict=True):
-            values[form == end.form] = value
+        if (form < 0).any():
+            for end, value in zip((LOWEST, HIGHEST), self.lift_ends, strict=True):
+                values[form == end.form] = value
         return np.asarray(values)
 
-    def blank(self, form: Ints, t: Floats) -> Bools:
-        """Tell where forms, (..., k), vanish on whole fibres over base values, (k, n)."""
-        c, size = self._over(t, self._columns[:, :, form, None]), self._column_sizes[:, form, None]
-        return np.asarray((np.abs(c) <= BLANK * size).all(axis=0) & (size > 0).any(axis=0))
+    def blank(self, form: Ints, c: Floats) -> Bools:
+        """Tell where forms, (..., k), with coefficients (3, ..., k, n) vanish on whole fibres."""
+        size = self._column_sizes[:, form, None]
+        blank: Bools = np.asarray((np.abs(c) <= BLANK * size).all(axis=0))
+        return blank & (size > 0).any(axis=0) if blank.any() else blank
 
 
 def normalised(tables: Floats) -> Floats:
@@ -241,11 +254,24 @@ def normalised(tables: Floats) -> Floats:
     return np.asarray(tables / np.where(largest > 0, largest, 1.0))
 
 
+def which(found: Bools) -> Ints:
+    """Return where an array, shape (n,), is true; of ten entries sooner than `np.flatnonzero`."""
+    return found.nonzero()[0]
+
+
 def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
     """Return index and value of every integer in range(start, end), for each entry in turn."""
     count = np.maximum(end - start, 0)
-    pick = np.repeat(np.arange(len(count)), count)
-    return pick, start[pick] + np.arange(len(pick)) - (np.cumsum(count) - count)[pick]
+    pick = np.arange(len(count)).repeat(count)
+    return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]
+
+
+def runs(values: Ints) -> tuple[Ints, Ints]:
+    """Return the first and the last index of each run of equal values."""
+    new = np.ones(len(values) + 1, dtype=np.bool_)
+    new[1:-1] = values[1:] != values[:-1]
+    edges = which(new)
+    return edges[:-1], edges[1:] - 1
 
 
 class Separation:
@@ -260,15 +286,15 @@ class Separation:
     def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
         contacts = plane.contacts
         chosen = np.full(contacts.pairs, True) if pairs is None else pairs
-        rows = np.flatnonzero(chosen[contacts.pair]) if contacts.pairs else np.arange(0)
-        self.plane, self.pairs = plane, np.flatnonzero(chosen)
+        rows = which(chosen[contacts.pair]) if contacts.pairs else np.arange(0)
+        self.plane, self.pairs = plane, which(chosen)
         self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
-        self.corners: Ints = np.flatnonzero(contacts.corners[rows])
+        self.corners: Ints = which(contacts.corners[rows])
         sides = plane.sides[rows][self.corners] / plane.powers
         self.sides: Floats = sides.swapaxes(0, 1).reshape(-1, 9)  # all first ones first
         clause, pair = contacts.clause[rows], contacts.pair[rows]
-        self.clauses: Ints = np.flatnonzero(np.diff(clause, prepend=-1))
-        self.starts: Ints = np.flatnonzero(np.diff(pair[self.clauses], prepend=-1))
+        self.clauses: Ints = runs(clause)[0]
+        self.starts: Ints = runs(pair[self.clauses])[0]
 
     def heights(self, t: Floats, v: Floats) -> Floats:
         """Return of each pair, at paired base and lift values, what parts it best, (len(t), pairs).
@@ -291,29 +317,27 @@ class Separation:
         return result
 
 
-def _polar(c: Floats, sizes: Floats | None = None) -> tuple[Floats, Floats, Floats]:
+def _polar(c: Floats, doubt: Floats | None = None) -> tuple[Floats, Floats, Floats]:
     """Return theta, alpha and the cosine of alpha of Theorem 2, as `circle.polar` does.
 
     Where terms cancel, as at a point in which a form touches zero along a curve, what is left of
-    the discriminant is rounding: coefficients that are sums of terms of these sizes cannot tell
-    two roots from one, and it is one.
+    the discriminant is rounding: coefficients in doubt by so much together cannot tell two roots
+    from one, and it is one.
     """
     c0, c1, c2 = c
     d, height = np.hypot(c1, c2), np.abs(c0)
     ratio = -c0 / np.maximum(d, ZERO_AMPLITUDE * height + TINY)
-    double = np.abs(np.abs(ratio) - 1) <= TANGENT
-    if sizes is not None:
-        double |= (np.abs(height - d) <= ROUNDING * sizes.sum(axis=0)) & (d > 0)
+    double = (np.abs(height - d) <= (TANGENT * d if doubt is None else doubt)) & (d > 0)
     ratio = np.where(double, np.copysign(1.0, ratio), ratio)
     alpha = np.arccos(np.minimum(np.maximum(ratio, -1.0), 1.0))
     return np.arctan2(c2, c1), alpha, ratio
 
 
-def _settled(c: Floats, sizes: Floats) -> tuple[Floats, Floats, Floats]:
+def _settled(c: Floats, doubt: Floats) -> tuple[Floats, Floats, Floats]:
     """Make double roots of quadratics exact where coefficients cannot tell, as in `_polar`."""
-    (c0, c1, c2), (e0, e1, e2) = c, ROUNDING * sizes
-    doubt = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
-    double = (np.abs(c1 * c1 - 4 * c0 * c2) <= doubt) & (c2 != 0)
+    (c0, c1, c2), (e0, e1, e2) = c, doubt
+    wide = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
+    double = (np.abs(c1 * c1 - 4 * c0 * c2) <= wide) & (c2 != 0)
     return np.where(double, c1 * c1 / np.where(double, 4 * c2, 1.0), c0), c1, c2
 
 

@@ -43,41 +43,64 @@ def polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
     >>> sorted(z.real.round(14).tolist())
     [-0.5, 0.3]
     """
-    rows = np.flatnonzero(np.abs(stack).max(axis=-1, initial=0.0) > NEGLIGIBLE)
-    stack = stack[rows]
-    kept = np.abs(stack) > NEGLIGIBLE * np.abs(stack).max(axis=-1, keepdims=True, initial=0.0)
-    first = kept.argmax(axis=-1)
-    last = stack.shape[-1] - 1 - kept[:, ::-1].argmax(axis=-1)
-    zero = rows[first > 0]  # roots that are trimmed with their coefficients
-    found = [(zero, np.zeros(len(zero), dtype=complex))]
-    for low, high in set(zip(first.tolist(), last.tolist(), strict=True)):
-        if high > low:
-            chosen = (first == low) & (last == high)
-            where, z = _companion_roots(stack[chosen, low : high + 1])
-            found.append((rows[chosen][where], z))
-    return np.concatenate([rows for rows, _ in found]), np.concatenate([z for _, z in found])
+    rows, stack, degree, zero = _trimmed(stack)
+    z = np.full((len(rows), stack.shape[1] - 1), np.nan, dtype=complex)
+    for d in set(degree.tolist()) - {0}:
+        chosen = degree == d
+        z[chosen, :d] = _companion_roots(stack[chosen, : d + 1])
+    where, multiple, simple = _multiple_roots(stack, z)
+    of, place = np.nonzero(simple)
+    found = np.zeros(len(zero)), multiple, _polished(stack, z)[of, place]
+    return np.concatenate([zero, rows[where], rows[of]]), np.concatenate(found)
 
 
-def _companion_roots(stack: Complexes) -> tuple[Ints, Complexes]:
-    """Return rows and roots of polynomials with non-zero ends."""
+def _trimmed(stack: Complexes) -> tuple[Ints, Complexes, Ints, Ints]:
+    """Return rows that are not zero, their polynomials from the first coefficient, and degrees.
+
+    Zeros stand behind the last coefficient. Of the rows that were trimmed in front comes a list:
+    they had the root zero.
+    """
+    sizes = np.abs(stack)
+    largest = sizes.max(axis=1, initial=0.0)
+    rows = np.flatnonzero(largest > NEGLIGIBLE)
+    kept = sizes[rows] > NEGLIGIBLE * largest[rows, None]
+    first = kept.argmax(axis=1)
+    last = stack.shape[1] - 1 - kept[:, ::-1].argmax(axis=1)
+    degree = last - first
+    term = np.arange(degree.max(initial=1) + 1)
+    place = np.minimum(first[:, None] + term, last[:, None])
+    moved = np.where(term <= degree[:, None], stack[rows[:, None], place], 0.0)
+    return rows, moved, degree, rows[first > 0]
+
+
+def _companion_roots(stack: Complexes) -> Complexes:
+    """Return the roots, (n, degree), of polynomials with non-zero ends."""
     degree = stack.shape[1] - 1
-    matrices = np.zeros((len(stack), degree, degree), dtype=complex)
-    matrices[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    if degree == 2:
+        return _quadratic_roots(*stack.T)
+    matrices = np.empty((len(stack), degree, degree), dtype=complex)
+    matrices[:] = np.eye(degree, k=-1)
     matrices[:, :, -1] = -stack[:, :-1] / stack[:, -1:]
-    z = np.asarray(np.linalg.eigvals(matrices), dtype=complex)
-    rows, multiple, simple = _multiple_roots(stack, z)
-    return (
-        np.concatenate([np.nonzero(simple)[0], rows]),
-        np.concatenate([_polished(stack, z)[simple], multiple]),
-    )
+    return np.asarray(np.linalg.eigvals(matrices), dtype=complex)
+
+
+def _quadratic_roots(c0: Complexes, c1: Complexes, c2: Complexes) -> Complexes:
+    """Return both roots, (n, 2), of c0 + c1 z + c2 z^2; the larger first, which nothing cancels."""
+    root = np.sqrt(c1 * c1 - 4 * c0 * c2)
+    root = np.where((c1.conj() * root).real < 0, -root, root)
+    half = -(c1 + root) / 2
+    return np.array([half / c2, c0 / half]).T
 
 
 def _multiple_roots(stack: Complexes, z: Complexes) -> tuple[Ints, Complexes, Bools]:
-    """Return rows and places of multiple roots, and which of the computed roots (n, d) are none."""
-    simple = np.ones(z.shape, dtype=np.bool_)
+    """Return rows and places of multiple roots, and which of the computed roots (n, d) are none.
+
+    Rows with fewer roots end with NaN.
+    """
+    simple: Bools = np.asarray(~np.isnan(z))
     found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex))]
     gaps = np.abs(z[:, :, None] - z[:, None, :])
-    company = (gaps <= _spread(z.shape[1])).sum(axis=-1).max(axis=-1)
+    company = (gaps <= _spread(z.shape[1])).sum(axis=-1).max(axis=-1, initial=0)
     for m in range(int(company.max(initial=0)), 1, -1):
         near = np.flatnonzero(company >= m)
         k, one = np.nonzero((gaps[near] <= _spread(m)).sum(axis=-1) >= m)
@@ -125,19 +148,21 @@ def _taylor(stack: Complexes, j: int) -> Complexes:
 
 def _polished(stack: Complexes, z: Complexes) -> Complexes:
     """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
-    slopes = _taylor(stack, 1)
-    for _ in range(2):
-        value, slope = _horner(stack, z), _horner(slopes, z)
-        with np.errstate(divide="ignore", invalid="ignore"):
+    both = np.zeros((2, *stack.shape), dtype=complex)
+    both[0], both[1, :, :-1] = stack, stack[:, 1:] * np.arange(1, stack.shape[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(2):
+            value, slope = _horner(both, z)
             step = value / slope
-        z = np.where(np.abs(step) < 1e-6, z - step, z)
+            z = np.where(np.abs(step) < 1e-6, z - step, z)
     return z
 
 
 def _horner(stack: NDArray[np.inexact], z: NDArray[np.inexact]) -> NDArray[np.inexact]:
-    result = np.empty_like(z)
-    result[...] = stack[:, -1:]
-    for k in reversed(range(stack.shape[1] - 1)):
+    """Evaluate polynomials (..., n, d + 1) at places, a row of them each, (n, k)."""
+    result = np.empty((*stack.shape[:-1], z.shape[1]), dtype=z.dtype)
+    result[...] = stack[..., -1:]
+    for k in reversed(range(stack.shape[-1] - 1)):
         result *= z
-        result += stack[:, k : k + 1]
+        result += stack[..., k : k + 1]
     return result

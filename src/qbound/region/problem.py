@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -143,8 +143,9 @@ class Problem:
         asks_nothing = k < len(self.distances) and self.distances[k] == 0
         return value < 0 or (value == 0 and not asks_nothing)
 
+    @cached_property
     def constants(self) -> dict[int, float]:
-        """Return the forms that depend on neither joint, by index, and their values.
+        """The forms that depend on neither joint, by index, and their values.
 
         A value that rounding alone parts from zero is zero: such a boundary touches everywhere.
         """
@@ -170,11 +171,19 @@ def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
         If not exactly two joints are left free, or `held` names no joint or no finite number.
     """
     values = robot.held_indices(held or {})
-    one, other = free_pair(robot, values)
-    used = robot.used
-    joints = [robot.joints[j] for j in (one, other)]
+    return _slice_problem(robot, values) if values else _whole_problem(robot)
+
+
+@lru_cache(maxsize=4)
+def _whole_problem(robot: Robot) -> Problem:
+    """State the clearance rule where nothing is held; a robot that is asked again has the same."""
+    return _slice_problem(robot, {})
+
+
+def _slice_problem(robot: Robot, held: Mapping[int, float]) -> Problem:
+    joints = [robot.joints[j] for j in free_pair(robot, held)]
     ranges = [joint.limits for joint in joints]
-    return state(robot, used, ranges, [limit_names(joint.name) for joint in joints], values)
+    return state(robot, robot.used, ranges, [limit_names(joint.name) for joint in joints], held)
 
 
 def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:

@@ -15,9 +15,10 @@ from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region.cells import CellComplex
-from qbound.region.components import Component, bounded, closures, measured, winding_table
+from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import Decomposition, decompose
 from qbound.region.emptiness import irreducible
+from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
 from qbound.region.problem import Problem, Rule, clearance_problem
@@ -398,7 +399,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    constants = problem.constants()
+    constants = problem.constants
     inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
@@ -407,22 +408,22 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
         nothing = CellComplex(Decomposition(plane, np.array(plane.ends), *none, np.zeros(0)))
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
     cells = CellComplex(decompose(plane))
-    if not cells.cells:
+    if not len(cells.slabs):
         return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
     found = measured(cells, problem, home, base)
     if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
         found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
-    bounding = [[BoundaryLoop(edges, f.shift) for edges in cells.loops(f.windings)] for f in found]
-    layout = Layout(cells, base, inner.names, inner.limits)
-    loops = iter(
-        layout.arcs(list(chain(*bounding)), winding_table(cells, [f.windings for f in found]))
-    )
+    edges = half_edges(cells)
+    rings = find_loops(cells, edges)
+    bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
+    layout = Layout(cells, edges, base, inner.names, inner.limits)
+    loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
     components = [
-        (bounded(f, base, list(islice(loops, len(own)))), f.windings)
+        (bounded(f, base, list(islice(loops, len(own)))), cells.parts.cells[f.part])
         for f, own in zip(found, bounding, strict=True)
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
-    owner = {k: i for i, (_, windings) in enumerate(components) for k in windings}
+    owner = {k: i for i, (_, own) in enumerate(components) for k in own}
     every = tuple(component for component, _ in components)
     return Region(every, problem, cells, base, owner, irrelevant=irrelevant)
 
