@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.geometry.covering import AT_ONCE
-from qbound.geometry.mesh_solids import Convex, winding_numbers
+from qbound.geometry.covering import IN_CACHE
+from qbound.geometry.mesh_solids import Convex, heights, winding_numbers
 from qbound.geometry.surface_distance import SurfaceDistance, one_a_cell
 from qbound.tolerances import OUTWARD
 
@@ -32,11 +32,11 @@ def convex_balls(solid: Convex, starts: Floats, normals: Floats) -> tuple[Floats
     :math:`r (1 - m \cdot n) \le -(m \cdot p + o)`.
     """
     radii = np.full(len(starts), np.inf)
-    step = max(1, AT_ONCE // max(1, len(starts)))
+    step = max(1, IN_CACHE // max(1, len(starts)))
     for k in range(0, len(solid.planes), step):
         planes = solid.planes[k : k + step]
-        room = np.maximum(-(starts @ planes[:, :3].T + planes[:, 3]), 0.0)
-        turned = 1 - normals @ planes[:, :3].T
+        room = np.maximum(-heights(starts, planes), 0.0)
+        turned = -heights(normals, planes * [1, 1, 1, 0] - [0, 0, 0, 1])
         room = np.where(turned > 1e-9, room / np.where(turned > 1e-9, turned, 1.0), np.inf)
         radii = np.minimum(radii, room.min(axis=1))
     kept = np.isfinite(radii)

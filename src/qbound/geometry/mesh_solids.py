@@ -40,8 +40,7 @@ class Convex(NamedTuple):
         least = np.full(len(places), np.inf)
         step = max(1, 4 * IN_CACHE // max(1, len(places)))
         for k in range(0, len(self.planes), step):
-            part = self.planes[k : k + step]
-            least = np.minimum(least, -(places @ part[:, :3].T + part[:, 3]).max(axis=1))
+            least = np.minimum(least, -heights(places, self.planes[k : k + step]).max(axis=1))
         return least - self.error
 
 
@@ -55,6 +54,17 @@ class OrientedBox(NamedTuple):
     axes: Floats
     size: Floats
     error: float
+
+
+def heights(places: Floats, planes: Floats) -> Floats:
+    """Return how far places lie before planes, shape (places, planes).
+
+    Products of so few columns are no faster as one of matrices, whose threads cost twice the time.
+    """
+    found = np.broadcast_to(planes[:, 3], (len(places), len(planes))).copy()
+    for i in range(3):
+        found += places[:, i, None] * planes[:, i]
+    return found
 
 
 def hull_of(corners: Floats) -> Convex | None:
@@ -122,7 +132,7 @@ def _below_a_face(triangles: Floats, planes: Floats, error: float) -> float:
     step = max(1, AT_ONCE // (3 * len(planes)))
     for k in range(0, len(doubtful), step):
         some = doubtful[k : k + step]
-        below = -(triangles[some] @ planes[:, :3].T + planes[:, 3])
+        below = -heights(triangles[some].reshape(-1, 3), planes).reshape(len(some), 3, -1)
         depth[some] = below.max(axis=1).min(axis=1)
         if depth[some].max() > error:
             return math.inf
