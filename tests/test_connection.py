@@ -194,20 +194,28 @@ def test_a_straight_line_is_proved_where_and_only_where_it_is_safe():
             for s in np.linspace(0, 1, 7):
                 assert Verdict.PROVED in proof.verdicts(one + s * (other - one))
     assert 5 < sum(found) < 60
-    assert connection(PAPER, [0.0, 0.0], [0.1, -0.4]).path.tolist() == [[0.0, 0.0], [0.1, -0.4]]
+    assert connection(PAPER, [0.0, 0.0], [0.1, -0.4], line=True).path.tolist() == [
+        [0.0, 0.0],
+        [0.1, -0.4],
+    ]
 
 
 def test_a_straight_line_goes_round_the_joint_and_stays_within_its_limits():
     free = stated(RR, [STRIP])
-    there = connection(free, [-2.5, 0.2], [2.5, 3.0])
+    there = connection(free, [-2.5, 0.2], [2.5, 3.0], line=True)
     assert there.path.shape == (2, 2)
     assert np.allclose(there.path[1], [2.5 - 2 * np.pi, 3.0])
-    assert connection(free, [2.5 + 8 * np.pi, 0.2], [-2.5, 3.0]).path.shape == (2, 2)
+    assert connection(free, [2.5 + 8 * np.pi, 0.2], [-2.5, 3.0], line=True).path.shape == (2, 2)
     held = stated(RR, [STRIP], ((-3.1, 3.1), None))
-    assert connection(held, [-2.5, 0.2], [-2.0, 3.0]).path.shape == (2, 2)
+    assert connection(held, [-2.5, 0.2], [-2.0, 3.0], line=True).path.shape == (2, 2)
     assert along_straight_line(start(held), np.array([-1.2, 0]), np.array([1.2, 0])) is None
-    same = connection(free, [2.0, 0.0], [2.0, 0.0])
+    same = connection(free, [2.0, 0.0], [2.0, 0.0], line=True)
     assert (same.answer, len(same.path)) == ("connected", 2)
+
+
+def test_an_angle_that_rounds_turns_off_has_no_straight_line():
+    for huge in (1e300, -1e12):
+        assert connection(PAPER, [0.0, 0.0], [huge, 0.0], most=500, line=True).answer == "undecided"
 
 
 def test_a_straight_line_along_the_border_is_not_claimed():

@@ -1,10 +1,10 @@
 """Proofs that two configurations are joined, or that nothing joins them.
 
 Joined: the straight line from one to the other lies in cells that are proved feasible throughout
-(`straight`), or a chain of such cells, each sharing a face with the next, leads over. Separated: the cells that are not proved infeasible
-fall into groups that do not touch, not even in a corner, and the two configurations lie in
-different groups; every path between them meets a cell on which some boundary is violated
-throughout. Joints that turn all the way round close the range on itself.
+(`straight`), or a chain of such cells, each sharing a face with the next, leads over. Separated:
+the cells that are not proved infeasible fall into groups that do not touch, not even in a corner,
+and the two configurations lie in different groups; every path between them meets a cell on which
+some boundary is violated throughout. Joints that turn all the way round close the range on itself.
 """
 
 from __future__ import annotations
@@ -94,7 +94,12 @@ class Groups:
 
 
 def connection(
-    problem: ExactProblem, one: ArrayLike, other: ArrayLike, most: int = MOST_CELLS
+    problem: ExactProblem,
+    one: ArrayLike,
+    other: ArrayLike,
+    most: int = MOST_CELLS,
+    *,
+    line: bool = False,
 ) -> Connection:
     """Prove that two configurations are connected, or that they are not.
 
@@ -105,6 +110,8 @@ def connection(
         Joint values, rad or length; each double counts as it is.
     most : int
         Undecided cells at which to give up.
+    line : bool
+        Whether the straight line is tried first: a path of one leg, in several cells.
 
     Raises
     ------
@@ -129,8 +136,9 @@ def connection(
             raise ValueError(f"{q} is no configuration of {len(problem.kinds)} joints")
     paving = start(problem)
     for q in (one, other):
-        _verdicts(paving, q)  # refuses what lies outside the limits
-    if straight := _straight(paving, np.asarray(one, dtype=float), np.asarray(other, dtype=float)):
+        _verdicts(paving, q)  # refuses what lies outside of the limits
+    ends = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
+    if line and (straight := _straight(paving, *ends)):
         return straight
     while True:
         said = [_verdicts(paving, q) for q in (one, other)]
@@ -185,7 +193,7 @@ def _straight(paving: Paving, one: Floats, other: Floats) -> Connection | None:
     """Try the straight line, the shorter way round; not from angles that a turn more rounds off."""
     if max(np.abs(one).max(), np.abs(other).max()) > MOST_ANGLE:
         return None
-    ends = one, _near(other, one, _circles(paving))
+    ends = one, _near(other, one, all_round(paving))
     proof = along_straight_line(paving, *ends)
     return None if proof is None else Connection(Verdict.PROVED, proof, np.array(ends))
 
