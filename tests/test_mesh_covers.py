@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from qbound.geometry import mesh_covers, surface_distance
-from qbound.geometry.covering import Work, few, uncovered, within
+from qbound.geometry.covering import PER_CORNER, Work, few, uncovered, within
 from qbound.geometry.mesh_covers import mesh_cover
 from qbound.geometry.mesh_solids import convex_solid
 from qbound.geometry.surface_distance import SurfaceDistance, one_a_cell
@@ -74,7 +74,7 @@ COVERED = {
 @pytest.fixture
 def _coarse(monkeypatch) -> None:
     """Take fewer samples and places, for speed: what is said of a cover does not depend on it."""
-    for name, number in {"SAMPLES": 20_000, "DEMANDS": 1500, "PLACES": 800, "STEPS": 20}.items():
+    for name, number in {"SAMPLES": 50_000, "DEMANDS": 1500, "PLACES": 800, "STEPS": 20}.items():
         monkeypatch.setattr(mesh_covers, f"MOST_{name}", number)
 
 
@@ -133,9 +133,11 @@ def test_work_is_counted_and_a_cover_that_takes_more_is_refused(monkeypatch) -> 
     ring, centre = fan(1.0), np.zeros((1, 3))
     work = Work(10**6, "too much")
     assert not len(uncovered(ring, centre, np.array([1.1]), work))
-    assert work.left == 10**6 - 3 * len(ring)
+    assert work.left == 10**6 - 3 * len(ring) * (1 + PER_CORNER)
     with pytest.raises(ValueError, match="too much"):
-        uncovered(ring, centre, np.array([1.1]), Work(3 * len(ring) - 1, "too much"))
+        uncovered(
+            ring, centre, np.array([1.1]), Work(3 * len(ring) * (1 + PER_CORNER) - 1, "too much")
+        )
     monkeypatch.setattr(mesh_covers, "MOST_WORK", 1000)
     with pytest.raises(ValueError, match="too long for an excess of 0"):
         mesh_cover(shell(0.1, 0.9999), True, 0.03)

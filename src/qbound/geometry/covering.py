@@ -30,6 +30,9 @@ AT_ONCE = 4_000_000
 IN_CACHE = 50_000
 """Distances of a chunk of which several arrays are held at once."""
 
+PER_CORNER = 40
+"""Distances that take as long as all else that is done about a corner of a simplex."""
+
 MOST_TRIED = 200
 """Sets that may take another's place at most, of all that could evenly many."""
 
@@ -94,7 +97,7 @@ def uncovered(
     centres : ndarray, shape (m, n)
     radii : ndarray, shape (m,)
     work : Work, optional
-        A step is the distance of a corner from a centre.
+        A step is the distance of a corner from a centre; halving costs `PER_CORNER`.
 
     Returns
     -------
@@ -126,7 +129,7 @@ def uncovered(
         if not len(cells) or len(cells) > MOST_CELLS:
             break
         if work is not None:
-            work.spend(cells.shape[0] * cells.shape[1] * len(centres))
+            work.spend(cells.shape[0] * cells.shape[1] * (len(centres) + PER_CORNER))
         inside, outside = _judged(cells, centres, shrunk)
         left.append(cells[outside])
         cells = cells[~inside & ~outside]

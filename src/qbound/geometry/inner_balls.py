@@ -57,7 +57,7 @@ def solid_balls(
     apart : float
         Of centres within about that of each other one is kept; length.
     """
-    centres = starts - _shrunk(surface, starts, normals)[:, None] * normals
+    centres = starts - _shrunk(surface.rough(), starts, normals)[:, None] * normals
     centres = centres[one_a_cell(centres, len(centres), apart)[0]]
     depths = surface.depths(centres)
     kept = depths > 0

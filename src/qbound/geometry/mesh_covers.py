@@ -31,8 +31,12 @@ from qbound.tolerances import OUTWARD
 
 Floats = NDArray[np.float64]
 
-MOST_SAMPLES = 300_000
+MOST_SAMPLES = 700_000
 """Samples of the triangles, about, from which depths are known."""
+
+PARTS = 3
+"""So many parts has a triangle, about, for each square of the longest edge that it holds: halving
+leaves edges of half that length."""
 
 MOST_DEMANDS = 10_000
 """Samples, about, that balls are chosen to hold at first."""
@@ -172,8 +176,8 @@ def _edge_of_samples(triangles: Floats, areas: Floats, longest: float) -> float:
     """Return the least edge, no shorter than one, of parts of triangles that are not too many."""
     base = np.linalg.norm(edges(triangles), axis=-1).max(axis=1)
     height = 2 * areas / np.where(base > 0, base, 1.0)
-    longest = max(longest, math.sqrt(2 * float(areas.sum()) / MOST_SAMPLES))
-    while ((1 + base / longest) * (1 + height / longest) - 1).sum() > MOST_SAMPLES:
+    longest = max(longest, math.sqrt(PARTS * 2 * float(areas.sum()) / MOST_SAMPLES))
+    while PARTS * ((1 + base / longest) * (1 + height / longest) - 1).sum() > MOST_SAMPLES:
         longest *= 1.1
     return longest
 
@@ -235,7 +239,7 @@ def _chosen(
             return centres[chosen], radii[chosen]
         missed = left.reshape(-1, 3)
         missed = missed[one_a_cell(missed, MOST_DEMANDS, excess / 20)[0]]
-        work.spend(len(missed) * len(centres))
+        work.spend(len(missed) * len(centres) + held.size // 8)  # which is copied
         held = np.vstack([held, within(missed, centres, radii - SURE * excess)])
         open_ones = ~held[:, chosen].any(axis=1)
         chosen = np.append(chosen, few(held[open_ones].T))

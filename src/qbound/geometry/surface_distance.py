@@ -26,6 +26,9 @@ MOST_ENTRIES = 4_000_000
 MOST_VISITS = 200_000_000
 """Distances from samples in all searches together, some 4 ns each."""
 
+MOST_ROUGH = 30_000
+"""Samples, about, that are enough to find where balls lie: the surface bends little between."""
+
 SHARE = 0.25
 """Part of those left that one search may take which is not the last."""
 
@@ -109,6 +112,11 @@ class SurfaceDistance:
         self._radii = np.zeros(len(first))
         np.maximum.at(self._radii, group, away)
         self._radii *= 1 + OUTWARD
+
+    def rough(self) -> SurfaceDistance:
+        """Return the same of fewer samples, by which to search: its depths would be too large."""
+        few, _ = one_a_cell(self.samples, MOST_ROUGH, self.spread)
+        return SurfaceDistance(self.samples[few], self.spread)
 
     def within(self, places: Floats, radii: Floats) -> Indices:
         """Find a sample that lies in each ball by more than the spread.
