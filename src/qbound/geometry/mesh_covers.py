@@ -233,7 +233,7 @@ def _chosen(
             )
         if k < ROUNDS:
             steps = min(MOST_STEPS, MOST_CHANGES // len(chosen))
-            chosen = fewer(np.ascontiguousarray(held.T), chosen, steps)
+            chosen = fewer(_transposed(held), chosen, steps)
         left = uncovered(triangles, centres[chosen], radii[chosen], work)
         if not len(left):
             return centres[chosen], radii[chosen]
@@ -244,3 +244,11 @@ def _chosen(
         open_ones = ~held[:, chosen].any(axis=1)
         chosen = np.append(chosen, few(held[open_ones].T))
     raise ValueError(f"the mesh is not covered to an excess of {excess:g}; allow more")
+
+
+def _transposed(table: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the transposed table, row by row in memory: by blocks, a third of the time."""
+    found = np.empty(table.shape[::-1], dtype=bool)
+    for k in range(0, len(table), 256):
+        found[:, k : k + 256] = table[k : k + 256].T
+    return found
