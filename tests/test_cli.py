@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
+import tomllib
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +15,7 @@ from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form, recorded
 from qbound import load_robot, packaged_robots
+from qbound.__main__ import start
 from qbound.cli import main
 
 
@@ -179,6 +183,33 @@ def test_a_place_or_a_passage_that_is_not_safe_is_status_1(capsys):
     assert status == 1
     assert "go: no, from component 0 to component 1" in out
     assert "every path crosses the loop of" in out
+
+
+def test_the_first_of_several_values_may_follow_an_equals_sign(capsys):
+    apart = run(capsys, "workspace", "minervabot-v2", "--go", "-10deg,-20deg", "0,-5deg")
+    joined = run(capsys, "workspace", "minervabot-v2", "--go=-10deg,-20deg", "0,-5deg")
+    assert joined == apart
+    assert "go: yes, from component 0 to component 0" in joined[1]
+    status, _, err = run(capsys, "workspace", "minervabot-v2", "--go=-10deg,-20deg")
+    assert status == 2
+    assert "--go: expected 2 arguments" in err
+
+
+def test_ctrl_c_while_the_command_is_loaded_is_no_fault_of_ours(capsys, monkeypatch):
+    class Stopped:
+        """Finds nothing: it is stopped."""
+
+        def find_spec(self, *_):
+            raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "qbound.cli")
+    monkeypatch.setattr(sys, "meta_path", [Stopped()])
+    status = start()
+    monkeypatch.undo()
+    assert (status, capsys.readouterr()) == (130, ("", "qbound: stopped\n"))
+    pyproject = Path(__file__).parents[1] / "pyproject.toml"
+    scripts = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]["scripts"]
+    assert scripts == {"qbound": "qbound.__main__:start"}
 
 
 def test_an_unsafe_home_pose_has_no_workspace_and_says_why(capsys, tmp_path):

@@ -181,6 +181,17 @@ def test_a_path_outside_the_region_names_boundary_and_place(capsys) -> None:
     assert not content["feasible"]
 
 
+@pytest.mark.parametrize("files", ["--csv -", "--json -", "--csv path.csv --svg path.svg"])
+def test_a_path_outside_the_region_is_never_written_in_silence(
+    capsys, tmp_path, monkeypatch, files
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, _, err = run(capsys, f"traverse minervabot-v2 2 3 4 {files}")
+    assert status == 1
+    assert err == "qbound: the path is not feasible: it violates B7, first on 3 to 4\n"
+    assert run(capsys, f"traverse minervabot-v2 1 2 --scale 0.9 {files}")[2] == ""
+
+
 def test_all_arcs_lead_round_the_component(capsys) -> None:
     status, out, _ = run(capsys, "traverse minervabot-v2 --arcs 1 2 3 4 5 6 --json -")
     content = json.loads(out)

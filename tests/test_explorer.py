@@ -33,7 +33,7 @@ from support import scenes
 from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"
-POSES = 3000
+POSES = 1000
 
 
 class Script:
@@ -498,6 +498,7 @@ def test_every_script_stands_in_the_page():
     [
         ("Robot", lambda data: data),
         ("Joint", lambda data: data["joints"][0]),
+        ("Step", lambda data: data["steps"][0]),
         ("RobotPoint", lambda data: data["points"][0]),
         ("View", lambda data: data["views"][0]),
         ("Limit", lambda data: data["limits"][0]),

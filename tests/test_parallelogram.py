@@ -135,12 +135,8 @@ def test_what_does_not_know_it_says_so(tmp_path, capsys) -> None:
     with pytest.raises(ValueError, match="joint 'p' is a parallelogram: no plane of motion"):
         load_robot(file).plane  # noqa: B018
     box = ["--box", "a=0:0.1", "p=0:0.1", "c=0:0.1"]
-    for command in (
-        ["certify", str(file), *box, "-o", str(tmp_path / "proof.json")],
-        ["explore", str(file), "--slice", "c=0", "-o", str(tmp_path / "page.html")],
-    ):
-        assert main(command) == 2
-        assert "parallelogram" in capsys.readouterr().err
+    assert main(["certify", str(file), *box, "-o", str(tmp_path / "proof.json")]) == 2
+    assert "parallelogram" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["arm.toml"]
 
 

@@ -82,9 +82,13 @@ KNOWN = {
 @pytest.mark.parametrize(("what", "seed"), [(what, seed) for seed, what in enumerate(KNOWN, 3)])
 def test_the_volume_is_the_known_one_within_its_error(what, seed):
     make, volume = KNOWN[what]
-    found = reach(make(), 0.1, seed=seed, points=512, scrambles=2)
+    found = reach(make(), 0.1, seed=seed, points=256, scrambles=4)
     assert abs(found.volume - volume) < found.error
     assert found.error < 0.25 * volume
+    # Chance: Student's t for three degrees of freedom, 3.18 standard errors of the scrambles.
+    deviation = found.volumes[:, 0].std(ddof=1)
+    assert found.chance == pytest.approx(3.182446 * deviation / 2, rel=1e-6)
+    assert found.chance < found.error
     assert found.marked_volume > volume - 1e-9
 
 

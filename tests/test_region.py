@@ -427,6 +427,7 @@ def test_what_a_region_is_made_of_prints_on_one_line(name):
         assert "\n" not in repr(thing)
         assert len(repr(thing)) <= 120
     assert arc.boundary in repr(arc)
+    assert f" {region.area_unit}, " in repr(region.components[0])
 
 
 @pytest.mark.parametrize("wrong", ["minervabot-v2", None, Path("arm.toml")])

@@ -63,6 +63,21 @@ def three_joints():
     return parse_robot(robot_table(rows, {"q1": 0.3, "q2": 0.4, "q3": -0.2}, "3"))
 
 
+def palletizer(turn=SIDE, last=SIDE):
+    """A turn, a parallelogram with a point on its bar, and a wrist."""
+    bar = {"crank": [0.6, 0.0, 0.3], "bar": "bar", "limits": [-2.0, 2.5]}
+    rows = [
+        joint("revolute", "0", "1", ORIGINS[0], turn),
+        joint("parallelogram", "1", "2", ORIGINS[1], SIDE, **bar),
+        joint("revolute", "2", "3", [0.3, 0.0, 0.1], last),
+    ]
+    table = robot_table(rows, {"q1": 0.3, "q2": 0.4, "q3": -0.2}, "3")
+    table["point"].append({"name": "p", "frame": "bar", "at": [0.4, 0.0, 0.1], "radius": 0.1})
+    table["boundary"].append({"name": "Q", "type": "pair", "points": ["t", "p"]})
+    table["boundary"].append({"name": "S", "type": "pair", "points": ["p", "b"]})
+    return parse_robot(table)
+
+
 def out_of_plane():
     rows = [
         joint("revolute", "0", "1", ORIGINS[0], [0.3, -0.2, 1.0], rpy=[0.2, -0.4, 0.5]),
@@ -81,5 +96,9 @@ ROBOTS = {
     "3R, first held": lambda: (three_joints(), {0: 0.4}),
     "3R, second held": lambda: (three_joints(), {1: -0.9}),
     "3R, third held": lambda: (three_joints(), {2: 0.7}),
+    "parallelogram": lambda: (palletizer(), {2: -0.2}),
 }
-SPATIAL = {"out of the plane": lambda: (out_of_plane(), {})}
+SPATIAL = {
+    "out of the plane": lambda: (out_of_plane(), {}),
+    "parallelogram in space": lambda: (palletizer([0.2, 0.3, 1.0], [1.0, 0.0, 0.2]), {0: 0.3}),
+}

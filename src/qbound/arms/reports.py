@@ -102,8 +102,9 @@ def reach_lines(found: Reach) -> Iterator[str]:
         yield "no feasible configuration was found"
         return
     low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in box)
-    chance = f"{found.standard_error:.2g}"
-    yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 (chance alone: {chance})"
+    times = found.chance / found.standard_error if found.standard_error else 0.0
+    chance = f"chance alone: {found.chance:.2g}, {times:.3g} standard errors"
+    yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 ({chance})"
     yield "  an estimate, no bound: chance, places that are not found yet, and the voxels' edge"
     yield f"{counted(int(found.reached.sum()), 'voxel')} of {found.grid.edge:g} {unit}"
     yield f"  from ({low}) to ({high}) {unit}"

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.model.robot import Parallelogram, Point, Robot
-from qbound.printable import printable
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -57,17 +56,14 @@ class Chain:
     """
 
     def __init__(self, robot: Robot, points: Sequence[Point]) -> None:
-        self.steps = tuple(_steps(robot))
-        self._depths = {robot.base: 0}
-        for label in (label for joint in robot.joints for label in joint.labels):
-            self._depths[label] = len(self._depths)
+        self.steps, self._depths = tuple(steps(robot)), depths(robot)
         self.points = tuple(sorted(points, key=lambda point: self.depth(point.frame)))
         self.depths = np.array([self.depth(point.frame) for point in self.points], dtype=np.intp)
         self._turned = [np.eye(3), *(axis_last(step.axis) for step in self.steps)]
         turned = self._turned
-        steps = list(enumerate(self.steps))
-        self._moves = [turned[k].T @ step.origin for k, step in steps]
-        self._turns = [turned[k].T @ step.mount @ turned[k + 1] for k, step in steps]
+        numbered = list(enumerate(self.steps))
+        self._moves = [turned[k].T @ step.origin for k, step in numbered]
+        self._turns = [turned[k].T @ step.mount @ turned[k + 1] for k, step in numbered]
         at = np.array([p.at for p in self.points], dtype=float).reshape(-1, 3)
         ends = np.searchsorted(self.depths, np.arange(len(turned) + 1))
         self._slices = [slice(*ends[k : k + 2]) for k in range(len(turned))]
@@ -153,29 +149,18 @@ class Chain:
         return axes, origin - self._moves[k] @ axes
 
 
-def _steps(robot: Robot) -> Iterator[Step]:
+def depths(robot: Robot) -> dict[str, int]:
+    """Count the steps between the base and each frame, by its label."""
+    labels = [robot.base, *(label for joint in robot.joints for label in joint.labels)]
+    return {label: depth for depth, label in enumerate(labels)}
+
+
+def steps(robot: Robot) -> Iterator[Step]:
+    """Yield the motions of a robot's chain, from the base on; each has a frame of its own."""
     for j, joint in enumerate(robot.joints):
         yield Step(j, 1, not joint.turns, joint.origin, joint.mount, joint.axis)
         if isinstance(joint, Parallelogram):
             yield Step(j, -1, False, joint.crank, np.eye(3), joint.axis)
-
-
-def refuse_parallelograms(robot: Robot, why: str) -> None:
-    """Refuse, by name, a joint that moves two frames and turns only one of them.
-
-    Parameters
-    ----------
-    why : str
-        What cannot be done with it.
-
-    Raises
-    ------
-    ValueError
-        If there is one.
-    """
-    for joint in robot.joints:
-        if isinstance(joint, Parallelogram):
-            raise ValueError(f"joint {printable(joint.name)!r} is a parallelogram: {why}")
 
 
 def axis_last(axis: Floats) -> Floats:

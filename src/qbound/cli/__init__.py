@@ -18,7 +18,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any, NoReturn
 
 from qbound.cli.files import check_targets
@@ -207,12 +207,22 @@ class _Version(argparse.Action):
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that takes ``-45deg`` for a value, and quotes nothing raw."""
+    """A parser that takes ``-45deg`` for a value, and quotes nothing raw.
+
+    Of an option with several values, too, the first may follow a ``=``.
+    """
 
     def __init__(self, *names: Any, **options: Any) -> None:
         """Set what looks like a negative number; argparse knows plain ones only."""
         super().__init__(*names, **{"formatter_class": _formatter} | options)
         self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        words = sys.argv[1:] if args is None else args
+        several = [a.option_strings for a in self._actions if isinstance(a.nargs, int) and a.nargs]
+        names = {name for group in several for name in group}
+        split = (w.split("=", 1) if w.partition("=")[0] in names else [w] for w in words)
+        return super().parse_known_args([*chain.from_iterable(split)], namespace)
 
     def error(self, message: str) -> NoReturn:
         """Print the usage and the message, and stop with status 2."""

@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     one, other = (configuration(robot, options.values[k : k + n]) for k in (0, n))
     problem = exact_problem(exact_robot(options.robot))
     with working("looking for a passage"):
-        found = connection(problem, one, other)
+        found = connection(problem, one, other, line=True)
     document = (options.json, lambda: json_text(connection_document(robot, [one, other], found)))
     deliver([document], [connection_line(found)])
     return STATUS[found.answer]

@@ -7,9 +7,10 @@ from typing import Any
 
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import Output, deliver
+from qbound.cli.terminal import complain
 from qbound.cli.values import held
 from qbound.export.formats import json_text
-from qbound.export.routes import route_csv, route_document, route_lines
+from qbound.export.routes import infeasible_line, route_csv, route_document, route_lines
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.model.rows import LARGEST
@@ -31,7 +32,8 @@ def add_to(commands: Any) -> None:
         "traverse",
         help="visit vertices or arcs of a region in an order",
         description="Visit vertices of a component along straight lines in joint space, or follow\n"
-        "its arcs. Vertices and arcs count from 1; `qbound draw` shows the numbers of vertices.",
+        "its arcs. Vertices and arcs count from 1; `qbound draw` shows the numbers of vertices.\n"
+        "A path that leaves the region is written, too: the status is 1, and a line says so.",
         epilog="example: qbound traverse minervabot-v2 1 2 3 4 5 6 --scale 0.9 --csv path.csv\n"
         "example: qbound traverse minervabot-v2 --arcs 4 -1 --svg path.svg",
     )
@@ -80,7 +82,10 @@ def run(options: argparse.Namespace) -> int:
     if times is not None:
         outputs.append((options.ros, lambda: json_text(ros_trajectory(robot, times), None)))
     deliver(outputs, route_lines(found, times))
-    return 0 if found.feasible else 1
+    if not found.feasible:
+        complain(infeasible_line(found))
+        return 1
+    return 0
 
 
 def _route(robot: Robot, options: argparse.Namespace) -> Route:

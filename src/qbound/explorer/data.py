@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.chain import refuse_parallelograms
+from qbound.boundary.chain import Step, depths, steps
 from qbound.boundary.functions import clearance, position
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.export.document import vertex_content, workspace_content
@@ -63,11 +63,10 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot, or a joint is a parallelogram, or the row of
-        slices is not of its joints, or goes past the region.
+        If the region is of forms, not of a robot, or the row of slices is not of its joints, or
+        goes past the region.
     """
     robot, problem = region.robot, region.problem
-    refuse_parallelograms(robot, "the page draws turning and sliding joints only")
     free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
     views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
@@ -81,6 +80,7 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "free": free,
         "q": q.tolist(),
         "joints": [_joint(joint) for joint in robot.joints],
+        "steps": [_step(step) for step in steps(robot)],
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": _bodies(robot),
         "flat": _flat(robot),
@@ -106,17 +106,24 @@ def _joint(joint: Joint) -> Data:
     return {
         "name": joint.name,
         "kind": joint.kind,
-        "origin": joint.origin.tolist(),
-        "mount": joint.mount.tolist(),
-        "axis": joint.axis.tolist(),
         "limits": joint.limits,
         "wraps": joint.limits is None,
     }
 
 
+def _step(step: Step) -> Data:
+    return {
+        "joint": step.joint,
+        "sense": step.sense,
+        "origin": step.origin.tolist(),
+        "mount": step.mount.tolist(),
+        "axis": step.axis.tolist(),
+    }
+
+
 def _point(robot: Robot, i: int) -> Data:
     point = robot.points[i]
-    depth = robot.depth(point.frame)
+    depth = depths(robot)[point.frame]
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
@@ -126,7 +133,7 @@ def _bodies(robot: Robot) -> list[Data]:
     return [
         {
             "name": body.name,
-            "frame": robot.depth(body.frame),
+            "frame": depths(robot)[body.frame],
             "outline": outline_in_frame(robot, body).tolist(),
             "parts": [
                 {"corners": part.corners.tolist(), "radius": float(part.radius)}
@@ -212,7 +219,7 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     if (carrier @ u) @ np.array([1.0, 1e-3, 0.0]) < 0:
         u = -u
     view = {"u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
-    return {"frame": first, **view, "oblique": oblique}
+    return {"frame": depths(robot)[one.parent], **view, "oblique": oblique}
 
 
 def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> bool:

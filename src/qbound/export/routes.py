@@ -90,6 +90,14 @@ def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[
             yield f"outside: {least.boundary.name} from {pose}, {where}"
 
 
+def infeasible_line(found: PathReport) -> str:
+    """Say of a path that leaves the region where it does so, whatever else is written of it."""
+    out = [least for least in found.margins if least.leaves is not None]
+    names = ", ".join(least.boundary.name for least in out)
+    legs = dict.fromkeys(found.route.leg_of(each.leaves.s) for each in out if each.leaves)
+    return f"the path is not feasible: it violates {names}, first on {', '.join(legs)}"
+
+
 def _margin_text(least: Margin) -> str:
     """Write a margin with its unit, angles in degrees."""
     unit, rounding = least.boundary.unit, ON_BOUNDARY * least.boundary.scale

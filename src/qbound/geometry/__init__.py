@@ -5,5 +5,6 @@
 - `polylines`: curves in steps of a stated deviation;
 - `solid_covers`, `mesh_covers`: few balls that cover a shape; `covering`: proved that they do;
 - `mesh_solids`: the solid that a mesh encloses; `inner_balls`: balls in it that touch it;
+- `surface_distance`: how far a surface is at least, known from samples of it;
 - `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals.
 """

@@ -27,9 +27,38 @@ MOST_CELLS = 2_000_000
 AT_ONCE = 4_000_000
 """Distances of a chunk."""
 
+IN_CACHE = 50_000
+"""Distances of a chunk of which several arrays are held at once."""
+
+PER_CORNER = 40
+"""Distances that take as long as all else that is done about a corner of a simplex."""
 
 MOST_TRIED = 200
 """Sets that may take another's place at most, of all that could evenly many."""
+
+MOST_GAINS = 100_000
+"""Missing elements, times such sets."""
+
+
+class Work:
+    """Elementary steps that are left for a task, some nanoseconds each: counted, not timed.
+
+    Parameters
+    ----------
+    most : int
+        At which the task is given up.
+    why : str
+        What the error says then.
+    """
+
+    def __init__(self, most: int, why: str) -> None:
+        self.left, self.why = most, why
+
+    def spend(self, steps: int) -> None:
+        """Take off steps, before they are done; ValueError if fewer are left."""
+        self.left -= steps
+        if self.left < 0:
+            raise ValueError(self.why)
 
 
 class Cover(NamedTuple):
@@ -57,7 +86,9 @@ def joined(covers: Iterable[Cover]) -> Cover:
     return Cover(centres, radii, max(cover.excess for cover in found))
 
 
-def uncovered(simplices: Floats, centres: Floats, radii: Floats) -> Floats:
+def uncovered(
+    simplices: Floats, centres: Floats, radii: Floats, work: Work | None = None
+) -> Floats:
     """Return the simplices that are not proved to lie in the union of balls; none: all are.
 
     Parameters
@@ -65,6 +96,8 @@ def uncovered(simplices: Floats, centres: Floats, radii: Floats) -> Floats:
     simplices : ndarray, shape (N, k, n)
     centres : ndarray, shape (m, n)
     radii : ndarray, shape (m,)
+    work : Work, optional
+        A step is the distance of a corner from a centre; halving costs `PER_CORNER`.
 
     Returns
     -------
@@ -95,6 +128,8 @@ def uncovered(simplices: Floats, centres: Floats, radii: Floats) -> Floats:
     for _ in range(HALVINGS):
         if not len(cells) or len(cells) > MOST_CELLS:
             break
+        if work is not None:
+            work.spend(cells.shape[0] * cells.shape[1] * (len(centres) + PER_CORNER))
         inside, outside = _judged(cells, centres, shrunk)
         left.append(cells[outside])
         cells = cells[~inside & ~outside]
@@ -120,16 +155,19 @@ def within(points: Floats, centres: Floats, radii: Floats) -> Bools:
     """Tell which points lie in which balls, shape (points, balls)."""
     found = np.zeros((len(points), len(centres)), dtype=bool)
     limits = np.where(radii > 0, radii, -1.0)  # none is within less than nothing
-    step = max(1, AT_ONCE // max(1, len(centres)))
+    limits *= np.abs(limits)
+    step = max(1, IN_CACHE // max(1, len(centres)))
     for k in range(0, len(points), step):
-        squared = np.zeros((len(points[k : k + step]), len(centres)))
+        part = points[k : k + step]
+        squared = np.zeros((len(part), len(centres)))
         for i in range(points.shape[1]):
-            squared += np.subtract.outer(points[k : k + step, i], centres[:, i]) ** 2
-        found[k : k + step] = squared <= limits * np.abs(limits)
+            away = part[:, i, None] - centres[:, i]
+            squared += np.square(away, out=away)
+        np.less_equal(squared, limits, out=found[k : k + step])
     return found
 
 
-def few(covers: Bools, costs: Floats | None = None) -> NDArray[Any]:
+def few(covers: Bools, costs: Floats | None = None, most: int | None = None) -> NDArray[Any]:
     """Choose few of many sets that together have every element that any of them has.
 
     Greedy: the most new elements for its cost first; then what became needless is left out.
@@ -139,6 +177,8 @@ def few(covers: Bools, costs: Floats | None = None) -> NDArray[Any]:
     covers : ndarray of bool, shape (sets, elements)
     costs : ndarray, shape (sets,), optional
         Above 0; default: 1 each.
+    most : int, optional
+        Sets after which the choice breaks off, unfinished: more than these are too many anyway.
 
     Returns
     -------
@@ -155,6 +195,8 @@ def few(covers: Bools, costs: Floats | None = None) -> NDArray[Any]:
         counts = counts - np.count_nonzero(covers.T[new], axis=0)
         open_elements &= ~new
         chosen.append(best)
+        if most is not None and len(chosen) > most:
+            return np.array(chosen, dtype=int)
     return np.array(_needed(covers, chosen), dtype=int)
 
 
@@ -240,7 +282,7 @@ class _Choice:
         able = np.flatnonzero(self.covers[:, wanted] & (self.moved < self.count))
         if not len(able):
             able = np.flatnonzero(self.covers[:, wanted])
-        able = able[:: 1 + len(able) // MOST_TRIED]
+        able = able[:: 1 + len(able) // max(1, min(MOST_TRIED, MOST_GAINS // len(missing)))]
         gains = self.covers[able[:, None], missing] @ self.weights[missing]
         best = int(able[np.lexsort((self.moved[able], -gains))[0]])
         self.sets.append(best)

@@ -130,6 +130,8 @@ def connection_document(
 def connection_line(found: Connection) -> str:
     """Say in a sentence what is proved about two poses."""
     cells = f"{found.paving.cells} cells"
+    if found.path is not None and len(found.path) == 2:
+        return f"connected: the straight line lies in cells proved feasible ({cells})"
     if found.path is not None:
         return f"connected: a path of {len(found.path) - 1} legs, each in a cell proved feasible"
     if found.answer == "separated":

@@ -57,6 +57,8 @@ class Component:
     vertices : tuple of Vertex
         In the order of the loops.
     contains_home : bool
+    area_unit : str
+        Of `area`: rad^2, for instance.
     """
 
     area: float
@@ -65,13 +67,14 @@ class Component:
     loops: tuple[tuple[Arc, ...], ...]
     vertices: tuple[Vertex, ...]
     contains_home: bool
+    area_unit: str = ""
 
     def __repr__(self) -> str:
         """Say in a line how large it is and what bounds it."""
         home = ", with home" if self.contains_home else ""
         loops = f"{len(self.loops)} loop{'s' * (len(self.loops) != 1)}"
         sizes = f"{len(self.vertices)} vertices, {loops}"
-        return f"<Component: area {self.area:.6g}, {sizes}{home}>"
+        return f"<Component: area {self.area:.6g} {self.area_unit}, {sizes}{home}>"
 
 
 def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list[Placed]:
@@ -130,7 +133,7 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
 
 
 def bounded(
-    found: Found, base: int, loops: Sequence[tuple[tuple[Arc, ...], list[bool]]]
+    found: Found, base: int, loops: Sequence[tuple[tuple[Arc, ...], list[bool]]], unit: str
 ) -> Component:
     """Return a component with its boundary: loops of arcs, which of these begin at a vertex."""
     centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
@@ -142,7 +145,7 @@ def bounded(
         if corner
     )
     rings = tuple(arcs for arcs, _ in loops)
-    return Component(found.area, centroid, wraps, rings, vertices, found.contains_home)
+    return Component(found.area, centroid, wraps, rings, vertices, found.contains_home, unit)
 
 
 def _cell_moments(cells: CellComplex) -> Floats:

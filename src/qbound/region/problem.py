@@ -116,6 +116,12 @@ class Problem:
         one, other = ("rad" if kind == "revolute" else length for kind in self.forms.kinds)
         return one, other
 
+    @property
+    def area_unit(self) -> str:
+        """Unit of areas: the product of both joints' units."""
+        one, other = self.units
+        return f"{one}^2" if one == other else f"{one} {other}"
+
     def with_form(self, name: str, coefficients: Floats) -> Problem:
         """Return the problem with one more form, of coefficients (3, 3), as its last."""
         table = np.concatenate([self.forms.coefficients, coefficients[None]])

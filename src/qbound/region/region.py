@@ -120,7 +120,7 @@ class Region:
         >>> from qbound import find_region, load_robot
         >>> robot = load_robot("minervabot-v2")
         >>> find_region(robot).home_component
-        <Component: area 11.78, 6 vertices, 1 loop, with home>
+        <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
         >>> bent = replace(robot.joints[1], limits=(0.5, 2.0))
         >>> limited = replace(robot, joints=(robot.joints[0], bent))
         >>> find_region(limited).home_component  # doctest: +ELLIPSIS
@@ -139,8 +139,7 @@ class Region:
     @property
     def area_unit(self) -> str:
         """Unit of areas: the product of both joints' units."""
-        one, other = self.problem.units
-        return f"{one}^2" if one == other else f"{one} {other}"
+        return self.problem.area_unit
 
     @property
     def robot(self) -> Robot:
@@ -348,7 +347,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> region
     <Region of MinervaBotV2: 5 components, with home, area 25.8433 rad^2>
     >>> region.home
-    <Component: area 11.78, 6 vertices, 1 loop, with home>
+    <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
 
     A region may be empty. It is no error, and the region says which boundaries leave no room; here
     the floor is raised above the arm's reach:
@@ -418,8 +417,9 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
     layout = Layout(cells, edges, base, inner.names, inner.limits)
     loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
+    unit = problem.area_unit
     components = [
-        (bounded(f, base, list(islice(loops, len(own)))), cells.parts.cells[f.part])
+        (bounded(f, base, list(islice(loops, len(own))), unit), cells.parts.cells[f.part])
         for f, own in zip(found, bounding, strict=True)
     ]
     components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))

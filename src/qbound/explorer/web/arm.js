@@ -116,7 +116,7 @@ function floorLevel(robot) {
  * @type {(robot: Robot, drawn: Picture, axes: Place[]) => void} */
 function drawFloor(robot, drawn, axes) {
   const level = floorLevel(robot);
-  const [x, y] = robot.joints[0].origin;
+  const [x, y] = robot.steps[0].origin;
   const rings = [0.5, 1].map((share) =>
     Array.from({ length: 60 }, (_, k) => {
       const [c, s] = turnedBy((k * TURN) / 60);
@@ -278,7 +278,7 @@ function addArm(robot, drawn) {
       }),
     ),
     spine: make("path", { class: "spine" }),
-    axles: robot.joints.map(() => make("circle", { class: "axle", r: 5 })),
+    axles: robot.steps.map(() => make("circle", { class: "axle", r: 5 })),
     gaps: robot.boundaries.map(() => make("line", { class: "gap", hidden: "" })),
     nearest: robot.boundaries.flatMap(({ kind }) =>
       kind === "bodies"

@@ -21,6 +21,7 @@ interface Robot {
   free: number[];
   q: Pose;
   joints: Joint[];
+  steps: Step[];
   points: RobotPoint[];
   bodies: RobotBody[];
   flat: Place[] | null; // two axes of the plane in which bodies move
@@ -41,11 +42,16 @@ interface Robot {
 interface Joint {
   name: string;
   kind: Kind;
+  limits: [number, number] | null;
+  wraps: boolean;
+}
+
+interface Step {
+  joint: number; // whose value it goes by: a parallelogram has two, a turn and a turn back
+  sense: number; // -1: back by the value
   origin: Place;
   mount: Matrix;
   axis: Place;
-  limits: [number, number] | null;
-  wraps: boolean;
 }
 
 interface RobotPoint {

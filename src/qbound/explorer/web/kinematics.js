@@ -99,18 +99,19 @@ function axisTurn([x, y, z], q) {
   ];
 }
 
-/** The base and the frame after each joint: turn and place, seen from the base.
+/** The base and the frame after each step: turn and place, seen from the base.
  * @type {(robot: Robot, q: Pose) => Frame[]} */
 function framesOf(robot, q) {
   const found = [{ turn: IDENTITY, place: [0, 0, 0] }];
-  robot.joints.forEach((joint, j) => {
-    const { turn, place } = found[j];
-    const mounted = product(turn, joint.mount);
-    const turns = joint.kind === "revolute";
-    const slide = turns ? [0, 0, 0] : joint.axis.map((value) => value * q[j]);
+  robot.steps.forEach((step, k) => {
+    const { turn, place } = found[k];
+    const mounted = product(turn, step.mount);
+    const turns = robot.joints[step.joint].kind === "revolute";
+    const by = step.sense * q[step.joint];
+    const slide = turns ? [0, 0, 0] : step.axis.map((value) => value * by);
     found.push({
-      turn: turns ? product(mounted, axisTurn(joint.axis, q[j])) : mounted,
-      place: add(add(place, apply(turn, joint.origin)), apply(mounted, slide)),
+      turn: turns ? product(mounted, axisTurn(step.axis, by)) : mounted,
+      place: add(add(place, apply(turn, step.origin)), apply(mounted, slide)),
     });
   });
   return found;
