@@ -58,7 +58,7 @@ class Component:
         In the order of the loops.
     contains_home : bool
     area_unit : str
-        Of `area`: rad^2, for instance.
+        The product of both joints' units.
     """
 
     area: float
