@@ -298,6 +298,29 @@ def test_leaves_that_share_a_corner_are_joined():
     assert answers(data) == (True, True)
 
 
+@pytest.mark.parametrize("end", ["1", "1e-999"])
+def test_long_limits_count_as_more_work(end, monkeypatch):
+    """Every leaf on one side of a face touches every one on the other side."""
+    monkeypatch.setattr("qbound.proofs.leaves.MOST_WORK", 2_000_000)
+    robot = planar.planar(*[f"[-1, {end}]"] * 3, posts=planar.wall("far", 1, 0, -99))
+    tree = "a" + reduce(lambda t, _: f"b{t}{t}", range(7), ".")
+    data = {
+        "schema": "qbound/certificate/5",
+        "verdict": "proved",
+        "statement": {
+            "set": "no path",
+            "margin": "0",
+            "points": [[["-1", "-1", "-1"]] * 2],
+            "free": [0, 1, 2],
+        },
+        "robot": robot,
+        "sha256": hashlib.sha256(robot.encode()).hexdigest(),
+        "proof": {"boundaries": ["far"], "tree": tree + tree[1:].replace("b", "c")},
+    }
+    with pytest.raises(ValueError, match="join" if end == "1" else "too much work"):
+        check_arb.verify(json.dumps(data))
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_what_touches_is_what_a_lattice_says(seed):
     """Random trees over a robot that is violated everywhere: all that counts is which leaves touch.

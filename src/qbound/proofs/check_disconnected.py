@@ -30,6 +30,9 @@ HALF_TURN = {True: Fraction(180), False: Fraction("3.1416")}
 LETTER_WORK, PAIR_WORK = 200, 8
 """Products for each letter, whose cell is kept, and for each pair of cells that is compared."""
 
+WORD = 256
+"""Bits of a limit that cost no more than one; ten times as many take ten times as long."""
+
 
 @dataclass(eq=False, slots=True)
 class _Cell:
@@ -53,11 +56,12 @@ def check_disconnected(content: Content, disconnected: Disconnected) -> None:
         beyond = beyond_limits(robot, point)
         if beyond:
             refuse(f"a configuration is beyond {shown(beyond[0])}")
-    work.add(LETTER_WORK * len(tree))
+    words = _words(content)
+    work.add(LETTER_WORK * words * len(tree))
     box = _whole(content)
     cells = _cells(box, tree)
     _check_violated(_Violations(content, disconnected, box, work), cells)
-    seams = _Seams(robot, content.statement.free, work)
+    seams = _Seams(robot, content.statement.free, work, words)
     seams.unite(cells[0])
     start, goal = (seams.groups(cells[0], point) for point in ends)
     if not start or not goal:
@@ -77,6 +81,16 @@ def _whole(content: Content) -> Box:
             refuse(f"{shown(joint.name)}: a limit is too large an angle")
         low[j], high[j] = map(exact, ends)
     return Box(tuple(low), tuple(high))
+
+
+def _words(content: Content) -> int:
+    """Return how long the limits of the joints that move are: all ends of cells are, too."""
+    found = 1
+    for j in content.statement.free:
+        ends = content.robot.joints[j].limits or ()
+        bits = sum(k.bit_length() for x in ends for k in x.as_integer_ratio())
+        found = max(found, 1 + bits // WORD)
+    return found
 
 
 def _cells(box: Box, tree: str) -> list[_Cell]:
@@ -145,8 +159,9 @@ def _check_violated(violations: _Violations, cells: Sequence[_Cell]) -> None:
 class _Seams:
     """Which cells touch, with joints without limits glued a turn apart."""
 
-    def __init__(self, robot: Robot, free: Sequence[int], work: Work) -> None:
+    def __init__(self, robot: Robot, free: Sequence[int], work: Work, words: int) -> None:
         self.robot, self.free, self.work = robot, free, work
+        self.pair_work = PAIR_WORK * words
         self.glued = [robot.joints[j].limits is None for j in free]
 
     @cached_property
@@ -192,7 +207,7 @@ class _Seams:
         """Yield the leaves without a number of two cells that touch, the other some turns on."""
         todo = [(one, other)]
         while todo:
-            self.work.add(PAIR_WORK)
+            self.work.add(self.pair_work)
             a, b = todo.pop()
             if not (a.is_open and b.is_open) or self._apart(a.box, b.box, turns):
                 continue
