@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from qbound import load_robot
-from qbound.boundary.binding import BELOW, CERTAIN, binding
+from qbound.boundary.binding import BELOW, CERTAIN, _covered, binding
 from qbound.boundary.evaluator import Evaluator, compiled, evaluator
 from qbound.boundary.screen import screen
 from qbound.forms.harmonic import HarmonicForm
@@ -149,3 +149,20 @@ def signs(table: Evaluator, rows: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Whether row k is negative at configuration k."""
     values = table.monomials.of_columns(q.T.copy())
     return np.asarray(np.einsum("km,mk->k", rows, values) < 0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_arc_is_covered_where_each_place_of_it_lies_in_another(seed: int) -> None:
+    # Of so many some end where rounding leaves the next step less than the last digit of the way.
+    rng = np.random.default_rng(seed)
+    for _ in range(400):
+        count = rng.integers(1, 6)
+        starts, lengths = rng.uniform(-6, 3, count), rng.uniform(0, 4, count)
+        start, length = rng.uniform(-4, 3), rng.uniform(0, 6)
+        places = start + np.linspace(0, length, 2000)
+        into = np.mod(places[:, None] - starts, 2 * np.pi)
+        within = np.where(into < lengths, lengths - into, -1).max(axis=1)
+        if _covered(start, length, starts, lengths):
+            assert within.min() > 0
+        else:
+            assert within.min() < length / 1000

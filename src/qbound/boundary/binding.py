@@ -31,7 +31,7 @@ the second."""
 TURN = 2 * math.pi
 
 SEAM = 1e-9
-"""Taken off what limits exclude, at both ends, rad."""
+"""Taken off what limits exclude, at both ends, and the least by which an arc carries on, rad."""
 
 
 def binding(table: Floats, monomials: Monomials, reach: Floats) -> Bools:
@@ -105,12 +105,17 @@ def _arcs(c: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
 
 
 def _covered(start: float, length: float, starts: Floats, lengths: Floats) -> bool:
-    """Tell whether an arc lies within the union of others."""
+    """Tell whether an arc lies within the union of others; where only a seam is open, it does not.
+
+    Each arc carries on once, and the one that holds the start a second time.
+    """
     done = 0.0
-    while done <= length:
+    for _ in range(len(lengths) + 1):
         before = np.mod(start + done - starts, TURN)
         further = np.where(before < lengths, lengths - before, 0.0).max(initial=0.0)
-        if further <= 0:
+        if further <= SEAM:
             return False
         done += float(further)
-    return True
+        if done > length:
+            return True
+    return False
