@@ -7,7 +7,7 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -205,11 +205,11 @@ def faces() -> list[tuple[str, str, str]]:
     return found
 
 
-def in_every_family(page: Any) -> Iterator[str]:
+def in_every_family(page: Any, families: Iterable[str] = FAMILIES) -> Iterator[str]:
     """Set the page in one family after the other; code and signs keep their own."""
     if not page.evaluate(HAS_FACES):
         page.evaluate(ADD_FACES, faces())
-    for family in FAMILIES:
+    for family in families:
         page.evaluate(WEAR, f"'test {family}'")
         settle(page)
         yield family

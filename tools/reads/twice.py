@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 from datetime import datetime, timedelta
 from typing import Any
 
-LONG = timedelta(seconds=0.5)
+LONG = timedelta(seconds=0.25)
 EVENTS = ("iopub.execute_input", "shell.execute_reply")
 KINDS = ("image/svg+xml", "text/html", "text/markdown", "text/latex")
 
