@@ -24,6 +24,7 @@ from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.statements import units
 from support import brute_force, mutations, planar
+from support.certificates import in_robot, put
 from support.elbow import SLIDE
 
 ASKED = {
@@ -162,26 +163,6 @@ def test_what_is_joined_is_not_certified():
 
 
 # --- what is refused ------------------------------------------------------------------------------
-
-
-def put(*path):
-    *steps, last, value = path
-
-    def change(data):
-        for step in steps:
-            data = data[step]
-        data[last] = value(data[last]) if callable(value) else value
-
-    return change
-
-
-def in_robot(old, new):
-    def change(data):
-        assert old in data["robot"]
-        data["robot"] = data["robot"].replace(old, new)
-        data["sha256"] = hashlib.sha256(data["robot"].encode()).hexdigest()
-
-    return change
 
 
 def all_of(*changes):

@@ -1,7 +1,6 @@
 """Ranges that nothing passes, by hand and by brute force; certificates, true and forged."""
 
 import copy
-import hashlib
 import json
 import math
 import random
@@ -20,6 +19,7 @@ from qbound.proofs import check_arb
 from qbound.proofs.blocked import blocked_ranges
 from qbound.proofs.no_path import certify_no_path
 from support import brute_force, mutations
+from support.certificates import in_robot, put
 from support.elbow import CLOSED, SLIDE, arm
 from support.robot_files import robot_file
 
@@ -210,26 +210,6 @@ def refused(data):
     with pytest.raises(check.Refused):
         check.check(text)
     assert not accepted(check_arb.verify, text)
-
-
-def put(*path):
-    *steps, last, value = path
-
-    def change(data):
-        for step in steps:
-            data = data[step]
-        data[last] = value(data[last]) if callable(value) else value
-
-    return change
-
-
-def in_robot(old, new):
-    def change(data):
-        assert old in data["robot"]
-        data["robot"] = data["robot"].replace(old, new)
-        data["sha256"] = hashlib.sha256(data["robot"].encode()).hexdigest()
-
-    return change
 
 
 def ends(low, high):

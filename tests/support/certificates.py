@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from itertools import chain, combinations, count
 from typing import Any
@@ -72,3 +72,26 @@ def longest(cell: check.Cell) -> str:
 
 def squared(p: check.Point, q: check.Point) -> Fraction:
     return sum(((x - y) ** 2 for x, y in zip(p, q, strict=True)), Fraction(0))
+
+
+def put(*path: Any) -> Callable[[dict[str, Any]], None]:
+    """Return what puts a value, or a function of the old one, at a place of a certificate."""
+    *steps, last, value = path
+
+    def change(data: Any) -> None:
+        for step in steps:
+            data = data[step]
+        data[last] = value(data[last]) if callable(value) else value
+
+    return change
+
+
+def in_robot(old: str, new: str) -> Callable[[dict[str, Any]], None]:
+    """Return what changes the robot file of a certificate, and its digest."""
+
+    def change(data: dict[str, Any]) -> None:
+        assert old in data["robot"]
+        data["robot"] = data["robot"].replace(old, new)
+        data["sha256"] = hashlib.sha256(data["robot"].encode()).hexdigest()
+
+    return change

@@ -364,11 +364,20 @@ def _confirmed(
     parts: Parts | None = None,
     **evidence: Any,
 ) -> Certificate:
-    """Write the file and hand it to the checker: what that does not confirm is not answered."""
+    """Write the file of grammar 2, or of bodies, and hand it to the checker."""
     if parts is not None:
         evidence = {"parts": parts, **evidence}
+    grammar = GRAMMAR if parts is None else GRAMMAR_OF_BODIES
+    found = confirmed(robot, grammar, statement, verdict, **evidence)
+    return replace(found, searches=searches)
+
+
+def confirmed(
+    robot: str, grammar: int, statement: Statement, verdict: Verdict, **evidence: Any
+) -> Certificate:
+    """Write a file and hand it to the checker: what that does not confirm is not answered."""
     content = {
-        "schema": f"qbound/certificate/{GRAMMAR if parts is None else GRAMMAR_OF_BODIES}",
+        "schema": f"qbound/certificate/{grammar}",
         "verdict": verdict,
         "statement": statement,
         "robot": robot,
@@ -377,11 +386,11 @@ def _confirmed(
     }
     text = json_text(content)
     try:
-        said = check.check(text)[1]
+        said = check.check(text).said
     except ValueError as error:
         said = f"not confirmed in exact arithmetic: {error}"
-        return Certificate(Verdict.UNDECIDED, "", said, searches)
-    return Certificate(verdict, text, said, searches)
+        return Certificate(Verdict.UNDECIDED, "", said)
+    return Certificate(verdict, text, said)
 
 
 def _left(searches: dict[str, Search]) -> str:

@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound import check
-from qbound.export.formats import json_text
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.certify import Certificate
+from qbound.proofs.certify import Certificate, confirmed
 from qbound.proofs.grammar import GRAMMAR_OF_DISCONNECTED, NO_PATH
 from qbound.proofs.paving import Paving
 from qbound.proofs.separator import covering, separator
@@ -64,19 +63,9 @@ def certify_disconnected(
     if found.left:
         return Certificate(Verdict.UNDECIDED, "", f"undecided: {found.left} boxes")
     tree, names = _numbered(found.tree, free, paving.problem.names)
-    content = {
-        "schema": f"qbound/certificate/{GRAMMAR_OF_DISCONNECTED}",
-        "verdict": Verdict.PROVED,
-        "statement": {"set": NO_PATH, "margin": "0", "points": [points], "free": free},
-        "robot": text,
-        "sha256": check.digest(text),
-        "proof": {"boundaries": names, "tree": tree},
-    }
-    file = json_text(content)
-    try:
-        return Certificate(Verdict.PROVED, file, check.check(file).said)
-    except ValueError as error:
-        return Certificate(Verdict.UNDECIDED, "", f"not confirmed in exact arithmetic: {error}")
+    statement = {"set": NO_PATH, "margin": "0", "points": [points], "free": free}
+    proof = {"boundaries": names, "tree": tree}
+    return confirmed(text, GRAMMAR_OF_DISCONNECTED, statement, Verdict.PROVED, proof=proof)
 
 
 def _free(robot: Robot, paving: Paving) -> list[int]:

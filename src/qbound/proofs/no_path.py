@@ -14,12 +14,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound import check
-from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.blocked import BlockedRange, likely
-from qbound.proofs.certify import Certificate
+from qbound.proofs.certify import Certificate, confirmed
 from qbound.proofs.grammar import GRAMMAR_OF_NO_PATH, NO_PATH
 from qbound.proofs.statements import decimal, units, within_limits
 from qbound.proofs.verdict import Verdict
@@ -65,19 +63,9 @@ def certify_no_path(
     j = ranges[0].joint
     placed = ranges if robot.joints[j].limits else _around(ends[0, j], ends[1, j], ranges)
     rows = [_row(robot, each) for each in placed]
-    content = {
-        "schema": f"qbound/certificate/{GRAMMAR_OF_NO_PATH}",
-        "verdict": Verdict.PROVED,
-        "statement": {"set": NO_PATH, "margin": "0", "points": [points]},
-        "robot": text,
-        "sha256": check.digest(text),
-        "proof": {"joint": robot.joints[j].name, "blocked": rows},
-    }
-    file = json_text(content)
-    try:
-        return Certificate(Verdict.PROVED, file, check.check(file).said)
-    except ValueError as error:
-        return Certificate(Verdict.UNDECIDED, "", f"not confirmed in exact arithmetic: {error}")
+    statement = {"set": NO_PATH, "margin": "0", "points": [points]}
+    proof = {"joint": robot.joints[j].name, "blocked": rows}
+    return confirmed(text, GRAMMAR_OF_NO_PATH, statement, Verdict.PROVED, proof=proof)
 
 
 def _around(start: float, goal: float, ranges: Sequence[BlockedRange]) -> list[BlockedRange]:
