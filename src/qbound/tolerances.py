@@ -163,3 +163,6 @@ PARALLEL: Final = 1e-9
 """Cosine of the angle of two axes, beside 1, under which a file means them to be parallel.
 
 Quarter turns are written with six digits or more: a cosine beside 1 is then right to 1e-12."""
+
+UNIT: Final = 2.0**-52
+"""Rounding of one operation on doubles; the measure of every error bound."""

@@ -13,9 +13,10 @@ each in the first degree.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,6 +207,12 @@ class Features:
         of corners.
     names : tuple of str
         What touches, the first body's first: "corner 2 on edge 3".
+    curves : tuple
+        One a feature; features with the same one have the same form.
+    keys : tuple of tuple
+        One a side condition: the event at which it vanishes on the form, see `_handovers`.
+    ends : tuple of tuple
+        The pair of corners, or the two pairs that an edge and a corner end at.
     """
 
     forms: Floats
@@ -214,6 +221,9 @@ class Features:
     touching: Bools
     clause: Ints
     names: tuple[str, ...]
+    curves: tuple[Hashable, ...]
+    keys: tuple[tuple[Hashable, ...], ...]
+    ends: tuple[tuple[Hashable, ...], ...]
 
 
 def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool) -> Features:
@@ -251,7 +261,66 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
         touching=(~corners | (keep > 0)) & forbids,
         clause=clause,
         names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
+        **_handovers(one, other, keep, len(names)),
     )
+
+
+def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any]:
+    """Name the curves of features, and the events at which a contact goes over to another feature.
+
+    A contact of an edge and a corner goes over to one of two corners where the corner leaves the
+    edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
+    vanish there with a side condition of each, so the event has one name. Corners are named by
+    their places, because parts of one outline share some.
+    """
+    p, u = ([tuple(corner) for corner in core.corners.tolist()] for core in (one, other))
+    curves: list[Hashable] = []
+    keys: list[tuple[Hashable, ...]] = []
+    ends: list[tuple[Hashable, ...]] = []
+
+    def end(side: int, edge: Hashable, a: Hashable, b: Hashable) -> Hashable:
+        """Name the event at which corner b of the other core leaves an edge at its end a."""
+        if not keep:
+            return ("end", None, a, b) if side == 0 else ("end", None, b, a)
+        return ("end", side, edge, a, b)
+
+    def edges_of(places: list[Any], core: Core) -> list[tuple[Any, Any]]:
+        n = len(places)
+        return [(places[k], places[(k + 1) % n]) for k in range(len(core.edge_names))]
+
+    def around(edges: list[tuple[Any, Any]], k: int) -> list[tuple[Any, Any]]:
+        return [edges[k], edges[k - 1]] if edges else []
+
+    mine, theirs = edges_of(p, one), edges_of(u, other)
+    for side, (own, near, far) in enumerate(((mine, theirs, u), (theirs, mine, p))):
+        for a, b in own:
+            edge = frozenset((a, b))
+            for k, corner in enumerate(far):
+                curves.append(("edge", side, a, b, corner, keep))
+                pairs = [(x, corner) if side == 0 else (corner, x) for x in (a, b)]
+                ends.append(tuple((*pair, keep) for pair in pairs))
+                parallel = (
+                    frozenset(((side, edge), (1 - side, frozenset(f)))) for f in around(near, k)
+                )
+                keys.append(
+                    (
+                        end(side, edge, a, corner),
+                        end(side, edge, b, corner),
+                        *(("parallel", f, keep) for f in parallel),
+                    )
+                )
+    if len(curves) < count:
+        for i, a in enumerate(p):
+            for k, b in enumerate(u):
+                curves.append(("corners", a, b, keep))
+                ends.append(((a, b, keep), (a, b, keep)))
+                keys.append(
+                    (
+                        *(end(0, frozenset(f), a, b) for f in around(mine, i)),
+                        *(end(1, frozenset(f), b, a) for f in around(theirs, k)),
+                    )
+                )
+    return {"curves": tuple(curves), "keys": tuple(keys), "ends": tuple(ends)}
 
 
 def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[Features]:
@@ -260,11 +329,13 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
     forms = np.einsum("a,kaij->kij", normal, seen)
     forms[..., 0, 0] -= level
     forms = _settled(forms, max(float(np.abs(seen).max()), abs(level)))
-    for form, name in zip(forms, core.corner_names, strict=True):
+    places = core.corners.tolist()
+    for form, name, corner in zip(forms, core.corner_names, places, strict=True):
         free = np.zeros((1, SIDES, 3, 3))
         free[..., 0, 0] = 1.0
         no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
-        yield Features(form[None], free, no, ~no, clause, (name,))
+        curve = "height", *corner, *normal.tolist(), level
+        yield Features(form[None], free, no, ~no, clause, (name,), (curve,), ((),), ((),))
 
 
 def _edges(
@@ -336,6 +407,17 @@ class Contacts:
         Whether it can bound what the pair forbids; else it only parts.
     boundaries : tuple of str
         The boundary of each pair of parts.
+    curves : ndarray of int, shape (f,)
+        Features with one number have one form.
+    keys : ndarray of int, shape (f, 4)
+        Events at which a side condition vanishes on the form: those with one number are one event
+        where they are at one place. Even: an end of an edge; odd: two edges that are parallel; -1
+        for a condition that is none.
+    ends : ndarray of int, shape (f, 2)
+        Pairs of corners, numbered: that of two corners twice, those at both ends of an edge; -1 for
+        a half-space.
+    errors, side_errors : ndarray, shape (f,) and (f, 4)
+        Bounds of the errors of the coefficients.
     """
 
     forms: Floats
@@ -346,6 +428,18 @@ class Contacts:
     pair: Ints
     touching: Bools
     boundaries: tuple[str, ...]
+    curves: Ints
+    keys: Ints
+    ends: Ints
+    errors: Floats
+    side_errors: Floats
+
+    @cached_property
+    def sharp(self) -> Bools:
+        """Whether nothing is kept between the cores of a feature's pair, shape (f,)."""
+        rounded = np.zeros(self.pairs, dtype=np.bool_)
+        rounded[self.pair[self.corners & self.touching]] = True
+        return np.asarray(~rounded[self.pair])
 
     @property
     def pairs(self) -> int:
@@ -365,23 +459,55 @@ class Contacts:
             (np.cumsum(kept) - 1)[self.pair[rows]],
             self.touching[rows],
             tuple(name for name in self.boundaries if name not in dropped),
+            self.curves[rows],
+            self.keys[rows],
+            self.ends[rows],
+            self.errors[rows],
+            self.side_errors[rows],
         )
 
 
-def gathered(found: Sequence[tuple[str, Features]]) -> Contacts:
-    """Gather the features of pairs of parts, each with its boundary."""
+def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts:
+    """Gather the features of pairs of parts, each with its boundary and the depths of its frames."""
     if not found:
         return NO_CONTACTS
+    frames = [depths for _, _, depths in found]
+    found = [item[:2] for item in found]
     clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows in found)])
+    numbers: dict[Hashable, int] = {}
+    curves = [
+        numbers.setdefault((at, curve), len(numbers))
+        for at, (_, rows) in zip(frames, found, strict=True)
+        for curve in rows.curves
+    ]
+    keys = np.full((len(curves), SIDES), -1)
+    ends = np.full((len(curves), 2), -1)
+    names: dict[Hashable, int] = {}
+    k = 0
+    for at, (_, rows) in zip(frames, found, strict=True):
+        for own, pairs in zip(rows.keys, rows.ends, strict=True):
+            for side, key in enumerate(own):
+                number = names.setdefault((at, key), len(names))
+                keys[k, side] = 2 * number + (key[0] == "parallel")
+            for end, name in enumerate(pairs):
+                ends[k, end] = numbers.setdefault((at, name), len(numbers))
+            k += 1
+    forms = np.concatenate([rows.forms for _, rows in found])
+    sides = np.concatenate([rows.sides for _, rows in found])
     return Contacts(
-        np.concatenate([rows.forms for _, rows in found]),
-        np.concatenate([rows.sides for _, rows in found]),
+        forms,
+        sides,
         np.concatenate([rows.corners for _, rows in found]),
         np.concatenate([rows.clause + n for (_, rows), n in zip(found, clauses, strict=False)]),
         tuple(name for _, rows in found for name in rows.names),
         np.concatenate([np.full(len(rows.forms), k) for k, (_, rows) in enumerate(found)]),
         np.concatenate([rows.touching for _, rows in found]),
         tuple(boundary for boundary, _ in found),
+        np.array(curves),
+        keys,
+        ends,
+        2 * ROUNDING * np.abs(forms).max(axis=(1, 2)),
+        2 * ROUNDING * np.abs(sides).max(axis=(2, 3)),
     )
 
 
@@ -394,5 +520,10 @@ NO_CONTACTS = Contacts(
     np.zeros(0, dtype=np.int64),
     np.zeros(0, dtype=np.bool_),
     (),
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, SIDES), dtype=np.int64),
+    np.zeros((0, 2), dtype=np.int64),
+    np.zeros(0),
+    np.zeros((0, SIDES)),
 )
 """Of a robot without bodies that keep apart."""

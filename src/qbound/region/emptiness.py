@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from qbound.region.decomposition import decompose
 from qbound.region.pieces import INSIDE
 from qbound.region.plane import Plane
+from qbound.region.precise import AsGiven, Precise
 from qbound.region.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -97,7 +98,7 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, off its middles; None where there is no cell."""
     plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
-    found = decompose(plane)
+    found = decompose(plane, Precise(plane, AsGiven(problem)))
     if not found.cells:
         return None
     # Of the cells over the widest slab, the first.

@@ -16,7 +16,8 @@ from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
-from qbound.region.decomposition import Decomposition, decompose
+from qbound.region.decomposition import decompose, nothing_in
+from qbound.region.precise import Precise, AsGiven
 from qbound.region.emptiness import irreducible
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
@@ -402,11 +403,11 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
+    precise = Precise(plane, AsGiven(inner))
     if blocked:
-        none = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
-        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), *none, np.zeros(0)))
+        nothing = CellComplex(nothing_in(plane, precise))
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
-    cells = CellComplex(decompose(plane))
+    cells = CellComplex(decompose(plane, precise))
     if not len(cells.slabs):
         return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
     found = measured(cells, problem, home, base)
