@@ -600,51 +600,59 @@ def _flood_faults(scene: Scene, region: Any, cells: Raster) -> list[str]:
 # --- one region, found twice ----------------------------------------------------------------------
 
 
-def agreement(regions: Sequence[Any], factors: Sequence[float] | None = None) -> list[str]:
-    """What differs between regions of one scene, or of exact copies of it.
+@dataclass(frozen=True)
+class Outline:
+    """What is the same of one scene's regions, however they are found: counts, areas, wraps."""
+
+    components: int
+    loops: int
+    vertices: int
+    areas: list[float]
+    wraps: list[list[bool]]
+    unresolved: bool = False
+
+    @classmethod
+    def of(cls, region: Any) -> Outline:
+        if len(getattr(region, "unresolved", ())):
+            return cls(0, 0, 0, [], [], unresolved=True)
+        every = region.components
+        return cls(
+            len(every),
+            sum(len(component.loops) for component in every),
+            sum(len(component.vertices) for component in every),
+            sorted((float(component.area) for component in every), reverse=True),
+            sorted([bool(one), bool(other)] for one, other in (c.wraps for c in every)),
+        )
+
+
+def agreement(outlines: Sequence[Outline], factors: Sequence[float] | None = None) -> list[str]:
+    """What differs between regions of one scene, or of exact copies of it, as `faults` are.
 
     Parameters
     ----------
     factors : sequence of float, optional
-        By how much areas of each region are larger than those of the first; default 1.
+        By how much areas of each are larger than those of the first; default 1.
     """
-    factors = [1.0] * len(regions) if factors is None else factors
-    if any(len(getattr(region, "unresolved", ())) for region in regions):
+    if any(outline.unresolved for outline in outlines):
         return ["unresolved: a region says so itself"]
     found = []
-    for what, of in (("components", _components), ("loops", _loops), ("vertices", _vertices)):
-        counts = [of(region) for region in regions]
+    for what in ("components", "loops", "vertices"):
+        counts = [getattr(outline, what) for outline in outlines]
         if len(set(counts)) > 1:
             found.append(f"{what}: {counts}")
-    if (off := area_difference(regions, factors)) > SAME_AREA:
+    if (off := area_difference(outlines, factors)) > SAME_AREA:
         found.append(f"areas: {off:.2g} of their sum apart")
-    rounds = [sorted(tuple(map(bool, c.wraps)) for c in region.components) for region in regions]
+    rounds = [outline.wraps for outline in outlines]
     if any(len(each) == len(rounds[0]) and each != rounds[0] for each in rounds):
         found.append("wraps: components go round other joints")
     return found
 
 
-def area_difference(regions: Sequence[Any], factors: Sequence[float] | None = None) -> float:
+def area_difference(outlines: Sequence[Outline], factors: Sequence[float] | None = None) -> float:
     """The largest difference of areas, component by component, beside the sum of all."""
-    factors = [1.0] * len(regions) if factors is None else factors
-    rows = [
-        np.array(sorted((c.area / factor for c in region.components), reverse=True))
-        for region, factor in zip(regions, factors, strict=True)
-    ]
-    longest = max(map(len, rows))
-    table = np.array([np.pad(row, (0, longest - len(row))) for row in rows])
-    if not table.size:
-        return 0.0
-    return float((np.ptp(table, axis=0).max()) / table.sum(axis=1).max())
-
-
-def _components(region: Any) -> int:
-    return len(region.components)
-
-
-def _loops(region: Any) -> int:
-    return sum(len(component.loops) for component in region.components)
-
-
-def _vertices(region: Any) -> int:
-    return sum(len(component.vertices) for component in region.components)
+    factors = [1.0] * len(outlines) if factors is None else factors
+    longest = max(outline.components for outline in outlines)
+    table = np.zeros((len(outlines), longest))
+    for row, outline, factor in zip(table, outlines, factors, strict=True):
+        row[: outline.components] = np.array(outline.areas) / factor
+    return float(np.ptp(table, axis=0).max() / table.sum(axis=1).max()) if longest else 0.0
