@@ -192,30 +192,34 @@ class Core:
             tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
         )
 
+    @cached_property
     def edges(self) -> tuple[Floats, Floats]:
-        """Return the directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
+        """The directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
         ahead = np.roll(self.corners, -1, axis=0) - self.corners
         lengths = np.hypot(*ahead.T)
         count = len(self.edge_names)
         return ahead[:count] / lengths[:count, None], lengths[:count]
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The largest coordinate of a corner."""
         return float(np.abs(self.corners).max())
 
+    @cached_property
     def doubts(self) -> Floats:
-        """Return how far the direction of each edge may be off, (e,): a short one far out most."""
-        return ROUNDING * (0.5 + self.size / self.edges()[1])
+        """How far the direction of each edge may be off, (e,): a short one far out most."""
+        return ROUNDING * (0.5 + self.size / self.edges[1])
 
+    @cached_property
     def doubts_about(self) -> Floats:
-        """Return the larger one of the doubts of each corner's edges, shape (m,)."""
-        doubts = self.doubts()
+        """The larger one of the doubts of each corner's edges, shape (m,)."""
+        doubts = self.doubts
         return np.maximum(doubts, np.roll(doubts, 1)) if len(doubts) else np.zeros(1)
 
+    @cached_property
     def steps(self) -> Floats:
-        """Return the directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
-        along, _ = self.edges()
+        """The directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
+        along, _ = self.edges
         if not len(along):
             return np.zeros((len(self.corners), 0, 2))
         return np.stack([along, -np.roll(along, 1, axis=0)], axis=1)
@@ -324,7 +328,7 @@ def _edges(
     mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float, sizes: Sizes
 ) -> Tables:
     """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
-    along, lengths = mine.edges()
+    along, lengths = mine.edges
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
     starts = mine.corners[: len(along)]
     height = np.einsum("ea,kaij->ekij", normal, seen)
@@ -333,13 +337,13 @@ def _edges(
     beside[..., 0, 0] -= (along * starts).sum(axis=1)[:, None]
     rest = -beside
     rest[..., 0, 0] += lengths[:, None]
-    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps())
+    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps)
     size = max(float(np.abs(seen).max()), mine.size)
     ends = _settled(np.stack([beside, rest], axis=2), size)
     sides = np.concatenate([ends, _settled(rims, 1.0)], axis=2)
     relative = np.zeros((*height.shape[:2], SIDES))
-    relative[:, :, :2] = (mine.doubts() + sizes.relative(1))[:, None, None]
-    both = mine.doubts()[:, None] + theirs.doubts_about() + sizes.relative(0)
+    relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
+    both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
     relative[:, :, 2 : sides.shape[2]] = both[:, :, None]
     return (
         _settled(height.reshape(-1, 3, 3), size),
@@ -357,7 +361,7 @@ def _corners(
     squared = moved.squared - 2 * np.einsum("pa,kaij->pkij", p, ahead)
     squared = squared + 2 * np.einsum("ka,aij->kij", u, moved.back)
     squared[..., 0, 0] += (p**2).sum(axis=1)[:, None] + (u**2).sum(axis=1) - keep**2
-    mine, theirs = one.steps(), other.steps()
+    mine, theirs = one.steps, other.steps
     behind = -np.einsum("pna,kaij->pknij", mine, ahead)
     behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
     beyond = -np.einsum("kna,paij->pknij", theirs, back)
@@ -366,8 +370,8 @@ def _corners(
     sides = _settled(np.concatenate([behind, beyond], axis=2), size)
     relative = np.zeros((*squared.shape[:2], SIDES))
     own, all_sides = behind.shape[2], sides.shape[2]
-    relative[:, :, :own] = (one.doubts_about() + sizes.relative(1))[:, None, None]
-    relative[:, :, own:all_sides] = (other.doubts_about() + sizes.relative(1))[:, None]
+    relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
+    relative[:, :, own:all_sides] = (other.doubts_about + sizes.relative(1))[:, None]
     return (
         _settled(squared.reshape(-1, 3, 3), size**2),
         _padded(sides),

@@ -14,6 +14,7 @@ from qbound.boundary.exact_contacts import ExactContacts, Feature
 from qbound.boundary.functions import clearance, pair_vector
 from qbound.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
 from qbound.model.robot import Robot
+from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.paper_rule import Window
 from qbound.region.problem import Problem
@@ -72,7 +73,7 @@ class ExactRows:
         """Return the ends of the range of free joint 0 or 1; None if it turns all the way round.
 
         Limits are those of the file. An end of a window of the paper's rule is a root in closed
-        form (eq. 39).
+        form (eq. 39); where balls do not tell that there is one, it is the problem's double.
         """
         return self._once("range", joint, self._range)
 
@@ -134,7 +135,10 @@ class ExactRows:
         """Return the ends that the problem's rule has for a joint of the robot."""
         limits: Any = self._numbers.joint(self._robot.joints[joint]).limits
         if self._problem.rule == "paper":
-            return window_ends(self._robot, self._free_robot, joint, limits)
+            try:
+                return window_ends(self._robot, self._free_robot, joint, limits)
+            except ValueError:
+                return None
         return limits  # type: ignore[no-any-return]  # balls, of exact numbers
 
 
@@ -168,15 +172,21 @@ def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[ar
 def window_end(exact: Robot, window: Window) -> arb:
     r"""Return the upper end of a window as a ball: the root :math:`\theta + \alpha` (eq. 39).
 
-    Where the two roots are not certainly apart the ball holds the place between them: of a
-    component that only touches zero it has half the digits.
+    Raises
+    ------
+    ValueError
+        If it is not certain that the component reaches zero.
     """
     from flint import arb
 
     pair: Any = exact.boundary(window.boundary)
     component = pair_vector(exact, pair)[window.component - 1]
     c, a, b = component.along(window.joint, [rational(0)] * len(exact.joints))
-    half = arb(a * a + b * b - c * c).nonnegative_part().sqrt()
+    square = arb(a * a + b * b - c * c)
+    if not square >= 0:
+        text = "it is not proved that this component reaches zero"
+        raise ValueError(f"{printable(window.boundary)}: {text}")
+    half = square.sqrt()
     found: arb = (a * half - b * c).atan2(-a * c - b * half)
     turns = round((window.upper - float(found)) / (2 * np.pi))
     end: arb = found + 2 * turns * arb.pi()
