@@ -3,8 +3,10 @@ r"""Contact features with exact numbers, one at a time: what `contacts` has in f
 A form and its side conditions are those of the same row of `Contacts` times a positive number: no
 edge is brought to length 1, so that whole numbers stay rational. Vectors of the plane of motion are
 (x, y) for :math:`x\,e_1 + y\,e_2`, where :math:`e_1` is any vector of the plane with rational
-coordinates and :math:`e_2` is its product with the normal, as that is written: a plane that is
-tilted needs no square root for what is zero to be zero.
+coordinates and :math:`e_2` is its product with the normal n, as that is written. A turn is
+:math:`\cos q + \frac{\sin q}{|n|} K` with :math:`K (x, y) = (-|n|^2 y, x)`: tables hold the
+coefficients of :math:`\sin q / |n|` until they are done, so that in a plane that is tilted what
+is zero is so too, and no ball.
 """
 
 from __future__ import annotations
@@ -42,7 +44,7 @@ class PlaneAxes:
     ratio : number
         Square of the second axis' length beside it: that of the normal's.
     stretch : number
-        Square root of the ratio.
+        Square root of the ratio, by which `quarter` makes a vector longer.
     """
 
     first: Array
@@ -67,8 +69,8 @@ class PlaneAxes:
         return (u[0] * v[0] + u[1] * v[1] * self.ratio) * self.size
 
     def quarter(self, u: Vector) -> Vector:
-        """Turn by a quarter turn, from the first axis to the second."""
-        return -(u[1] * self.stretch), u[0] / self.stretch
+        """Turn by a quarter turn, from the first axis to the second, and stretch."""
+        return -(u[1] * self.ratio), u[0]
 
     def length(self, u: Vector) -> Any:
         """Return the length of a vector of numbers."""
@@ -82,7 +84,7 @@ class ExactPose:
     Attributes
     ----------
     turn : pair of tables
-        Cosine and sine of the turn.
+        Cosine and sine of the turn, the sine over the stretch.
     at : pair of tables
         The frame's origin, seen from the other frame.
     back : pair of tables
@@ -122,11 +124,11 @@ class ExactPose:
         )
 
     def rotated(self, c: Any, s: Any) -> ExactPose:
-        """Turn by a fixed angle, given by its cosine and sine."""
+        """Turn by a fixed angle, given by its cosine and its sine over the stretch."""
         cosine, sine = self.turn
         u = self.back
         v = self.axes.quarter(u)
-        turn = cosine * c - sine * s, sine * c + cosine * s
+        turn = cosine * c - sine * s * self.axes.ratio, sine * c + cosine * s
         back = u[0] * c - v[0] * s, u[1] * c - v[1] * s
         return ExactPose(self.axes, turn, self.at, back, self.squared)
 
@@ -219,6 +221,20 @@ class ExactContacts:
 
     def feature(self, k: int) -> Feature:
         """Return form and side conditions of a row of the contacts."""
+        form, sides = self._unscaled(k)
+        if self._axes.stretch == 1:
+            return form, sides
+        joints = [self._robot.joints[j] for j in self._robot.free(self._held)]
+        one = rational(1)
+        factors = [
+            np.array([one, one, one / self._axes.stretch if joint.turns else one])
+            for joint in joints
+        ]
+        factor = np.multiply.outer(*factors)
+        return form * factor, sides * factor
+
+    def _unscaled(self, k: int) -> Feature:
+        """Return a row with coefficients of sines over the stretch."""
         pair = int(self._contacts.pair[k])
         name = self._contacts.boundaries[pair]
         boundary = self._boundaries[name]
@@ -303,7 +319,7 @@ class ExactContacts:
             if j in free:
                 return found.freely_turned(sense, free.index(j))
             s, c = sine_cosine(rational(self._held[j]))
-            return found.rotated(c, s * sense)
+            return found.rotated(c, s * sense / axes.stretch)
         axis = self._mounts[j + 1] @ joint.axis
         x, y = axes.flat(axis / _length(joint.axis))
         if j in free:

@@ -142,7 +142,7 @@ class ExactNumbers:
 
     def _direction(self, written: Any, near: Array) -> Array:
         """Return a direction of the file, if it is the robot's, else that of the robot."""
-        if written is None:
+        if written is None or _is_kept(written, near):
             return rationals(near)
         unit = _unit(written)
         own = _same(unit, near)
@@ -290,6 +290,11 @@ def _same(exact: Array | None, near: Array) -> Array:
         return rationals(near)
     away = np.abs(np.asarray(exact, dtype=float) - np.asarray(near, dtype=float))
     return exact if away.max() <= ROUNDING else rationals(near)
+
+
+def _is_kept(written: Sequence[Any], near: Array) -> bool:
+    """Tell whether a direction is in doubles, of length 1 but for rounding: it stays as it is."""
+    return all(isinstance(x, int | float) for x in written) and list(written) == near.tolist()
 
 
 def _limits(written: Any, near: Any, *, degrees: bool) -> Any:

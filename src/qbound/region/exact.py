@@ -181,13 +181,13 @@ def window_end(exact: Robot, window: Window) -> arb:
 
     pair: Any = exact.boundary(window.boundary)
     component = pair_vector(exact, pair)[window.component - 1]
-    c, a, b = component.along(window.joint, [rational(0)] * len(exact.joints))
+    c, a, b = component.along(window.joint, [arb(0)] * len(exact.joints))
     square = arb(a * a + b * b - c * c)
     if not square >= 0:
         text = "it is not proved that this component reaches zero"
         raise ValueError(f"{printable(window.boundary)}: {text}")
     half = square.sqrt()
-    found: arb = (a * half - b * c).atan2(-a * c - b * half)
+    found: arb = arb.atan2(a * half - b * c, -a * c - b * half)
     turns = round((window.upper - float(found)) / (2 * np.pi))
     end: arb = found + 2 * turns * arb.pi()
     return end
