@@ -139,7 +139,6 @@ def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
 @pytest.mark.parametrize(
     ("module", "command"),
     [
-        ("flint", ["pave", "minervabot-v2"]),
         ("scipy", ["connected", "minervabot-v2", "0", "0", "11", "143"]),
         ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
     ],

@@ -21,11 +21,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.errors import Sizes, coefficient_errors
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Tables = tuple[Floats, Floats, Floats, Floats]
+"""Forms, sides, and the errors of both."""
 
 SIDES = 4
 """Most side conditions of one feature: two ends of an edge and two neighbours of a corner."""
@@ -60,13 +63,15 @@ class Pose(NamedTuple):
     """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
 
     A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared``
-    ``|at|^2``, which a product of tables would not show to be of first degree.
+    ``|at|^2``, which a product of tables would not show to be of first degree. ``sizes`` is what
+    the lengths of its coefficients are rounded beside.
     """
 
     turn: Floats  # (2, 2, 3, 3)
     at: Floats  # (2, 3, 3)
     back: Floats  # (2, 3, 3)
     squared: Floats  # (3, 3)
+    sizes: Sizes
 
 
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -74,7 +79,13 @@ QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 def pose(moves: Sequence[Move]) -> Pose:
     """Return the pose that some joints, one after the other, give the last one's frame."""
-    found = Pose(_constant(np.eye(2)), *(_constant(np.zeros(n)) for n in (2, 2, ())))
+    held = [move for move in moves if move.free is None]
+    lengths = [np.hypot(*move.origin) for move in moves]
+    lengths += [abs(move.value) * np.hypot(*move.along) for move in held]
+    slides = frozenset(move.free for move in moves if move.free is not None and not move.turn)
+    sizes = Sizes(float(sum(lengths)), slides, len(moves))
+    at, back, squared = (_constant(np.zeros(n)) for n in (2, 2, ()))
+    found = Pose(_constant(np.eye(2)), at, back, squared, sizes)
     for move in moves:
         found = _shifted(found, move.origin)
         if move.free is None:
@@ -108,6 +119,7 @@ def _shifted(now: Pose, by: Floats) -> Pose:
         now.at + np.einsum("abij,b->aij", now.turn, by),
         now.back + _constant(by),
         now.squared + 2 * np.tensordot(by, now.back, axes=1) + _constant(by @ by),
+        now.sizes,
     )
 
 
@@ -137,10 +149,19 @@ def _slid(now: Pose, move: Move, joint: int) -> Pose:
         now.at + _times(ahead, joint, 1),
         now.back + _times(_constant(move.along), joint, 1),
         now.squared + _times(product, joint, 1) + _times(length, joint, 2),
+        now.sizes,
     )
 
 
 # --- features -------------------------------------------------------------------------------------
+
+
+def anticlockwise(corners: NDArray[Any]) -> list[int]:
+    """Return the numbers of the corners of a core, shape (m, 2), in the order of its corners."""
+    numbers = list(range(len(corners)))
+    x, y = (corners - corners[0]).T
+    clockwise = len(corners) > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
+    return numbers[::-1] if clockwise else numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,10 +183,8 @@ class Core:
     @classmethod
     def of(cls, corners: Floats, part: str = "") -> Core:
         """Make it of corners either way round; they keep their numbers, and so do the edges."""
-        m = len(corners)
-        x, y = (corners - corners[0]).T
-        clockwise = m > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
-        order = list(range(m))[::-1] if clockwise else list(range(m))
+        m, order = len(corners), anticlockwise(corners)
+        clockwise = order[0] > order[-1]
         edges = [(k - 1) % m for k in order] if clockwise else order
         return cls(
             corners[order],
@@ -173,16 +192,34 @@ class Core:
             tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
         )
 
+    @cached_property
     def edges(self) -> tuple[Floats, Floats]:
-        """Return the directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
+        """The directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
         ahead = np.roll(self.corners, -1, axis=0) - self.corners
         lengths = np.hypot(*ahead.T)
         count = len(self.edge_names)
         return ahead[:count] / lengths[:count, None], lengths[:count]
 
+    @cached_property
+    def size(self) -> float:
+        """The largest coordinate of a corner."""
+        return float(np.abs(self.corners).max())
+
+    @cached_property
+    def doubts(self) -> Floats:
+        """How far the direction of each edge may be off, (e,): a short one far out most."""
+        return ROUNDING * (0.5 + self.size / self.edges[1])
+
+    @cached_property
+    def doubts_about(self) -> Floats:
+        """The larger one of the doubts of each corner's edges, shape (m,)."""
+        doubts = self.doubts
+        return np.maximum(doubts, np.roll(doubts, 1)) if len(doubts) else np.zeros(1)
+
+    @cached_property
     def steps(self) -> Floats:
-        """Return the directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
-        along, _ = self.edges()
+        """The directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
+        along, _ = self.edges
         if not len(along):
             return np.zeros((len(self.corners), 0, 2))
         return np.stack([along, -np.roll(along, 1, axis=0)], axis=1)
@@ -207,6 +244,12 @@ class Features:
         of corners.
     names : tuple of str
         What touches, the first body's first: "corner 2 on edge 3".
+    sizes : Sizes
+        The lengths that go into them.
+    relative : ndarray, shape (f,)
+        Error of each form's coefficients beside these lengths (`errors.coefficient_errors`).
+    side_relative : ndarray, shape (f, 4)
+        The same of the side conditions; 0 of those missing.
     curves : tuple
         One a feature; features with the same one have the same form.
     keys : tuple of tuple
@@ -221,6 +264,9 @@ class Features:
     touching: Bools
     clause: Ints
     names: tuple[str, ...]
+    sizes: Sizes
+    relative: Floats
+    side_relative: Floats
     curves: tuple[Hashable, ...]
     keys: tuple[tuple[Hashable, ...], ...]
     ends: tuple[tuple[Hashable, ...], ...]
@@ -241,26 +287,34 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
     ahead = moved.at + np.einsum("abij,kb->kaij", moved.turn, other.corners)
     back = np.einsum("baij,kb->kaij", moved.turn, one.corners) - moved.back
     there, here = moved.turn, np.swapaxes(moved.turn, 0, 1)
-    found = [_edges(one, other, ahead, there, keep), _edges(other, one, back, here, keep)]
+    sizes = moved.sizes.further(one.size + other.size + keep)
+    found = [
+        _edges(one, other, ahead, there, keep, sizes),
+        _edges(other, one, back, here, keep, sizes),
+    ]
     names = [(a, b) for a in one.edge_names for b in other.corner_names]
     names += [(b, a) for a in other.edge_names for b in one.corner_names]
     (e, k), (j, i) = ((len(x.edge_names), len(y.corners)) for x, y in ((one, other), (other, one)))
     clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
     of_edges = len(names)
     if keep > 0 or max(i, k) < 3:
-        found.append(_corners(one, other, ahead, back, moved, keep))
+        found.append(_corners(one, other, ahead, back, moved, keep, sizes))
         names += [(a, b) for a in one.corner_names for b in other.corner_names]
         clause = np.concatenate([clause, e + j + np.arange(i * k)])
     corners = np.arange(len(names)) >= of_edges
     # What is kept at no distance from a point forbids nothing, unless it has an inside.
     forbids = keep > 0 or i + k > 3
+    forms, sides, relative, side_relative = map(np.concatenate, zip(*found, strict=True))
     return Features(
-        forms=np.concatenate([forms for forms, _ in found]),
-        sides=np.concatenate([sides for _, sides in found]),
+        forms=forms,
+        sides=sides,
         corners=corners,
         touching=(~corners | (keep > 0)) & forbids,
         clause=clause,
         names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
+        sizes=sizes,
+        relative=relative,
+        side_relative=side_relative,
         **_handovers(one, other, keep, len(names)),
     )
 
@@ -329,20 +383,23 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
     forms = np.einsum("a,kaij->kij", normal, seen)
     forms[..., 0, 0] -= level
     forms = _settled(forms, max(float(np.abs(seen).max()), abs(level)))
+    sizes = moved.sizes.further(core.size + abs(level))
+    errors = np.full(1, sizes.relative(1)), np.zeros((1, SIDES))
     places = core.corners.tolist()
     for form, name, corner in zip(forms, core.corner_names, places, strict=True):
         free = np.zeros((1, SIDES, 3, 3))
         free[..., 0, 0] = 1.0
         no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
         curve = "height", *corner, *normal.tolist(), level
-        yield Features(form[None], free, no, ~no, clause, (name,), (curve,), ((),), ((),))
+        own = ((curve,), ((),), ((),))
+        yield Features(form[None], free, no, ~no, clause, (name,), sizes, *errors, *own)
 
 
 def _edges(
-    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float
-) -> tuple[Floats, Floats]:
+    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float, sizes: Sizes
+) -> Tables:
     """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
-    along, lengths = mine.edges()
+    along, lengths = mine.edges
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
     starts = mine.corners[: len(along)]
     height = np.einsum("ea,kaij->ekij", normal, seen)
@@ -351,29 +408,47 @@ def _edges(
     beside[..., 0, 0] -= (along * starts).sum(axis=1)[:, None]
     rest = -beside
     rest[..., 0, 0] += lengths[:, None]
-    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps())
-    sides = np.concatenate([beside[:, :, None], rest[:, :, None], rims], axis=2)
-    size = max(float(np.abs(seen).max()), float(np.abs(mine.corners).max()))
-    sides[:, :, :2] = _settled(sides[:, :, :2], size)
-    return _settled(height.reshape(-1, 3, 3), size), _padded(_settled(sides, 1.0))
+    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps)
+    size = max(float(np.abs(seen).max()), mine.size)
+    ends = _settled(np.stack([beside, rest], axis=2), size)
+    sides = np.concatenate([ends, _settled(rims, 1.0)], axis=2)
+    relative = np.zeros((*height.shape[:2], SIDES))
+    relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
+    both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
+    relative[:, :, 2 : sides.shape[2]] = both[:, :, None]
+    return (
+        _settled(height.reshape(-1, 3, 3), size),
+        _padded(sides),
+        relative[:, :, 0].ravel(),
+        relative.reshape(-1, SIDES),
+    )
 
 
 def _corners(
-    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float
-) -> tuple[Floats, Floats]:
+    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float, sizes: Sizes
+) -> Tables:
     """Forms and sides of each corner of one core with each of the other."""
     p, u = one.corners, other.corners
     squared = moved.squared - 2 * np.einsum("pa,kaij->pkij", p, ahead)
     squared = squared + 2 * np.einsum("ka,aij->kij", u, moved.back)
     squared[..., 0, 0] += (p**2).sum(axis=1)[:, None] + (u**2).sum(axis=1) - keep**2
-    mine, theirs = one.steps(), other.steps()
+    mine, theirs = one.steps, other.steps
     behind = -np.einsum("pna,kaij->pknij", mine, ahead)
     behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
     beyond = -np.einsum("kna,paij->pknij", theirs, back)
     beyond[..., 0, 0] += np.einsum("kna,ka->kn", theirs, u)
     size = max(float(np.abs(x).max()) for x in (ahead, back, p, u))
     sides = _settled(np.concatenate([behind, beyond], axis=2), size)
-    return _settled(squared.reshape(-1, 3, 3), size**2), _padded(sides)
+    relative = np.zeros((*squared.shape[:2], SIDES))
+    own, all_sides = behind.shape[2], sides.shape[2]
+    relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
+    relative[:, :, own:all_sides] = (other.doubts_about + sizes.relative(1))[:, None]
+    return (
+        _settled(squared.reshape(-1, 3, 3), size**2),
+        _padded(sides),
+        np.full(p.shape[0] * u.shape[0], sizes.relative(2)),
+        relative.reshape(-1, SIDES),
+    )
 
 
 def _settled(table: Floats, size: float) -> Floats:
@@ -399,7 +474,7 @@ class Contacts:
 
     Attributes
     ----------
-    forms, sides, corners, clause, names
+    forms, sides, corners, clause, names, relative, side_relative
         As in `Features`; clauses and pairs are numbered through, ascending.
     pair : ndarray of int, shape (f,)
         Which pair of convex parts.
@@ -416,8 +491,10 @@ class Contacts:
     ends : ndarray of int, shape (f, 2)
         Pairs of corners, numbered: that of two corners twice, those at both ends of an edge; -1 for
         a half-space.
-    errors, side_errors : ndarray, shape (f,) and (f, 4)
-        Bounds of the errors of the coefficients.
+    lengths : ndarray, shape (f,)
+        Sum of the lengths that go into each feature.
+    slides : frozenset of int
+        Which of the two free joints slide.
     """
 
     forms: Floats
@@ -428,11 +505,13 @@ class Contacts:
     pair: Ints
     touching: Bools
     boundaries: tuple[str, ...]
+    relative: Floats
+    side_relative: Floats
+    lengths: Floats
+    slides: frozenset[int]
     curves: Ints
     keys: Ints
     ends: Ints
-    errors: Floats
-    side_errors: Floats
 
     @cached_property
     def sharp(self) -> Bools:
@@ -440,6 +519,22 @@ class Contacts:
         rounded = np.zeros(self.pairs, dtype=np.bool_)
         rounded[self.pair[self.corners & self.touching]] = True
         return np.asarray(~rounded[self.pair])
+
+    @cached_property
+    def errors(self) -> Floats:
+        """How far each coefficient of a form may be from the exact one, shape (f, 3, 3).
+
+        The exact form is taken times the positive number that makes it as large.
+        """
+        return coefficient_errors(1 + self.corners, self.lengths, self.relative, self.slides)
+
+    @cached_property
+    def side_errors(self) -> Floats:
+        """The same of the side conditions, shape (f, 4, 3, 3); 0 of those missing."""
+        degree = np.ones((len(self.corners), SIDES), dtype=np.int64)
+        degree[~self.corners, 2:] = 0  # a product of two directions
+        lengths = self.lengths[:, None]
+        return coefficient_errors(degree, lengths, self.side_relative, self.slides)
 
     @property
     def pairs(self) -> int:
@@ -459,11 +554,13 @@ class Contacts:
             (np.cumsum(kept) - 1)[self.pair[rows]],
             self.touching[rows],
             tuple(name for name in self.boundaries if name not in dropped),
+            self.relative[rows],
+            self.side_relative[rows],
+            self.lengths[rows],
+            self.slides,
             self.curves[rows],
             self.keys[rows],
             self.ends[rows],
-            self.errors[rows],
-            self.side_errors[rows],
         )
 
 
@@ -503,11 +600,13 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
         np.concatenate([np.full(len(rows.forms), k) for k, (_, rows) in enumerate(found)]),
         np.concatenate([rows.touching for _, rows in found]),
         tuple(boundary for boundary, _ in found),
+        np.concatenate([rows.relative for _, rows in found]),
+        np.concatenate([rows.side_relative for _, rows in found]),
+        np.concatenate([np.full(len(rows.forms), rows.sizes.length) for _, rows in found]),
+        frozenset().union(*(rows.sizes.slides for _, rows in found)),
         np.array(curves),
         keys,
         ends,
-        2 * ROUNDING * np.abs(forms).max(axis=(1, 2)),
-        2 * ROUNDING * np.abs(sides).max(axis=(2, 3)),
     )
 
 
@@ -520,10 +619,12 @@ NO_CONTACTS = Contacts(
     np.zeros(0, dtype=np.int64),
     np.zeros(0, dtype=np.bool_),
     (),
+    np.zeros(0),
+    np.zeros((0, SIDES)),
+    np.zeros(0),
+    frozenset(),
     np.zeros(0, dtype=np.int64),
     np.zeros((0, SIDES), dtype=np.int64),
     np.zeros((0, 2), dtype=np.int64),
-    np.zeros(0),
-    np.zeros((0, SIDES)),
 )
 """Of a robot without bodies that keep apart."""

@@ -1,6 +1,7 @@
 """Which values of two joints are safe? All of them, as components bounded by exact arcs.
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
+- `exact`: the forms of a problem in exact numbers, where floats do not decide;
 - `relevant`: of many forms, those that can bound anything here;
 - `plane`: forms over a base, their roots and signs;
 - `critical`: where roots may meet; `polynomials`: where stacks of them vanish;

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from qbound.region.decomposition import decompose
 from qbound.region.pieces import INSIDE
 from qbound.region.plane import Plane
-from qbound.region.precise import AsGiven, Precise
+from qbound.region.exact import ExactRows
+from qbound.region.precise import Precise
 from qbound.region.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -97,8 +98,8 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, off its middles; None where there is no cell."""
-    plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
-    found = decompose(plane, Precise(plane, AsGiven(problem)))
+    plane = Plane(problem.forms, problem.ranges, base, problem.contacts, problem.errors)
+    found = decompose(plane, Precise(plane, ExactRows(problem)))
     if not found.cells:
         return None
     # Of the cells over the widest slab, the first.

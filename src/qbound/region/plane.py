@@ -73,8 +73,8 @@ class Plane:
         0 or 1.
     contacts : Contacts, optional
         Of pairs of bodies that are to keep apart.
-    errors : ndarray, shape (m,), optional
-        Bounds of the errors of each form's coefficients; default 0.
+    errors : ndarray, shape (m, 3, 3), optional
+        Bounds of the errors of the forms' coefficients; default 0.
     """
 
     def __init__(
@@ -114,10 +114,16 @@ class Plane:
         self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
         if self.lift_kind == "revolute":
             self.affine[:] = False
-        # Errors of the scaled coefficients: of those that were given, and of scaling them.
-        largest = np.abs(np.concatenate([own, contacts.forms])).max(axis=(1, 2), initial=0.0)
-        given = np.concatenate([np.zeros(self.count) if errors is None else errors, contacts.errors])
-        self.eps: Floats = 4 * UNIT + given / np.where(largest > 0, largest, 1.0)
+        given = np.zeros((self.count, 3, 3)) if errors is None else errors
+        self.eps: Floats = self._relative(
+            np.concatenate([own, contacts.forms]), np.concatenate([given, contacts.errors])
+        )
+
+    def _relative(self, tables: Floats, errors: Floats) -> Floats:
+        """Bound the errors of scaled coefficients: as they were given, and of scaling them."""
+        turned = (x if self.base == 0 else np.swapaxes(x, -1, -2) for x in (tables, errors))
+        table, error = (np.abs(x * self.powers).max(axis=(-2, -1), initial=0.0) for x in turned)
+        return np.asarray(4 * UNIT + error / np.where(table > 0, table, 1.0))
 
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
@@ -138,9 +144,7 @@ class Plane:
     @cached_property
     def side_eps(self) -> Floats:
         """Errors of the scaled coefficients of side conditions, shape (f, 4)."""
-        largest = np.abs(self.contacts.sides).max(axis=(-2, -1), initial=0.0)
-        found = self.contacts.side_errors / np.where(largest > 0, largest, 1.0)
-        return np.asarray(4 * UNIT + found)
+        return self._relative(self.contacts.sides, self.contacts.side_errors)
 
     @cached_property
     def bodies(self) -> Separation:

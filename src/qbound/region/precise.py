@@ -43,26 +43,6 @@ class Rows(Protocol):
     def range(self, joint: int) -> tuple[Ball, Ball] | None: ...  # noqa: D102
 
 
-class AsGiven:
-    """The doubles of a problem, each as the binary fraction that it is."""
-
-    def __init__(self, problem: Any) -> None:
-        self.problem = problem
-
-    def form(self, row: int) -> NDArray[Any]:
-        return self.problem.forms.coefficients[row].astype(object)
-
-    def feature(self, k: int) -> tuple[NDArray[Any], NDArray[Any]]:
-        contacts = self.problem.contacts
-        return contacts.forms[k].astype(object), contacts.sides[k].astype(object)
-
-    def range(self, joint: int) -> tuple[Ball, Ball] | None:
-        from flint import arb
-
-        found = self.problem.ranges[joint]
-        return None if found is None else (arb(found[0]), arb(found[1]))
-
-
 class UndecidedError(ArithmeticError):
     """Something about the structure of a region could not be decided; the message says where."""
 

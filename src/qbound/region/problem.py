@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from qbound.boundary.body_contacts import body_contacts
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
+from qbound.boundary.errors import clearance_error
 from qbound.boundary.evaluator import (
     Evaluator,
     Range,
@@ -64,6 +65,9 @@ class Problem:
         Those about bodies, which have no single form.
     contacts : Contacts
         Their features.
+    origins : tuple of (Boundary or None)
+        Whose form each is, one a form; None where its doubles are exact as they are, as those of
+        all forms after the last that is given.
     """
 
     forms: HarmonicForm
@@ -77,6 +81,7 @@ class Problem:
     rule: Rule = "clearance"
     bodies: tuple[Boundary, ...] = ()
     contacts: Contacts = NO_CONTACTS
+    origins: tuple[Boundary | None, ...] = ()
 
     def __repr__(self) -> str:
         """Say in a line whose joints these are, and by which rule."""
@@ -142,12 +147,25 @@ class Problem:
             forms=self.forms[kept],
             names=tuple(self.names[k] for k in kept),
             distances=tuple(d for k, d in enumerate(self.distances) if k not in dropped),
+            origins=tuple(b for k, b in enumerate(self.origins) if k not in dropped),
         )
 
     def blocks(self, k: int, value: float) -> bool:
         """Tell whether a form with this value everywhere leaves no room; d_min = 0 asks none."""
         asks_nothing = k < len(self.distances) and self.distances[k] == 0
         return value < 0 or (value == 0 and not asks_nothing)
+
+    @cached_property
+    def errors(self) -> Floats:
+        """How far each coefficient of a form may be from the exact one, shape (m, 3, 3).
+
+        Forms whose doubles are exact have no error.
+        """
+        found = np.zeros_like(self.forms.coefficients)
+        for k, boundary in enumerate(self.origins):
+            if boundary is not None and self.robot is not None:
+                found[k] = clearance_error(self.robot, self.held, boundary)
+        return found
 
     @cached_property
     def constants(self) -> dict[int, float]:
@@ -238,6 +256,7 @@ def state(
         rule=rule,
         bodies=bodies,
         contacts=body_contacts(robot, held, bodies),
+        origins=tuple(formed),
     )
 
 

@@ -17,7 +17,8 @@ from qbound.printable import printable
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import decompose, nothing_in
-from qbound.region.precise import Precise, AsGiven
+from qbound.region.exact import ExactRows
+from qbound.region.precise import Precise
 from qbound.region.emptiness import irreducible
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
@@ -402,8 +403,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     constants = problem.constants
     inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
-    plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
-    precise = Precise(plane, AsGiven(inner))
+    plane = Plane(inner.forms, inner.ranges, base, inner.contacts, inner.errors)
+    precise = Precise(plane, ExactRows(inner))
     if blocked:
         nothing = CellComplex(nothing_in(plane, precise))
         return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
