@@ -334,7 +334,7 @@ def rational_features(problem):
         form, sides = rows.feature(k)
         tables = [form, *sides]
         if all(isinstance(x, fmpq) for table in tables for x in table.flat):
-            unit = [table / max(abs(x) for x in table.flat) for table in tables]
+            unit = [table / (max(abs(x) for x in table.flat) or 1) for table in tables]
             found[tuple(sorted(str(table.tolist()) for table in unit))] += 1
     return found
 

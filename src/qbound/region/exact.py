@@ -18,7 +18,7 @@ from qbound.printable import printable
 from qbound.region import paper_rule
 from qbound.region.paper_rule import Window
 from qbound.region.problem import Problem
-from qbound.tolerances import ROUNDING
+from qbound.tolerances import ROUNDING, TOUCH
 
 if TYPE_CHECKING:
     import flint
@@ -125,9 +125,10 @@ class ExactRows:
         exact = None if problem.robot is None else self._written_range(problem.joints[joint])
         if exact is None:
             return low, high
+        paper = problem.rule == "paper"  # a root that is nearly double is known to half its digits
         one, other = (
-            x if abs(float(x) - float(own)) <= ROUNDING * max(1.0, abs(float(own))) else own
-            for x, own in zip(exact, (low, high), strict=True)
+            x if abs(float(x) - own) <= (TOUCH if paper else ROUNDING * abs(own)) else arb(own)
+            for x, own in zip(exact, map(float, ends), strict=True)
         )
         return one, other
 
