@@ -287,7 +287,7 @@ class CellComplex:
     def _turns(self, line: Ints, middle: Floats, owner: Ints) -> Ints:
         """Return the full turns that bring parts of lines into the cells beside them, (2, n)."""
         turns = np.zeros(owner.shape, dtype=np.int64)
-        if not self.circle:
+        if not self.circle or not len(self.slabs):
             return turns
         for s in (0, 1):  # a cell on the left ends at its right line
             cell = owner[s]

@@ -563,7 +563,7 @@ def find_lines(finder: Finder, events: Events) -> Lines:
     if wrapped:
         own[last] = own[0]
     kept_known = {
-        number[line]: (zero if not shift[number[line]] else _shifted(zero, precise))
+        number[line]: (zero if not shift[number[line]] else shifted(precise, zero, 1))
         for line, zero in known.items()
         if line in number and number[line] not in (0, last)
     }
@@ -578,11 +578,11 @@ def find_lines(finder: Finder, events: Events) -> Lines:
     )
 
 
-def _shifted(zero: Zero, precise: Precise) -> Zero:
-    """Return a zero of a circle's base one turn later."""
+def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
+    """Return a zero of a circle's base some turns later."""
     from flint import arb, ctx
 
-    return Zero(None, 0, lambda: precise.refined(zero, ctx.prec) + 2 * arb.pi())
+    return Zero(None, 0, lambda: precise.refined(zero, ctx.prec) + 2 * turns * arb.pi())
 
 
 def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
@@ -669,14 +669,8 @@ def _owned(
     zero = finder.zero(events, best)
     if zero is None:
         return []
-    shift = t[best] - events.t[best]
-    if shift:
-        from flint import arb, ctx
-
-        inner = zero
-        zero = Zero(
-            None, 0, lambda: finder.precise.refined(inner, ctx.prec) - 2 * arb.pi()
-        )
+    if t[best] != events.t[best]:
+        zero = shifted(finder.precise, zero, -1)
     return [(own, zero)]
 
 

@@ -361,8 +361,8 @@ class _Fibres:
     def _alive(self) -> tuple[Ints, Ints]:
         """Return the pieces over each slab, and the slab, in pairs."""
         pieces, of, last = self.pieces, self.lines.of, len(self.lines.t) - 1
-        start = np.where(pieces.first == END, 0, of[pieces.first])
-        end = np.where(pieces.last == END, last, of[pieces.last])
+        start = np.append(of, 0)[np.where(pieces.first == END, len(of), pieces.first)]
+        end = np.append(of, last)[np.where(pieces.last == END, len(of), pieces.last)]
         if (start < 0).any() or (end < 0).any():
             raise UndecidedError("where a contact begins or ends")
         if self.plane.base_range is None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
-from qbound.region.critical import NO_EVENTS, Events, Finder
+from qbound.region.critical import NO_EVENTS, Events, Finder, group_zeros, shifted
 from qbound.region.plane import Plane, normalised, ranges, which
 from qbound.region.precise import KINDS, Zero, midpoint, precision
 from qbound.tolerances import AGREE, BOX, NEAR, UNIT, WALL
@@ -233,8 +233,7 @@ class _Contacts:
         at, exact = self._inside(start, end, first, last)
         touching = self._touching(f, at, exact)
         strict = np.array([self._is_strict(found)]).reshape(-1)
-        kind = np.append(strict, True)[first]  # an end of the range has index -2: the last
-        kind[first == END] = True
+        kind = np.append(strict, True)[np.where(first == END, len(strict), first)]
         near = self._near(f, start)
         rows, lines = [], [np.zeros(0, dtype=np.int64)]
         enters = _falls(plane, plane.table[plane.count :][self.chosen[f]], at)
@@ -265,7 +264,7 @@ class _Contacts:
 
     def _in_order(self, of: Ints, found: Events) -> tuple[Ints, Events]:
         """Sort events by feature and base value; balls decide what doubles do not."""
-        low, high = self.plane.ends
+        plane, (low, high) = self.plane, self.plane.ends
         inside = (found.t >= low - found.radius) & (found.t <= high + found.radius)
         order = np.lexsort([found.t, of])
         order = order[inside[order]]
@@ -299,15 +298,16 @@ class _Contacts:
             gone = [r for r in rows if not any(r in group for group in ranked)]
             dropped[gone] = True
             k += 1
+        before = found.t.copy()
         for row in which(near_end & ~dropped).tolist():
             dropped[row] = not self._within(found, row)
         kept = swaps[~dropped[swaps]]
+        # On a circle some lie a turn away now, at the other end of their feature's events.
+        kept = kept[np.lexsort([np.sign(found.t - before)[kept], of[kept]])]
         return of[kept], found[kept]
 
     def _ranked(self, found: Events, rows: list[int]) -> list[list[int]]:
         """Return events that overlap in their true order, those that are one together."""
-        from qbound.region.critical import group_zeros
-
         if len({int(found.key[r]) for r in rows}) == 1 and found.key[rows[0]] >= 0:
             return [rows]
         zeros = [(r, self.finder.zero(found, r)) for r in rows]
@@ -319,26 +319,28 @@ class _Contacts:
         return [[r for r, _ in group] for _, group in group_zeros(self.finder.precise, known)]
 
     def _within(self, found: Events, row: int) -> bool:
-        """Tell whether an event beside an end of the range lies inside."""
-        from qbound.region.critical import group_zeros
+        """Tell whether an event beside an end of the range lies inside; on the end it does not.
 
-        plane = self.plane
-        if plane.base_range is None:
-            t, radius = found.t[row], found.radius[row]
-            low, high = plane.ends
-            # On a circle nothing ends at the cut; a zero on it is that of both its sides.
-            return bool(low < t - radius or t + radius < high or True)
+        Of a circle the end is its cut: an event beyond lies a turn away, within the other end.
+        """
+        plane, precise = self.plane, self.finder.precise
         zero = self.finder.zero(found, row)
         if zero is None:
             return False
-        upper = found.t[row] > sum(plane.ends) / 2
-        precise = self.finder.precise
+        upper = bool(found.t[row] > sum(plane.ends) / 2)
         end = Zero(None, 0, lambda: precise.ends("base")[int(upper)])
         groups = group_zeros(precise, [("event", zero), ("end", end)])
-        names = [[name for name, _ in group] for _, group in groups]
-        if len(names) == 1:
+        if len(groups) == 1:
             return False
-        return names[0 if upper else 1] == ["event"]
+        first = groups[0][1][0][0]
+        inside = first == ("end" if not upper else "event")
+        if not inside and plane.base_range is None:
+            turns = -1 if upper else 1
+            found.t[row] += turns * TURN
+            found.exact[row] = len(self.finder.zeros)
+            self.finder.zeros.append(shifted(precise, zero, turns))
+            return True
+        return inside
 
     def _inside(
         self, start: Floats, end: Floats, first: Ints, last: Ints
@@ -346,7 +348,7 @@ class _Contacts:
         """Return a base value inside each interval, and exact ones where doubles are too near."""
         events = self.events
         radius = np.append(events.radius, 0.0)
-        doubt = radius[np.maximum(first, -1)] + radius[np.maximum(last, -1)]
+        doubt = radius[np.maximum(first, -1)] + radius[np.maximum(last, -1)]  # 0 at an end
         at = start + INSIDE * (end - start)
         exact: dict[int, Any] = {}
         for k in which(end - start <= 8 * doubt + 64 * UNIT * np.abs(at)).tolist():
