@@ -37,7 +37,7 @@ Of `slides` the second lies in a corner behind a post that touches the end of a 
 
 PATIENCE = 20.0
 BLOCK = 20
-SUITE = [seed for seed in range(340) if seed % 50 != 49][:300]
+SUITE = [seed for seed in range(306) if seed % 50 != 49]
 """Without those of 100 obstacles, which take seconds."""
 
 
@@ -153,7 +153,7 @@ def test_the_judge_sees_an_obstacle_that_is_a_little_larger_or_smaller(more, exp
 
 def test_the_judge_sees_components_that_are_merged_split_or_lost():
     text = (SCENES / "slit-80.toml").read_text(encoding="utf-8")
-    cells = raster(read_scene(text), 256)
+    cells = raster(read_scene(text), 1024)
     assert {-1, 0, 1} == set(np.unique(cells.state).tolist())
     found = {
         "merged": lambda q: 0,
@@ -162,13 +162,14 @@ def test_the_judge_sees_components_that_are_merged_split_or_lost():
     }
     for kind, told in found.items():
         region = SimpleNamespace(components=(), area=37.1, component_of=told)
-        assert kind in kinds(faults(text, region, finest=256))
+        assert kind in kinds(faults(text, region))
 
 
 def test_the_judge_sees_a_loop_that_is_open_and_a_region_on_the_wrong_side():
     region = regions_of(PLAIN)[0]
-    component = max(region.components, key=lambda c: len(c.loops[0]))
-    opened = replace(component, loops=(component.loops[0][1:],), vertices=())
+    component = region.components[0]
+    loop = max(component.loops, key=len)
+    opened = replace(component, loops=(loop[1:],), vertices=())
     backwards = [
         SimpleNamespace(
             boundary=arc.boundary,
@@ -176,7 +177,7 @@ def test_the_judge_sees_a_loop_that_is_open_and_a_region_on_the_wrong_side():
             end=arc.start,
             at=lambda s, arc=arc: arc.at(1 - np.asarray(s)),
         )
-        for arc in component.loops[0][::-1]
+        for arc in loop[::-1]
     ]
     turned = replace(component, loops=(tuple(backwards),), vertices=())
     for one, kind in ((opened, "open"), (turned, "left")):
