@@ -20,7 +20,7 @@ from qbound.region import Region, clearance_problem, solve
 from support import body_scenes
 from support.region_judge import Outline, agreement, faults, kinds, raster, read_scene
 
-SCENES = Path(__file__).with_name("scenes")
+SCENES = Path(__file__).with_name("once_wrong")
 COMPONENTS = {
     "slide-20": 1,
     "slide-20-scaled": 1,
