@@ -36,6 +36,9 @@ MEET = 1e-7
 ASIDE = 1e-5
 """How far beside an arc one side is free and the other is not (rad, or parts of the size)."""
 
+ROUNDED = 1e-12
+"""A margin this small, beside the robot's size, may be rounding."""
+
 SAME_AREA = 1e-9
 """Areas of the same region differ by no larger part of their sum."""
 
@@ -467,7 +470,7 @@ def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
     least = ON * scene.size
     if (left < -least).sum() > len(left) / 2:
         return f"left: margin {left.min():.2g} to {name}, at {_shown(middle[left.argmin()])}"
-    if ((right > least) & (left <= least)).sum() > len(right) / 2:
+    if ((right > least) & (left <= ROUNDED * scene.size)).sum() > len(right) / 2:
         return f"right: margin {right.max():.2g} to {name}, at {_shown(middle[right.argmax()])}"
     return ""
 
