@@ -36,6 +36,9 @@ MEET = 1e-7
 ASIDE = 1e-5
 """How far beside an arc one side is free and the other is not (rad, or parts of the size)."""
 
+ROUNDED = 1e-12
+"""A margin this small, beside the robot's size, may be rounding."""
+
 SAME_AREA = 1e-9
 """Areas of the same region differ by no larger part of their sum."""
 
@@ -424,7 +427,7 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
     if not arcs:
         return []
     found, least = [], ON * scene.size
-    lines = [_thinned(arc.points * scene.scale) for arc in arcs]
+    lines = [_along(arc) * scene.scale for arc in arcs]
     for arc, line in zip(arcs, lines, strict=True):
         margin = scene.margin_of(arc.boundary, line)
         if margin is None:
@@ -448,7 +451,10 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
 
 
 def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
-    """Say where the margin to an arc's boundary falls to the left, or rises to the right."""
+    """Say where the margin to an arc's boundary falls to the left, or rises to the right alone.
+
+    It rises on both sides of a curve where two bodies touch and no more: that is a wall too.
+    """
     chord = line[2:] - line[:-2]
     length = np.hypot(*chord.T)
     if not len(length) or length.max() < 100 * ASIDE:
@@ -462,19 +468,16 @@ def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
     assert left is not None
     assert right is not None
     least = ON * scene.size
-    check = scene.by_name.get(name)
-    thin = isinstance(check, Gap) and not (check.kept or check.one.solid or check.other.solid)
     if (left < -least).sum() > len(left) / 2:
         return f"left: margin {left.min():.2g} to {name}, at {_shown(middle[left.argmin()])}"
-    if not thin and (right > least).sum() > len(right) / 2:
+    if ((right > least) & (left <= ROUNDED * scene.size)).sum() > len(right) / 2:
         return f"right: margin {right.max():.2g} to {name}, at {_shown(middle[right.argmax()])}"
     return ""
 
 
-def _thinned(points: Floats, most: int = 25) -> Floats:
-    """Ends and some places between, no two of them the same."""
-    chosen = np.unique(np.linspace(0, len(points) - 1, most).round().astype(int))
-    return points[chosen]
+def _along(arc: Any, most: int = 33) -> Floats:
+    """Places along an arc, its ends among them: inside its straight pieces too."""
+    return np.asarray(arc.at(np.linspace(0, 1, most)))
 
 
 def _shown(q: Floats) -> str:
@@ -578,23 +581,53 @@ def _flood_faults(scene: Scene, region: Any, cells: Raster) -> list[str]:
     lots = flood(free, scene.rounds, corners=False)
     lumps = flood(possible, scene.rounds, corners=True)
     holds: dict[int, set[int | None]] = {}
-    of_lump: dict[int, int] = {}
-    labels, counts = np.unique(lots[free], return_counts=True)
-    for lot in labels[np.argsort(-counts)][:40].tolist():
-        inside = np.argwhere(lots == lot)
-        chosen = inside[np.unique(np.linspace(0, len(inside) - 1, 6).astype(int))]
-        q = cells.middles(chosen) / scene.scale
-        holds[lot] = {region.component_of(each) for each in q}
-        of_lump[lot] = int(lumps[tuple(inside[0])])
-        if None in holds[lot]:
-            found.append(f"lost: {_shown(q[0])} and what is joined to it is free, in no component")
-        if len(holds[lot] - {None}) > 1:
-            found.append(f"split: {sorted(holds[lot] - {None})} are joined, near {_shown(q[0])}")
+    place: dict[int, NDArray[np.intp]] = {}
+    for cell in _samples(scene, region, cells, lots):
+        q = (cells.middles(cell) / scene.scale)[None]
+        lot = int(lots[tuple(cell)])
+        holds.setdefault(lot, set()).add(region.component_of(q[0]))
+        place.setdefault(lot, cell)
+    for lot, own in holds.items():
+        where = _shown(cells.middles(place[lot]) / scene.scale)
+        if None in own:
+            found.append(f"lost: {where} or what is joined to it is free, and in no component")
+        if len(own - {None}) > 1:
+            found.append(f"split: {sorted(own - {None})} are joined, near {where}")
+    of_lump = {lot: int(lumps[tuple(cell)]) for lot, cell in place.items()}
     for one, other in combinations(holds, 2):
         common = (holds[one] & holds[other]) - {None}
         if of_lump[one] != of_lump[other] and common:
             found.append(f"merged: component {min(common)} is at least two, with no way between")
     return found
+
+
+def _samples(
+    scene: Scene, region: Any, cells: Raster, lots: NDArray[np.intp]
+) -> list[NDArray[np.intp]]:
+    """Cells that are surely free: some of each lot, and on the left of every component's arcs."""
+    chosen = []
+    labels, counts = np.unique(lots[cells.state == 1], return_counts=True)
+    for lot in labels[np.argsort(-counts)][:40]:
+        inside = np.argwhere(lots == lot)
+        chosen.append(inside[np.unique(np.linspace(0, len(inside) - 1, 8).astype(int))])
+    low, wide, n = scene.ends[:, 0], np.ptp(scene.ends, axis=1), len(cells.state)
+    for component in region.components:
+        beside = []
+        for arc in [arc for loop in component.loops for arc in loop][:40]:
+            line = _along(arc) * scene.scale
+            chord = np.diff(line, axis=0)
+            across = chord[:, ::-1] * [-1.0, 1.0] / np.maximum(np.hypot(*chord.T), 1e-12)[:, None]
+            middle = (line[1:] + line[:-1]) / 2
+            beside += [middle + far * across * cells.step for far in (2.0, 8.0, 32.0)]
+        if beside:
+            q = np.concatenate(beside)
+            whole = np.where(scene.rounds, np.floor((q - low) / wide), 0)
+            at = np.floor((q - whole * wide - low) / wide * n).astype(np.intp)
+            at = at[((at >= 0) & (at < n)).all(axis=1)]
+            at = np.unique(at[cells.state[tuple(at.T)] == 1], axis=0)
+            if len(at):
+                chosen.append(at[np.unique(np.linspace(0, len(at) - 1, 12).astype(int))])
+    return [cell for block in chosen for cell in block]
 
 
 # --- one region, found twice ----------------------------------------------------------------------
