@@ -94,8 +94,9 @@ def along(arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
     -------
     q, dq : ndarray, shape (k - 1, m, 2)
         Where the normal of the chord at the fraction meets the arc, rad or length, and the
-        derivative of that point by the fraction. A fold is as smooth as any other place. Normal
-        is meant in the arc's own extent, because rad and a length have no common measure.
+        derivative of that point by the fraction. A fold is as smooth as any other place. Of a
+        joint that turns and one that slides the normal is that in the arc's own extent, because
+        rad and a length have no common measure.
     """
     ends = arc.points[:-1], arc.points[1:]
     pieces = len(ends[0])
@@ -122,7 +123,12 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
 
 
 def _extent(arc: Arc) -> Floats:
-    """Return how far an arc reaches along each joint, shape (2,); of a straight one not zero."""
+    """Return a length or an angle for each joint to measure an arc in, shape (2,), above zero.
+
+    Joints of one kind have one measure; else it is how far the arc reaches along each.
+    """
+    if arc.form is None or len(set(arc.form.kinds)) == 1:
+        return np.ones(2)
     extent = np.ptp(arc.points, axis=0)
     return np.asarray(np.maximum(extent, THINNEST * (extent.max() or 1.0)))
 
