@@ -57,7 +57,7 @@ def largest_scale(centre: str = "area") -> SafeScale:
     """Return the largest safe scale of the polygon about either centroid."""
     p = vertices()
     about = polygon.centroid(p) if centre == "area" else p.mean(axis=0)
-    return scaling.largest_safe_scale(p, about, [floor()])
+    return scaling.largest_safe_scale(p, about, floor()[None])
 
 
 def least_height(factor: float) -> float:

@@ -22,11 +22,11 @@ from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
-from qbound.model.robot import Parallelogram, Robot
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, certify
+from qbound.proofs.certify import Certificate, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import exact_problem, exact_robot
@@ -111,6 +111,11 @@ class Why:
     tried: tuple[str, ...] = field(default=())
 
     @property
+    def no_certificate(self) -> str:
+        """Why no answer about this robot has a certificate, in a sentence; empty where one can."""
+        return no_certificate(self.robot)
+
+    @property
     def differing(self) -> list[int]:
         """Joints in which the two ends differ, by index."""
         return differing(self.ends)
@@ -150,8 +155,8 @@ def why(
     Notes
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
-    and a paving that separates with one of "no path". An arm with a parallelogram has none, since
-    certificates do not know it: paths of it are found by pavings alone.
+    and a paving that separates with one of "no path". An arm that certificates cannot hold has none
+    (`Why.no_certificate` says why): its paths are found by pavings alone.
 
     Examples
     --------
@@ -197,10 +202,8 @@ def why(
     if path is not None:
         return path
     none = f"a search for a path ({SEEDS} times two growing trees) found none"
-    if not _certifiable(robot):
-        none = (
-            "no path was searched for: certificates know no parallelogram, and would not prove it"
-        )
+    if no_certificate(robot):
+        none = f"no path was searched for, because none could be proved: {no_certificate(robot)}"
     return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
 
 
@@ -224,11 +227,6 @@ def differing(ends: Floats) -> list[int]:
     return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
 
 
-def _certifiable(robot: Robot) -> bool:
-    """Tell whether certificates know every type of joint of a robot."""
-    return not any(isinstance(joint, Parallelogram) for joint in robot.joints)
-
-
 # --- an end that violates something ---------------------------------------------------------------
 
 
@@ -237,7 +235,7 @@ def _infeasible(
 ) -> Why:
     """Certify the worst of what is violated."""
     refuted = None
-    if _certifiable(robot):
+    if not no_certificate(robot):
         point = statements.points_of(robot, ends)[bad[0][0]]
         certificate = certify(text, statements.box(point, point))
         refuted = certificate if certificate.verdict is Verdict.REFUTED else None
@@ -254,7 +252,7 @@ def _separated(
     if parted is None:
         return None
     proved = None
-    if _certifiable(robot):
+    if not no_certificate(robot):
         ranges = [_widest(block) for block in parted.blocks]
         certificate = certify_no_path(text, ends[0], ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
@@ -276,7 +274,7 @@ def _said_of_separations(robot: Robot) -> str:
 
 def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
-    if not _certifiable(asked.robot):
+    if no_certificate(asked.robot):
         return None
     for k in range(seeds):
         start, goal = asked.ends
@@ -288,7 +286,7 @@ def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
-    if not _certifiable(asked.robot):
+    if no_certificate(asked.robot):
         if held is None:
             return None
         least = float(least_margins(asked.robot, path)[1].min())
@@ -368,7 +366,7 @@ def _paved(asked: _Asked, source: str | Path) -> Why:
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
-    if not _certifiable(asked.robot):
+    if no_certificate(asked.robot):
         return None
     certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None

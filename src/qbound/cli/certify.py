@@ -20,7 +20,14 @@ from qbound.cli.values import box, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
-from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify, certify_region
+from qbound.proofs.certify import (
+    Bracket,
+    Certificate,
+    bracket_scale,
+    certify,
+    certify_region,
+    no_certificate,
+)
 from qbound.proofs.points import as_decimal, read_points
 from qbound.proofs.reports import certificate_lines, folded
 
@@ -35,6 +42,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "certify",
         help="prove that every configuration of a set is safe",
+        description="Prove that every configuration of a set keeps every boundary, or refute it."
+        " Certificates take robots of at most 6 joints, none of them a parallelogram.",
         epilog="example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
     add_robot(parser)
@@ -71,6 +80,8 @@ def run(options: argparse.Namespace) -> int:
         _check_folder(options.with_checker)
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
+    if no_certificate(robot):
+        raise ValueError(no_certificate(robot))
     margin = as_decimal("--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")

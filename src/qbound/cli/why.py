@@ -26,7 +26,8 @@ def add_to(commands: Any) -> None:
         help="why does my plan fail? a path, proved, or what separates start and goal",
         description="Can the arm get from START to GOAL? First: does either violate a boundary?"
         " Then: can one joint not pass a range, whatever the others do? Then a path is searched"
-        " and proved. Else up to three joints are paved, the others held.",
+        " and proved. Else up to three joints are paved, the others held."
+        " Of more than 6 joints, or a parallelogram, the answer has no certificate.",
         epilog="example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)
@@ -74,6 +75,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
     """Say what the certificate is, or that there is none."""
+    if found.certificate is None and found.no_certificate:
+        yield f"no certificate: {found.no_certificate}"
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:

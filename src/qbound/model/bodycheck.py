@@ -97,14 +97,17 @@ def off_plane(plane: PlaneOfMotion, bodies: Sequence[Body]) -> Iterator[tuple[Bo
     """Yield each body that lies off the plane of the first one, and say how far."""
     height = plane.height(bodies[0].frame, bodies[0].shape.places)[0]
     rounding = ZERO_AMPLITUDE * _size(plane, bodies)
+    taken = ""
+    if plane.chosen:
+        two = "two numbers, or " if np.abs(plane.normal).max() > 1 - ZERO_AMPLITUDE else ""
+        taken = "; all joints slide along one line, and of the planes that hold it"
+        taken += f" {plane.name} was taken: give places {two}three in one plane parallel to it"
     for body in bodies:
         off = np.abs(plane.height(body.frame, body.shape.places) - height)
         if off.max() > rounding:
             place = shown(body.shape.places[np.argmax(off)].tolist())
-            yield (
-                body,
-                f"{place} lies {off.max():.6g} off the plane of body {shown(bodies[0].name)}",
-            )
+            first = shown(bodies[0].name)
+            yield body, f"{place} lies {off.max():.6g} off the plane of body {first}{taken}"
 
 
 def is_oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:

@@ -27,6 +27,7 @@ from qbound.boundary.evaluator import (
     stacked,
     with_bodies,
 )
+from qbound.boundary.functions import term_size
 from qbound.boundary.parts import bounds_bodies
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
@@ -94,12 +95,22 @@ class Problem:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
         missing = len(self.names) - len(self.distances)
         distances = (*self.distances, *[None] * missing)
-        forms = compiled(self.forms, self.names, distances, self.ranges, self.limits)
+        forms = compiled(
+            self.forms, self.names, distances, self.ranges, self.limits, terms=self._terms
+        )
         if self.robot is None or not self.bodies:
             return forms
         names = {boundary.name for boundary in self.bodies}.union(self.names)
         order = [boundary.name for boundary in self.robot.used if boundary.name in names]
         return with_bodies(forms, Separation(self.robot, self.held, self.bodies), order)
+
+    @property
+    def _terms(self) -> list[float]:
+        """Size of the terms of each form, 0 of one that is no clearance of the robot's."""
+        if self.robot is None or self.rule == "paper":
+            return []
+        used = {b.name: b for b in self.robot.used if not bounds_bodies(b)}
+        return [term_size(self.robot, used[n]) if n in used else 0.0 for n in self.names]
 
     @property
     def home(self) -> Floats | None:
