@@ -98,7 +98,7 @@ def tool_path_of_the_six_points() -> Outcome:
         judge(holds=crossed > 0),
         f"Of {len(ROUNDS)} walks round the region {crossed} give a path of the tool that crosses"
         f" itself at each of the scales {', '.join(f'{s:g}' for s in scales)}. All closed walks do,"
-        f" {counted(min(counts[AROUND]), 'time')}. Of the open ones only"
+        f" in {counted(min(counts[AROUND]), 'place')}. Of the open ones only"
         f" {' and '.join(plain) or 'none'} do not cross, in either direction.",
     )
 
