@@ -185,8 +185,8 @@ def choice_decides_the_reach() -> Outcome:
             "the largest reach on the way": judge(holds=bool(np.ptp(largest) > 0.01)),
         },
         f"The tool's paths on the right and on the left are up to {apart:.1f} cm apart, and"
-        f" {100 * far:.0f} % of the length of the left one is more than 1 cm from the right one. The"
-        " distance in"
+        f" {100 * far:.0f} % of the length of the left one is more than 1 cm from the right one."
+        " The distance in"
         f" the final pose is, at scale {SCALE:g}, {final[0][0]:.4f} cm on the right and"
         f" {final[0][1]:.4f} cm on the left with the printed x_{{2,13}} = 9.00, {final[1][0]:.4f}"
         f" and {final[1][1]:.4f} cm with 9.09 (T-4.2). Rounding the offsets of the exactly"
