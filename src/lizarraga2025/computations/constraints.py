@@ -134,8 +134,8 @@ def kinds_of_bound() -> Outcome:
     return Outcome(
         judge(holds=all(above)),
         f"In {sum(above)} of {len(above)} rows of Table 6 the bound with k = 1 is the greater one,"
-        " wherever both exist. The caption of Figure 4 names β_{3,3,2} for a side that only"
-        " β_{3,3,1} can be if every window of Table 6 holds the home pose.",
+        " wherever both exist. The caption of Figure 4 calls one side β_{3,3,2}; if every window is"
+        " to contain the home pose, it is β_{3,3,1}.",
     )
 
 

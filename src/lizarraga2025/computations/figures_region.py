@@ -22,8 +22,8 @@ from lizarraga2025.evidence.joint_region import (
     largest_scale,
     least_height,
     scaled,
-    square,
     vertices,
+    within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
@@ -198,7 +198,7 @@ def red_lines_play_no_part() -> Outcome:
         sum(c.area for c in solve(state(robot(), used, ranges, names), robot().home).components)
         for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
     ]
-    by_pairs = square()[((box.lower <= square()) & (square() <= box.upper)).all(axis=-1)]
+    by_pairs = within_the_windows()
     by_rule = by_pairs[paper_rule.feasible(robot(), by_pairs)]
     return strongest(
         {

@@ -128,13 +128,21 @@ def which_five_points() -> Outcome:
     orders = {"-".join(str(i + 1) for i in order): order for order in simple_sequences()}
     fits = dict.fromkeys(_stated(8, orders), True)
     neighbours = len(simple_neighbours())
+    both_ways = [order for o in orders.values() for order in (o, o[::-1])]
+    pairs = [o for o in both_ways if opposite(o) in both_ways and _end(o) > 0 > _end(opposite(o))]
     return Outcome(
         undetermined(fits),
         f"The text does not name the points. Of 360 orders of five of the six (a walk and its"
         f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself; of"
         f" the {len(neighbour_sequences())} walks through five neighbours, in either direction,"
-        f" {neighbours}. {PICTURE}",
+        f" {neighbours}. Those that end on the right, with an opposite for Figure 9 that ends on"
+        f" the left, are {len(pairs)}, counted in both directions. {PICTURE}",
     )
+
+
+def _end(order: tuple[int, ...]) -> float:
+    """Return where the tool is at the end of a walk, cm to the right of the base."""
+    return float(path_through(order).tool[-1, 0])
 
 
 @computes("F-8.2")
@@ -176,7 +184,7 @@ def opposite_paths() -> Outcome:
     orders = {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
     first, second = (_stated(figure, orders).values() for figure in (8, 9))
     opposites = [o for o in first if opposite(o) in second]
-    ends = [float(path_through(order).tool[-1, 0]) for order in (RIGHT, LEFT)]
+    ends = [_end(order) for order in (RIGHT, LEFT)]
     return Outcome(
         judge(holds=len(opposites) == len(first) > 0, under=bool(opposites)),
         f"The text names no points (F-8.1). Of {len(first)} orders for Figure 8, counted in both"

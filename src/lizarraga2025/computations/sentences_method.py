@@ -257,7 +257,7 @@ def convention_is_applied_throughout() -> Outcome:
         f"It holds of the two indices of a vector, for its start and its end: all {len(labels)}"
         " lengths in eq. (29) have them. The observer, the third part of a label, is marked in"
         f" eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the {' and on the '.join(sides)}"
-        f" of the symbol, and in {counted(len(later), 'equation')} after Section 2.",
+        f" of the symbol, and in {len(later) or 'no'} equation after Section 2.",
     )
 
 

@@ -34,6 +34,7 @@ from lizarraga2025.evidence.joint_region import (
     largest_scale,
     least_height,
     square,
+    within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
@@ -144,7 +145,7 @@ def limits_are_respected() -> Outcome:
     kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
     q = square()
     inside = int(in_base_box(q[paper_rule.feasible(robot(), q)]).sum())
-    anyway = in_base_box(_by_the_windows_alone()).any()
+    anyway = in_base_box(within_the_windows()).any()
     return strongest(
         {
             "three sides of one box round the base that the tool stays out of": judge(
@@ -161,12 +162,6 @@ def limits_are_respected() -> Outcome:
         f" of {len(q) ** 2} configurations on a grid {inside or 'none'} in the region has the tool"
         f" in it, and by the windows of the pairs alone {'some have' if anyway else 'none has'}.",
     )
-
-
-def _by_the_windows_alone() -> Floats:
-    """Return the configurations of a grid that the windows of the point pairs leave, rad."""
-    box, q = paper_rule.box(robot()), square()
-    return np.asarray(q[((box.lower <= q) & (q <= box.upper)).all(axis=-1)])
 
 
 def _limited(walls: tuple[HalfSpace, ...]) -> Problem:

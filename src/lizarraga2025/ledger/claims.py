@@ -14,7 +14,7 @@ from lizarraga2025.ledger.entries import Entry, Evidence, entries
 from lizarraga2025.results import write_json
 from lizarraga2025.verdicts import VERDICTS, Verdict
 
-SCHEMA: Final = "qbound/claims/2"
+SCHEMA: Final = "qbound/claims/3"
 KEYS: Final = (
     "id",
     "kind",
