@@ -166,7 +166,7 @@ def test_right_and_left_reach_equally_far_on_the_symmetric_arm() -> None:
 
 def test_right_and_left_reach_different_places() -> None:
     right, left = (tool(legs(order, 0.95)) for order in ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0)))
-    apart = np.linalg.norm(right[:, None, ::4] - left[None, ::4], axis=-1)
+    apart = np.linalg.norm(right[:, None] - left, axis=-1)
     assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) == pytest.approx(15.1, abs=0.1)
 
 
