@@ -61,3 +61,11 @@ def test_a_replaced_function_is_seen_where_it_was_imported_by_name() -> None:
     with world(replaced={"lizarraga2025.evidence.arms.robot": arms.symmetric})():
         assert theorem_1.robot is arms.symmetric
     assert theorem_1.robot is kept
+
+
+def test_what_was_found_is_told_of_the_world_it_was_found_in() -> None:
+    label = "beta_{2,3,1}"
+    text = paper.TABLE_6[label].replace("pi + ", "")
+    assert "a root of the component" in claim("B-2.3.1").found
+    with world(printed={"TABLE_6": {label: text}})():
+        assert "no root (20.00 cm) of the component" in claim("B-2.3.1").found
