@@ -125,6 +125,12 @@ def square(n: int = 360) -> Floats:
     return np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
 
 
+def within_the_windows() -> Floats:
+    """Return the configurations of `square` that the windows of the point pairs leave, rad."""
+    box, q = paper_rule.box(robot()), square()
+    return np.asarray(q[((box.lower <= q) & (q <= box.upper)).all(axis=-1)])
+
+
 @cache
 def drawn() -> Sample:
     """Return the book's draw of 100,000 configurations, judged by the paper's rule."""

@@ -14,7 +14,7 @@ each in the first degree.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -382,7 +382,6 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
     seen = moved.at + np.einsum("abij,kb->kaij", moved.turn, core.corners)
     forms = np.einsum("a,kaij->kij", normal, seen)
     forms[..., 0, 0] -= level
-    forms = _settled(forms, max(float(np.abs(seen).max()), abs(level)))
     sizes = moved.sizes.further(core.size + abs(level))
     errors = np.full(1, sizes.relative(1)), np.zeros((1, SIDES))
     places = core.corners.tolist()
@@ -409,15 +408,13 @@ def _edges(
     rest = -beside
     rest[..., 0, 0] += lengths[:, None]
     rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps)
-    size = max(float(np.abs(seen).max()), mine.size)
-    ends = _settled(np.stack([beside, rest], axis=2), size)
-    sides = np.concatenate([ends, _settled(rims, 1.0)], axis=2)
+    sides = np.concatenate([np.stack([beside, rest], axis=2), rims], axis=2)
     relative = np.zeros((*height.shape[:2], SIDES))
     relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
     both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
     relative[:, :, 2 : sides.shape[2]] = both[:, :, None]
     return (
-        _settled(height.reshape(-1, 3, 3), size),
+        height.reshape(-1, 3, 3),
         _padded(sides),
         relative[:, :, 0].ravel(),
         relative.reshape(-1, SIDES),
@@ -437,23 +434,17 @@ def _corners(
     behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
     beyond = -np.einsum("kna,paij->pknij", theirs, back)
     beyond[..., 0, 0] += np.einsum("kna,ka->kn", theirs, u)
-    size = max(float(np.abs(x).max()) for x in (ahead, back, p, u))
-    sides = _settled(np.concatenate([behind, beyond], axis=2), size)
+    sides = np.concatenate([behind, beyond], axis=2)
     relative = np.zeros((*squared.shape[:2], SIDES))
     own, all_sides = behind.shape[2], sides.shape[2]
     relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
     relative[:, :, own:all_sides] = (other.doubts_about + sizes.relative(1))[:, None]
     return (
-        _settled(squared.reshape(-1, 3, 3), size**2),
+        squared.reshape(-1, 3, 3),
         _padded(sides),
         np.full(p.shape[0] * u.shape[0], sizes.relative(2)),
         relative.reshape(-1, SIDES),
     )
-
-
-def _settled(table: Floats, size: float) -> Floats:
-    """Take for zero what rounding leaves where terms of this size cancel."""
-    return np.where(np.abs(table) > ROUNDING * size, table, 0.0)
 
 
 def _padded(sides: Floats) -> Floats:
@@ -589,11 +580,9 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
             for end, name in enumerate(pairs):
                 ends[k, end] = numbers.setdefault((at, name), len(numbers))
             k += 1
-    forms = np.concatenate([rows.forms for _, rows in found])
-    sides = np.concatenate([rows.sides for _, rows in found])
-    return Contacts(
-        forms,
-        sides,
+    made = Contacts(
+        np.concatenate([rows.forms for _, rows in found]),
+        np.concatenate([rows.sides for _, rows in found]),
         np.concatenate([rows.corners for _, rows in found]),
         np.concatenate([rows.clause + n for (_, rows), n in zip(found, clauses, strict=False)]),
         tuple(name for _, rows in found for name in rows.names),
@@ -608,6 +597,10 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
         keys,
         ends,
     )
+    # What terms that cancel leave is rounding.
+    forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)
+    sides = np.where(np.abs(made.sides) > made.side_errors, made.sides, 0.0)
+    return replace(made, forms=forms, sides=sides)
 
 
 NO_CONTACTS = Contacts(

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.critical import to_float_key
 from qbound.region.decomposition import Cell, Decomposition, turned_root
@@ -96,6 +97,15 @@ class Parts(NamedTuple):
         counts = list(map(len, self.cells))
         part[list(chain(*self.cells))] = np.arange(len(counts)).repeat(counts)
         return part
+
+
+class _Marks(NamedTuple):
+    """Places on lines that are no ends of cells: line, value, error and root of each."""
+
+    line: Ints
+    v: Floats
+    error: Floats
+    root: Ints
 
 
 class CellComplex:
@@ -217,11 +227,17 @@ class CellComplex:
         cell = kept.repeat(4)
         side, end = (np.tile(x, len(kept)) for x in ([0, 0, 1, 1], [0, 1, 0, 1]))
         root = self.roots[cell, end]
+        marks = self._marks()
+        if len(marks.line):  # after the ends of cells: they are none
+            line, v = np.concatenate([line, marks.line]), np.concatenate([v, marks.v])
+            error, side = np.concatenate([error, marks.error]), np.append(side, 0 * marks.line)
+            root = np.concatenate([root, marks.root])
         order = np.lexsort([v, line])
         line, v, error, side, root = (x[order] for x in (line, v, error, side, root))
         rank, v = _Ranks(self.decomposition, line, v, error, side, root, self.circle).ranked()
-        place = np.empty((len(kept), 2, 2), dtype=np.int64)
-        place.reshape(-1)[order] = rank
+        ranks = np.empty(len(order), dtype=np.int64)
+        ranks[order] = rank
+        place = ranks[: len(cell)].reshape(-1, 2, 2)
         # Places of a line, one after the other; where there are none on a circle, one element.
         found, first = np.unique(rank, return_index=True)
         line, low = line[first], v[first]
@@ -259,6 +275,34 @@ class CellComplex:
         joined: Bools = np.asarray((owner >= 0).all(axis=0))
         joined[joined] = self.decomposition.joined(line[joined], low[joined], high[joined])
         return Elements(line, low, high, owner, turns, joined)
+
+    def _marks(self) -> _Marks:
+        """Return where contacts along a fibre may begin or end: their side conditions vanish."""
+        plane, found = self.plane, self.decomposition
+        first = plane.count + len(plane.contacts.forms)
+        line, row = list[int](), list[int]()
+        for at, rows in found.standing.items():
+            if self.wrapped and at == self.n_lines:
+                continue  # the first line, a turn on
+            for k in (r - plane.count for r in rows if r >= plane.count):
+                for s in range(SIDES):
+                    if plane.sides[k, s, :, 1:].any():
+                        line.append(at)
+                        row.append(first + SIDES * k + s)
+        none = np.zeros(0)
+        if not line:
+            return _Marks(np.zeros(0, dtype=np.int64), none, none, np.zeros((0, 3), dtype=np.int64))
+        at, rows = np.array(line), np.array(row)
+        c, errors, real = plane.side_roots(rows - first, self.abscissae[at], found.critical.radius[at])
+        branch, k = np.nonzero(np.isfinite(c) & (real >= 0))
+        v = c[branch, k]
+        if self.circle:
+            v = math.pi - (math.pi - v) % TURN
+        low, high = plane.lift_ends
+        inside = which((v > low) & (v < high)) if not self.circle else np.arange(len(v))
+        branch, k, v = branch[inside], k[inside], v[inside]
+        root = np.stack([rows[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
+        return _Marks(at[k], v, errors[branch, k], root)
 
     def _own(self, owner: Ints, kept: Ints, line: Ints, place: Ints, side: int) -> None:
         """Write each cell into the parts of a line between its two ends."""
@@ -473,7 +517,9 @@ class _Ranks:
         return len({self._curve(int(self.root[k, 0])) for k in near}) < len(curves) or True
 
     def _curve(self, form: int) -> tuple[int, int]:
-        count = self.found.plane.count
+        count, contacts = self.found.plane.count, self.found.plane.contacts
+        if form >= count + len(contacts.forms):
+            return 2, form
         if form >= count:
             return 1, int(self.found.plane.contacts.curves[form - count])
         return 0, form

@@ -465,6 +465,8 @@ class Lines:
 
     def ball(self, line: int, bits: int) -> Any:
         """Return a line's base value to nearly so many bits."""
+        from flint import arb
+
         precise = self.finder.precise
         if line not in self.known:
             last = len(self.t) - 1
@@ -478,8 +480,9 @@ class Lines:
                     found = self.finder.zero(self.events, k)
                     if found is not None:
                         break
-            if found is None:
-                raise UndecidedError(f"base value {self.t[line]:.17g}")
+            if found is None:  # no event after all: any place between its neighbours serves
+                value = float(self.t[line])
+                found = Zero(None, 0, lambda: arb(value))
             self.known[line] = found
         return precise.refined(self.known[line], bits)
 

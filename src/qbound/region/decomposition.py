@@ -545,16 +545,32 @@ class _Fibres:
         chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
         for k in which(end - begin > 1).tolist():
             rows = range(int(begin[k]), int(end[k]))
-            own = [
-                row
-                for row in rows
-                if self.piece[row] < 0 or self.pieces.enters[self.piece[row]] != lower
-            ] or list(rows)
+            own = self._acting(rows, lower) or list(rows)
             ends = [row for row in own if self.roots[row, 0] < 0]
             best = ends or own
             chosen[k] = min(best, key=lambda row: tuple(self.roots[row].tolist()))
             names[k] = tuple(sorted({int(self.roots[row, 0]) for row in best}))
         return chosen, names
+
+    def _acting(self, rows: Sequence[int], lower: bool) -> list[int]:
+        """Return those of coinciding rows that part a cell above them, or below, from the rest.
+
+        A pair that comes into collision there and out of it only touches.
+        """
+        pieces, contacts = self.pieces, self.plane.contacts
+        senses: dict[int, set[bool]] = {}
+        for row in rows:
+            if self.piece[row] >= 0:
+                k = int(self.piece[row])
+                pair = int(contacts.pair[pieces.feature[k]])
+                senses.setdefault(pair, set()).add(bool(pieces.enters[k]))
+        wanted = {not lower}
+        return [
+            row
+            for row in rows
+            if self.piece[row] < 0
+            or senses[int(contacts.pair[pieces.feature[self.piece[row]]])] == wanted
+        ]
 
     def _positive(self, gaps: Ints) -> Bools:
         """Tell whether every form that stands alone is positive in gaps."""

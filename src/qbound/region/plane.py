@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.angles import TURN
 from qbound.forms.factors import FACTORS
-from qbound.forms.harmonic import HarmonicForm, Kind
+from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, WALL, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
@@ -228,6 +228,23 @@ class Plane:
             1 where there are two roots, -1 where there are none, 0 where doubles cannot tell.
         """
         doubt = (self.eps[row] + 8 * UNIT + slack) * self.scaled_size[row]
+        return self._roots(c, doubt)
+
+    def side_roots(self, side: Ints, t: Floats, radius: Floats) -> Any:
+        """Return the same of side conditions, by number, over base values of some error."""
+        tables = self.sides.reshape(-1, 3, 3)[side]
+        factors = basis(self.base_kind, t / self.base_unit)
+        c = np.einsum("ni,nij->jn", factors, tables)
+        c = c / (self.lift_unit ** np.arange(3))[:, None]
+        slack = 2 * radius / self.base_unit
+        doubt = (self.side_eps.reshape(-1)[side] + 8 * UNIT + slack) * np.abs(tables).sum(axis=(1, 2))
+        values, errors, real = self._roots(c, doubt)
+        if self.lift_kind == "prismatic":
+            values = np.where((c[2] == 0) & (c[1] == 0), np.nan, values)
+            values[1] = np.where(c[2] == 0, np.nan, values[1])
+        return values, errors, real
+
+    def _roots(self, c: Floats, doubt: Floats) -> Any:
         if self.lift_kind == "revolute":
             theta, alpha, _ = _polar(c, 0.0 * doubt)
             d = np.hypot(c[1], c[2])
@@ -250,18 +267,6 @@ class Plane:
         real = np.where(square > wide, 1, np.where(square < -wide, -1, 0))
         real = np.where(c2 == 0, np.where(c1 != 0, 1, -1), real)
         return values, error, real
-
-    def vanishing(self, t: Floats, v: Floats) -> Ints:
-        """Return the form nearest to zero at places, (k,); of a feature, if it is a contact."""
-        products = self.products(t, v)
-        values = np.abs(products @ self._rows)
-        if self.contacts.pairs:
-            sides = (self.sides / self.powers).reshape(-1, 9)
-            held = (products @ sides.T >= -WALL).reshape(len(t), -1, SIDES).all(axis=2)
-            own = np.abs(products @ self.table[self.count :].reshape(-1, 9).T)
-            own[:, ~self.contacts.touching] = np.inf
-            values = np.concatenate([values, np.where(held, own, np.inf)], axis=1)
-        return np.asarray(values.argmin(axis=1))
 
     def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
         """Evaluate roots, each over its own row of base values inside its slab, shape (..., k, n).
