@@ -36,7 +36,7 @@ from qbound.proofs.crossings import (
 )
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
-from qbound.proofs.verdict import Verdict
+from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 
@@ -54,10 +54,6 @@ LONGEST = 2.5
 
 LINE = 0.14159
 """Value of a joint that turns round, at which what goes round it is looked for: any would do."""
-
-
-class Unproved(ValueError):
-    """Something about a region could not be proved; the message says what."""
 
 
 @dataclass(frozen=True, eq=False)

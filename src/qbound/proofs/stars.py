@@ -259,7 +259,7 @@ class Stars:
         box = np.repeat(origin, [len(rows) for rows in contacts])
         row = np.concatenate([np.zeros(0, dtype=np.int64), *contacts])
         done: list[Cells] = []
-        while len(low):
+        while len(low) or not done:
             if len(low) > MOST_CELLS:
                 raise Undecided(f"more than {MOST_CELLS} cells are undecided")
             corner, far = self.places(low), self.places(high)
