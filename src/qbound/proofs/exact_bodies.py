@@ -87,6 +87,13 @@ class Core:
             return [self.steps[i]] if self.steps else []
         return [self.steps[i], -self.steps[i - 1]]
 
+    def is_straight(self, i: int) -> bool:
+        """Tell whether both edges at a corner are in line: what touches it touches them as well.
+
+        Its neighbours do not tell on which side of it the core lies, so it is no contact itself.
+        """
+        return len(self.corners) > 2 and bool(self.normals[i] @ self.steps[i - 1] == 0)
+
     def beside(self, i: int) -> list[int]:
         """Return the numbers of a corner's neighbours."""
         count = len(self.corners)
@@ -284,6 +291,8 @@ def _features(
             heights, along = above(core, k)
             tests.append([_plus(height, -keep * _length(normal)) for height in heights])
             for i, (height, place) in enumerate(zip(tests[-1], along, strict=True)):
+                if other.is_straight(i):
+                    continue
                 rims = [heights[j] - heights[i] for j in other.beside(i)]
                 contacts.append(_contact(height, [place, _plus(-place, step @ step), *rims]))
                 inner.append(core.inner[k] and not apart)
@@ -293,7 +302,7 @@ def _features(
         behind = [_plus(-_dot(step, corner.place), step @ p) for step in near.around(i)]
         beyond = [on - _dot(p, seen) for seen, on in ahead[k]]
         tests.append([square, *behind, *beyond])
-        if apart:
+        if apart and not near.is_straight(i) and not far.is_straight(k):
             contacts.append(_contact(square, [*behind, *beyond]))
             inner.append(False)
     return tests, contacts, np.array(inner)
