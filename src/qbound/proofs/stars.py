@@ -26,7 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -46,7 +46,7 @@ Bools = NDArray[np.bool_]
 WHOLE = 2**36
 """Steps across each range: a cell one step wide is given up."""
 
-MOST_CELLS = 60_000
+MOST_CELLS = 20_000
 """Cells at once at which a proof is given up."""
 
 ROUNDING = 2.0**-44
@@ -93,45 +93,32 @@ class Bounded:
     bend: Floats
 
     @classmethod
-    def of(cls, exact: Array, kinds: Sequence[Kind], reach: Floats) -> Bounded:
+    def of(cls, exact: Array, kinds: tuple[Kind, ...], reach: Floats) -> Bounded:
         """Round exact coefficients, shape (m, 3, 3)."""
         table, lost = _rounded(exact)
+
+        def largest(tables: Floats) -> Floats:
+            return np.asarray(HarmonicForm(tables, kinds).size(reach.tolist()))
+
         large = np.abs(table) + lost
-        slopes = [np.abs(FACTORS[kind].slope) for kind in kinds]
-        ahead = np.stack([_along(slopes, j, large) for j in (0, 1)], axis=1)
-        sizes = np.stack(
-            [HarmonicForm(x, tuple(kinds)).size(reach) for x in (large, *ahead.swapaxes(0, 1))],
-            axis=-1,
-        )
-        moved = np.stack([_along(slopes, j, ahead) for j in (0, 1)], axis=1)
-        steps = HarmonicForm(moved, tuple(kinds)).size(reach)  # largest second derivatives, (m,2,2)
-        slack = ROUNDING * sizes
-        slack[:, 0] += ROUNDING * sizes[:, 1:] @ reach
-        slack[:, 1:] += ROUNDING * steps @ reach
-        widths = HarmonicForm(lost, tuple(kinds)).size(reach)
-        slack += 2 * (widths + _slope_sizes(slopes, lost, kinds, reach)).reshape(-1, 1)
-        form = HarmonicForm(table, tuple(kinds)).derivatives.coefficients
-        tables = np.concatenate([table[:, None], form], axis=1).reshape(-1, 3, 9)
-        bend = _magnitude(np.stack([_along(slopes, j, ahead) for j in (0, 1)], axis=1), kinds, reach)
-        return cls(tables, slack, bend * (1 + 1e-9))
+        first, second = _slopes(large, kinds), _slopes(_slopes(large, kinds), kinds)
+        sizes = np.concatenate([large[:, None], first], axis=1)
+        further = np.concatenate([first[:, None], second], axis=1)  # each one's two derivatives
+        slack = ROUNDING * (largest(sizes) + largest(further) @ reach)
+        slack += 2 * (largest(lost) + largest(_slopes(lost, kinds)).sum(axis=1))[:, None]
+        slopes = HarmonicForm(table, kinds).derivatives.coefficients
+        tables = np.concatenate([table[:, None], slopes], axis=1).reshape(-1, 3, 9)
+        return cls(tables, slack, _magnitude(second, kinds, reach) * (1 + 1e-9))
 
     def __len__(self) -> int:
         """Return how many forms there are."""
         return len(self.tables)
 
 
-def _along(slopes: Sequence[Array], joint: int, tables: Floats) -> Floats:
-    """Return bounds of the coefficients of derivatives along a joint."""
-    axis = joint - 2
-    moved = np.tensordot(slopes[joint].T, tables, axes=([1], [tables.ndim + axis]))
-    return np.asarray(np.moveaxis(moved, 0, axis), dtype=float)
-
-
-def _slope_sizes(
-    slopes: Sequence[Array], lost: Floats, kinds: Sequence[Kind], reach: Floats
-) -> Floats:
-    ahead = [_along(slopes, j, lost) for j in (0, 1)]
-    return np.sum([HarmonicForm(x, tuple(kinds)).size(reach) for x in ahead], axis=0)
+def _slopes(tables: Floats, kinds: Sequence[Kind]) -> Floats:
+    """Bound the coefficients of both derivatives of forms, (m, ..., 3, 3) to (m, 2, ..., 3, 3)."""
+    one, other = (np.abs(FACTORS[kind].slope).astype(float) for kind in kinds)
+    return np.stack([one.T @ tables, tables @ other], axis=1)
 
 
 def _magnitude(tables: Floats, kinds: Sequence[Kind], reach: Floats) -> Floats:
@@ -189,6 +176,18 @@ class Cells:
         """Return how many there are."""
         return len(self.low)
 
+    def __getitem__(self, kept: Bools) -> Cells:
+        """Take some of them."""
+        return Cells(
+            self.low[kept],
+            self.high[kept],
+            self.origin[kept],
+            self.blocked[kept],
+            self.star[kept],
+            self.middle[kept],
+            tuple(rows for rows, keep in zip(self.contacts, kept, strict=True) if keep),
+        )
+
 
 class Stars:
     """Cuts cells of one problem until each is proved to be blocked, open or a star."""
@@ -201,8 +200,10 @@ class Stars:
             for r in problem.ranges
         ]
         self.first, self.last = np.array(ends).T
+        if not (self.first < self.last).all():
+            raise Undecided("the range of a joint is empty")
         self.reach = np.maximum(np.abs([self.first, self.last]).max(axis=0), 1e-300)
-        alone = [(name, form) for name, form in zip(problem.names, problem.forms.coefficients, strict=True)]
+        alone = list(zip(problem.names, problem.forms.coefficients, strict=True))
         bodies = [pair for pair in problem.bodies if len(pair.starts) > 1]
         for pair in problem.bodies:
             if len(pair.starts) == 1:  # corners above a half-space: each form has to be positive
@@ -229,7 +230,9 @@ class Stars:
     def monomials(self, q: Floats) -> Floats:
         """Return the nine products of both joints' factors, shape (n, 9)."""
         one, other = (
-            np.stack([np.ones_like(x), *(cosine_sine(x) if k == "revolute" else (x, x * x))], axis=1)
+            np.stack(
+                [np.ones_like(x), *(cosine_sine(x) if k == "revolute" else (x, x * x))], axis=1
+            )
             for k, x in zip(self.kinds, q.T, strict=True)
         )
         return np.asarray((one[:, :, None] * other[:, None, :]).reshape(-1, 9))
@@ -260,29 +263,25 @@ class Stars:
         row = np.concatenate([np.zeros(0, dtype=np.int64), *contacts])
         done: list[Cells] = []
         while len(low) or not done:
-            if len(low) > MOST_CELLS:
-                raise Undecided(f"more than {MOST_CELLS} cells are undecided")
             corner, far = self.places(low), self.places(high)
-            middle, half = (corner + far) / 2, (far - corner) / 2 + ROUNDING * self.reach
-            blocked, kept, values = self._left(middle, half, box, row)
+            middle, half = (corner + far) / 2, (far - corner) / 2
+            wide = half + ROUNDING * self.reach
+            blocked, kept, values = self._left(middle, wide, box, row)
             box, row = box[kept], row[kept]
             held = np.bincount(box, minlength=len(low)) > 0
-            found, star = self._centres(middle, (far - corner) / 2, half, box, row, values)
-            star &= ~blocked & held
+            found, star = self._centres(middle, half, wide, box, row, values)
             closed = blocked | ~held | star
             lists = _listed(box, row, len(low))
-            done.append(
-                Cells(
-                    low[closed], high[closed], origin[closed], blocked[closed], star[closed],
-                    np.where(star[:, None], found, middle)[closed],
-                    tuple(rows for rows, shut in zip(lists, closed, strict=True) if shut),
-                )
-            )  # fmt: skip
-            widest = (high - low).max(axis=1)
-            if (stuck := np.flatnonzero(~closed & (widest <= 1))).size:
-                k = int(stuck[0])
-                names = sorted({self.names[pair] for pair in self.pair[lists[k]]})
-                place = ", ".join(f"{x:.9g}" for x in middle[k])
+            every = Cells(
+                low, high, origin, blocked, star, np.where(star[:, None], found, middle), lists
+            )
+            done.append(every[closed])
+            stuck = np.flatnonzero(~closed & ((high - low).max(axis=1) <= 1))
+            if 2 * np.count_nonzero(~closed) > MOST_CELLS:
+                stuck = np.flatnonzero(~closed)
+            if len(stuck):
+                names = sorted({self.names[pair] for pair in self.pair[lists[stuck[0]]]})
+                place = ", ".join(f"{x:.9g}" for x in middle[stuck[0]])
                 raise Undecided(f"{' and '.join(names)}: not decided near ({place})")
             low, high, origin, box, row = _halved(low, high, origin, ~closed, lists)
         return _joined(done)
@@ -303,12 +302,12 @@ class Stars:
                 g, spread = self._spread(products[b[left]], half[b[left]], rows[left] + side)
                 kept[part.start + left] = g[:, 0] + spread >= 0
         count = len(self.names)
-        before, after = (np.unique(x) for x in (box * count + self.pair[row], (box * count + self.pair[row])[kept]))
-        gone = np.setdiff1d(before, after, assume_unique=True)
+        asked = box * count + self.pair[row]  # a pair on a cell
+        gone = np.setdiff1d(asked, asked[kept])
         sign = self.signs(middle[gone // count], gone % count)
         blocked = np.zeros(len(middle), dtype=np.bool_)
         blocked[gone[sign < 0] // count] = True
-        unsure = np.isin(box * count + self.pair[row], gone[sign == 0])
+        unsure = np.isin(asked, gone[sign == 0])
         kept = (kept | unsure) & ~blocked[box]
         return blocked, kept, values[kept]
 
@@ -382,10 +381,10 @@ def _alone(form: Array) -> Array:
     return rows
 
 
-def _listed(box: Ints, row: Ints, count: int) -> list[Ints]:
+def _listed(box: Ints, row: Ints, count: int) -> tuple[Ints, ...]:
     """Return the rows of each cell; cells ascend."""
     ends = np.searchsorted(box, np.arange(count + 1))
-    return [row[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    return tuple(row[a:b] for a, b in pairwise(ends))
 
 
 def _halved(
@@ -405,6 +404,12 @@ def _halved(
 
 def _joined(parts: Sequence[Cells]) -> Cells:
     """Return all cells as one."""
-    names = [name for name in Cells.__dataclass_fields__ if name != "contacts"]
-    arrays = [np.concatenate([getattr(part, name) for part in parts]) for name in names]
-    return Cells(*arrays, tuple(chain.from_iterable(part.contacts for part in parts)))
+    return Cells(
+        np.concatenate([part.low for part in parts]),
+        np.concatenate([part.high for part in parts]),
+        np.concatenate([part.origin for part in parts]),
+        np.concatenate([part.blocked for part in parts]),
+        np.concatenate([part.star for part in parts]),
+        np.concatenate([part.middle for part in parts]),
+        tuple(chain.from_iterable(part.contacts for part in parts)),
+    )

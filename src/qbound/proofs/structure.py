@@ -1,4 +1,4 @@
-r"""The structure of a region of two joints, proved: how many components, what goes round, what loops.
+r"""The structure of a region of two joints, proved: its components, and the loops of each.
 
 The plane is covered by cells on which the free set is empty or a star (`stars`), and so are the
 lines between neighbouring cells. Stars are connected. A path that stays free passes from cell to
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
 from qbound.proofs.exact import ExactProblem
-from qbound.proofs.stars import WHOLE, Cells, Stars, Undecided
+from qbound.proofs.stars import WHOLE, Stars, Undecided
 from qbound.proofs.verdict import Unproved
 from qbound.region import Component, Region
 
@@ -66,7 +66,7 @@ class ProvedPart:
 
 
 @dataclass(frozen=True, eq=False)
-class Joints:
+class Lines:
     """Lines that neighbouring cells share, or pieces of them, where something is free.
 
     Attributes
@@ -94,7 +94,7 @@ class Structure:
         try:
             self.stars = Stars(problem)
             every = self.stars.plane()
-            self.cells = _chosen(every, ~every.blocked)
+            self.cells = every[~every.blocked]
             self.lines = self._lines()
             self.corners = self._corners()
         except Undecided as error:
@@ -103,18 +103,18 @@ class Structure:
 
     # --- lines and corners between cells --------------------------------------------------------
 
-    def _lines(self) -> Joints:
+    def _lines(self) -> Lines:
         """Cover the lines between cells."""
         cells = self.cells
-        found = list(self._neighbours())
-        pairs, turns, low, high = (np.array(x).reshape(-1, 2) for x in zip(*found, strict=True)) if found else [np.zeros((0, 2), dtype=np.int64)] * 4
+        found = np.array(list(self._neighbours()), dtype=np.int64).reshape(-1, 4, 2)
+        pairs, turns, low, high = found.swapaxes(0, 1)
         both = cells.star[pairs].all(axis=1)
         fewer = [min((cells.contacts[k] for k in pair), key=len) for pair in pairs[both]]
         cut = self.stars.cut(low[both], high[both], fewer)
-        open_lines = Joints(pairs[~both], turns[~both], low[~both], high[~both])
-        self.pieces = _chosen(cut, ~cut.blocked)
+        open_lines = Lines(pairs[~both], turns[~both], low[~both], high[~both])
+        self.pieces = cut[~cut.blocked]
         of = np.flatnonzero(both)[self.pieces.origin]
-        return Joints(
+        return Lines(
             np.concatenate([open_lines.cells, pairs[of]]),
             np.concatenate([open_lines.turns, turns[of]]),
             np.concatenate([open_lines.low, self.pieces.low]),
@@ -153,12 +153,13 @@ class Structure:
         ends = np.concatenate([self.lines.low, self.lines.high])
         owner = np.tile(self.lines.cells, (2, 1))
         places = {self._turned(end): k for k, end in enumerate(ends.tolist())}
-        rows = np.array(list(places.values()), dtype=np.int64)
-        lists = [min((self.cells.contacts[c] for c in owner[k]), key=len) for k in rows]
-        cut = self.stars.cut(ends[rows], ends[rows], lists)
-        free = np.zeros(len(rows), dtype=bool)
+        chosen = np.array(list(places.values()), dtype=np.int64)
+        lists = [min((self.cells.contacts[c] for c in owner[k]), key=len) for k in chosen]
+        cut = self.stars.cut(ends[chosen], ends[chosen], lists)
+        free = np.zeros(len(chosen), dtype=np.bool_)
         free[cut.origin[~cut.blocked]] = True
-        return {place: int(owner[k, 0]) for place, k, is_free in zip(places, rows, free, strict=True) if is_free}
+        rows = zip(places.items(), free, strict=True)
+        return {place: int(owner[k, 0]) for (place, k), is_free in rows if is_free}
 
     def _turned(self, corner: Sequence[int]) -> Steps:
         """Return a place in steps, on the first turn of each joint that turns all the way round."""
@@ -176,7 +177,7 @@ class Structure:
     # --- components -----------------------------------------------------------------------------
 
     def _parts(self) -> tuple[Ints, list[list[Ints]]]:
-        """Number the components; return that of each cell, and the turns of each one's cycles."""
+        """Return the component of each cell, and the turns of all cycles of each component."""
         count = len(self.cells)
         links: list[list[tuple[int, Ints]]] = [[] for _ in range(count)]
         for (i, j), turn in zip(self.lines.cells.tolist(), self.lines.turns, strict=True):
@@ -210,11 +211,12 @@ class Structure:
         found = []
         for k, around in enumerate(self.cycles):
             turns = np.array(around, dtype=np.int64).reshape(-1, 2)
-            one, other = (bool(x) for x in turns.any(axis=0))
-            genus = int(len(turns) > 0 and (turns[0, 0] * turns[:, 1] != turns[0, 1] * turns[:, 0]).any())
+            wraps = bool(turns[:, 0].any()), bool(turns[:, 1].any())
+            across = np.outer(turns[:, 0], turns[:, 1])
+            genus = int((across != across.T).any())
             loops = 2 - 2 * genus - int(cells[k] - lines[k] + corners[k])
             place = self.cells.middle[int((self.part == k).argmax())]
-            found.append(ProvedPart(place, (one, other), loops))
+            found.append(ProvedPart(place, wraps, loops))
         return found
 
     def part_of(self, q: Floats) -> int:
@@ -239,17 +241,17 @@ class Structure:
         A piece of a line is a star: from its free place to an end that is not free the boundary is
         crossed once. That place is found by halving, in doubles.
         """
-        lines, stars, k = self.lines, self.stars, len(self.pieces)
-        owner = self.part[lines.cells[:, 0]]
+        owner = self.part[self.lines.cells[:, 0]]
+        uncut = len(owner) - len(self.pieces)
         places, owners = [], []
-        for ends in (lines.low, lines.high):
-            free = np.array([self._turned(end) in self.corners for end in ends.tolist()], dtype=bool)
-            at_limit = np.array([not self._is_within(end) for end in map(tuple, ends.tolist())], dtype=bool)
-            places.append(stars.places(ends[free & at_limit]))
-            owners.append(owner[free & at_limit])
-            shut = np.flatnonzero(~free[len(ends) - k :])
-            places.append(self._between(shut, stars.places(ends[len(ends) - k :])[shut]))
-            owners.append(owner[len(ends) - k :][shut])
+        for ends in (self.lines.low, self.lines.high):
+            corners = [self._turned(end) for end in ends.tolist()]
+            free = np.array([corner in self.corners for corner in corners], dtype=np.bool_)
+            within = np.array([self._is_within(corner) for corner in corners], dtype=np.bool_)
+            shut, at_limit = np.flatnonzero(~free), np.flatnonzero(free & ~within)
+            place = self.stars.places(ends)
+            places += [place[at_limit], self._between(shut - uncut, place[shut])]
+            owners += [owner[at_limit], owner[shut]]
         return np.concatenate(places), np.concatenate(owners)
 
     def _between(self, shut: Ints, ends: Floats) -> Floats:
@@ -260,7 +262,7 @@ class Structure:
         free = self.pieces.middle[shut]
         for _ in range(30):
             middle = (free + ends) / 2
-            hit = np.zeros(len(shut), dtype=bool)
+            hit = np.zeros(len(shut), dtype=np.bool_)
             hit[which[self.stars.signs(middle[which], pairs) <= 0]] = True
             free, ends = np.where(hit[:, None], free, middle), np.where(hit[:, None], middle, ends)
         return ends
@@ -393,9 +395,3 @@ def _scaled(structure: Structure, step: Floats, *, turned: bool) -> Floats:
 
 def _shown(place: Floats) -> str:
     return ", ".join(f"{x:.6g}" for x in place)
-
-
-def _chosen(cells: Cells, kept: Bools) -> Cells:
-    """Return some of the cells."""
-    arrays = (getattr(cells, name)[kept] for name in Cells.__dataclass_fields__ if name != "contacts")
-    return Cells(*arrays, tuple(c for c, keep in zip(cells.contacts, kept, strict=True) if keep))
