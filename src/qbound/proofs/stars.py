@@ -283,7 +283,8 @@ class Stars:
                 names = sorted({self.names[pair] for pair in self.pair[lists[stuck[0]]]})
                 place = ", ".join(f"{x:.9g}" for x in middle[stuck[0]])
                 raise Undecided(f"{' and '.join(names)}: not decided near ({place})")
-            low, high, origin, box, row = _halved(low, high, origin, ~closed, lists)
+            joint = self._joint(low, high, wide, box, row, values)
+            low, high, origin, box, row = _halved(low, high, origin, joint, ~closed, lists)
         return _joined(done)
 
     def _left(
@@ -318,6 +319,16 @@ class Stars:
         slopes = np.abs(values[:, 1:]) + every.slack[rows, 1:]
         bend = 0.5 * np.einsum("njk,nj,nk->n", every.bend[rows], half, half)
         return values, ((slopes * half).sum(axis=1) + bend + every.slack[rows, 0]) * (1 + 1e-12)
+
+    def _joint(
+        self, low: Ints, high: Ints, wide: Floats, box: Ints, row: Ints, values: Floats
+    ) -> Ints:
+        """Return the joint along which the contacts of each cell change most: it is cut there."""
+        steps = wide[box]
+        bend = np.einsum("njk,nj,nk->nj", self.contacts.bend[row * 5], steps, steps)
+        change = np.abs(values[:, 1:]) * steps + 0.5 * bend
+        total = [np.bincount(box, change[:, joint], minlength=len(low)) for joint in (0, 1)]
+        return np.where(high - low > 1, np.stack(total, axis=1), -1.0).argmax(axis=1)
 
     def _centres(
         self, middle: Floats, half: Floats, wide: Floats, box: Ints, row: Ints, values: Floats
@@ -388,12 +399,13 @@ def _listed(box: Ints, row: Ints, count: int) -> tuple[Ints, ...]:
 
 
 def _halved(
-    low: Ints, high: Ints, origin: Ints, chosen: Bools, lists: Sequence[Ints]
+    low: Ints, high: Ints, origin: Ints, joint: Ints, chosen: Bools, lists: Sequence[Ints]
 ) -> tuple[Ints, Ints, Ints, Ints, Ints]:
-    """Cut some cells across their longer side; both halves keep their rows."""
-    low, high, origin = low[chosen], high[chosen], np.repeat(origin[chosen], 2)
+    """Cut some cells, each along a joint; both halves keep their rows."""
+    low, high, joint = low[chosen], high[chosen], joint[chosen]
+    origin = np.repeat(origin[chosen], 2)
     rows = [rows for rows, cut in zip(lists, chosen, strict=True) if cut for _ in (0, 1)]
-    k, joint = np.arange(len(low)), (high - low).argmax(axis=1)
+    k = np.arange(len(low))
     middle = (low[k, joint] + high[k, joint]) // 2
     first, second = high.copy(), low.copy()
     first[k, joint], second[k, joint] = middle, middle
