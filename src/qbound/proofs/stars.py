@@ -328,7 +328,8 @@ class Stars:
         bend = np.einsum("njk,nj,nk->nj", self.contacts.bend[row * 5], steps, steps)
         change = np.abs(values[:, 1:]) * steps + 0.5 * bend
         total = [np.bincount(box, change[:, joint], minlength=len(low)) for joint in (0, 1)]
-        return np.where(high - low > 1, np.stack(total, axis=1), -1.0).argmax(axis=1)
+        change = np.where(high - low > 1, np.stack(total, axis=1), -1.0)
+        return np.asarray(change.argmax(axis=1))
 
     def _centres(
         self, middle: Floats, half: Floats, wide: Floats, box: Ints, row: Ints, values: Floats
@@ -371,11 +372,12 @@ class Stars:
     def grows(self, place: Floats, wide: Floats, middle: Floats, box: Ints, row: Ints) -> Bools:
         """Tell which contacts are proved to grow on every way to a place of the cell.
 
-        Of an inner edge of a body, where no distance is kept, only that it changes. Where such an
-        edge is in contact, another part is hit, or a corner of the body touches another's. About
-        the corner the parts lie side by side; from one outer edge, which grows, over inner ones,
-        which grow for one part just where they fall for the next, to the other outer edge: so for
-        one of the parts every contact grows, and that is enough.
+        Of an inner edge of a body, where no distance is kept, only that it changes. Around a place
+        where such an edge is in contact all is blocked, unless a corner of the body meets a corner
+        of another. About that corner the parts lie side by side, and the contact of an inner edge
+        grows for the part on one side where it falls for that on the other. The first and the last
+        part have an outer edge there, which grows. So, counted from the first, there is a part for
+        which both edges grow: until there it is hit, and that is enough.
         """
         rows = row * 5
         every, step = self.contacts, wide[box] + np.abs(place - middle)[box]
