@@ -9,6 +9,7 @@ import pytest
 from qbound import find_region, load_robot
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.proved_region import prove_region
+from qbound.proofs.stars import Stars, Undecided
 from qbound.proofs.structure import Structure, prove_structure
 from qbound.proofs.verdict import Unproved
 from qbound.region import Problem, Region, solve
@@ -58,6 +59,27 @@ def test_every_cell_is_what_it_is_said_to_be(seed):
     for t in np.linspace(0, 1, 7):
         way = (1 - t) * q + t * cells.middle[:, None]
         assert (margins(way).min(axis=-1) > -1e-9)[cells.star[:, None] & free].all()
+
+
+ROUND_POST = stated(
+    ("prismatic", "prismatic"), [{"00": -1, "20": 1, "02": 1}], ((-2.0, 2.0), (-2.0, 2.0))
+)
+"""What is free lies outside a disc of radius 1."""
+
+
+def test_a_contact_grows_only_if_it_exceeds_what_it_bends():
+    """From (1.9, 1.9) not all that is outside the disc is seen; within a small cell it is."""
+    stars, one = Stars(ROUND_POST), np.zeros(1, dtype=np.int64)
+    for place, middle, half, grows in ((1.9, 0.0, 2.0, False), (0.75, 0.71, 0.05, True)):
+        points = [np.full((1, 2), x) for x in (place, half, middle)]
+        assert stars.grows(*points, one, one).tolist() == [grows]
+
+
+def test_no_cell_is_a_star_unless_its_contacts_grow(monkeypatch):
+    assert Stars(ROUND_POST).plane().star.any()
+    monkeypatch.setattr(Stars, "grows", lambda self, *cells: np.zeros(len(cells[-1]), dtype=bool))
+    with pytest.raises(Undecided, match="f0: not decided near"):
+        Stars(ROUND_POST).plane()
 
 
 PROVABLE = sorted(
