@@ -1232,9 +1232,15 @@ def test_the_change_log_begins_with_the_version_and_its_day() -> None:
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[(\S+)\] - (\S+)$", changes, re.MULTILINE)
     assert newest is not None
-    assert newest[1] == PROJECT["version"] == version("qbound")
     assert newest[2] == str(PYPROJECT["tool"]["qbound"]["released"])
-    assert str(Version(PROJECT["version"])) == PROJECT["version"]
+    now = Version(PROJECT["version"])
+    assert str(now) == PROJECT["version"] == version("qbound")
+    unreleased = changes.partition("## [Unreleased]\n")[2].partition("\n## [")[0]
+    if unreleased.strip():  # a citation must not call this the release
+        assert now.is_devrelease
+        assert now > Version(newest[1])
+    else:
+        assert newest[1] == PROJECT["version"]
 
 
 # --- the package ----------------------------------------------------------------------------------
