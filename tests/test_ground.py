@@ -301,6 +301,17 @@ def test_a_switch_that_nobody_obeys_is_noticed(
         here.one_arithmetic()
 
 
+@pytest.mark.parametrize("x86", [True, False])
+def test_on_an_x86_no_result_is_kept(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch, x86: bool
+) -> None:
+    titles = fake_steps(run, monkeypatch)
+    monkeypatch.setattr(run, "is_x86", lambda: x86)
+    run.make_book()
+    compared = "Comparing the results of 01_a.ipynb with the recorded ones"
+    assert titles == [EXECUTE_ONE, *([] if x86 else [compared]), BUILD]
+
+
 RESULT = {"id": "a", "unit": "cm", "value": [1.5, 2.0], "error": 0.015}
 
 

@@ -2303,7 +2303,7 @@ def described(robot: Robot, statement: Statement) -> list[str]:
         lines += [f"{sort}: {said}" for sort, said in zip(sorts, printed, strict=True)]
     else:
         lines += _summary(robot, statement, printed)
-    around = [robot.joints[j].name for j in every_angle(robot, statement)]
+    around = [robot.joints[j].name for j in goes_round(robot, statement)]
     return lines + [f"takes every angle of {name!a}" for name in around]
 
 
@@ -2344,7 +2344,7 @@ def _values(robot: Robot, q: Point) -> str:
     return ", ".join(f"{joint.name!a} = {written(x)} {robot.unit(j)}" for j, (joint, x) in values)
 
 
-def every_angle(robot: Robot, statement: Statement) -> list[int]:
+def goes_round(robot: Robot, statement: Statement) -> list[int]:
     """Return the joints of which the set takes all values of a turn or more."""
     turn = Fraction(360) if robot.angle_unit == "deg" else 2 * PI + Fraction(1, 10**70)
     return [
