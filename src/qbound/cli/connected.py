@@ -23,7 +23,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "connected",
         help="can the arm go from one pose to another? proved either way",
-        epilog="example: qbound connected minervabot-v2 0deg 0deg 92deg -133deg",
+        epilog="exit status: 0 connected, 1 separated, 3 undecided, 2 bad input\n"
+        "example: qbound connected minervabot-v2 0deg 0deg 92deg -133deg",
     )
     add_robot(parser)
     parser.add_argument(

@@ -28,7 +28,8 @@ def add_to(commands: Any) -> None:
         " Then: can one joint not pass a range, whatever the others do? Then a path is searched"
         " and proved. Else up to three joints are paved, the others held."
         " Of more than 6 joints, or a parallelogram, the answer has no certificate.",
-        epilog="example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
+        epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided, 2 bad input\n"
+        "example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)
     parser.add_argument(
