@@ -201,6 +201,12 @@ class Core:
         return ahead[:count] / lengths[:count, None], lengths[:count]
 
     @cached_property
+    def disc(self) -> tuple[Floats, float]:
+        """The middle, shape (2,), and the radius of a disc about it."""
+        middle = (self.corners.min(axis=0) + self.corners.max(axis=0)) / 2
+        return middle, float(np.hypot(*(self.corners - middle).T).max())
+
+    @cached_property
     def size(self) -> float:
         """The largest coordinate of a corner."""
         return float(np.abs(self.corners).max())
@@ -256,6 +262,8 @@ class Features:
         One a side condition: the event at which it vanishes on the form, see `_handovers`.
     ends : tuple of tuple
         The pair of corners, or the two pairs that an edge and a corner end at.
+    discs : ndarray, shape (3, 3), optional
+        A form: where it is positive discs about both cores are apart, and so are the cores.
     """
 
     forms: Floats
@@ -270,6 +278,7 @@ class Features:
     curves: tuple[Hashable, ...]
     keys: tuple[tuple[Hashable, ...], ...]
     ends: tuple[tuple[Hashable, ...], ...]
+    discs: Floats | None = None
 
 
 def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool) -> Features:
@@ -316,7 +325,18 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
         relative=relative,
         side_relative=side_relative,
         **_handovers(one, other, keep, len(names)),
+        discs=_discs(one, other, moved, keep),
     )
+
+
+def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
+    """Return the squared distance of the middles of two cores, less that at which discs meet."""
+    (p, one_reach), (u, other_reach) = one.disc, other.disc
+    ahead = moved.at + np.einsum("abij,b->aij", moved.turn, u)
+    squared = moved.squared - 2 * np.einsum("a,aij->ij", p, ahead)
+    squared = squared + 2 * np.einsum("a,aij->ij", u, moved.back)
+    squared[0, 0] += p @ p + u @ u - (one_reach + other_reach + keep) ** 2
+    return squared
 
 
 def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any]:
@@ -482,6 +502,8 @@ class Contacts:
     ends : ndarray of int, shape (f, 2)
         Pairs of corners, numbered: that of two corners twice, those at both ends of an edge; -1 for
         a half-space.
+    discs : ndarray, shape (pairs, 3, 3)
+        Where a form is positive, discs about both parts are apart; of a half-space it is -1.
     lengths : ndarray, shape (f,)
         Sum of the lengths that go into each feature.
     slides : frozenset of int
@@ -503,6 +525,7 @@ class Contacts:
     curves: Ints
     keys: Ints
     ends: Ints
+    discs: Floats
 
     @cached_property
     def sharp(self) -> Bools:
@@ -552,6 +575,7 @@ class Contacts:
             self.curves[rows],
             self.keys[rows],
             self.ends[rows],
+            self.discs[kept],
         )
 
 
@@ -596,12 +620,16 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
         np.array(curves),
         keys,
         ends,
+        np.array([_NEVER if rows.discs is None else rows.discs for _, rows in found]),
     )
     # What terms that cancel leave is rounding.
     forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)
     sides = np.where(np.abs(made.sides) > made.side_errors, made.sides, 0.0)
     return replace(made, forms=forms, sides=sides)
 
+
+_NEVER = np.zeros((3, 3))
+_NEVER[0, 0] = -1.0
 
 NO_CONTACTS = Contacts(
     np.zeros((0, 3, 3)),
@@ -619,5 +647,6 @@ NO_CONTACTS = Contacts(
     np.zeros(0, dtype=np.int64),
     np.zeros((0, SIDES), dtype=np.int64),
     np.zeros((0, 2), dtype=np.int64),
+    np.zeros((0, 3, 3)),
 )
 """Of a robot without bodies that keep apart."""

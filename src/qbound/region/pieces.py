@@ -570,7 +570,8 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     one, other = _meeting_boxes(plane, pieces)
     one, other = _crossing(plane, pieces, one, other)
     size = m + len(contacts.forms)
-    a, b = pieces.feature[one], pieces.feature[other]
+    of_curve = _first_of_curve(contacts.curves)
+    a, b = of_curve[pieces.feature[one]], of_curve[pieces.feature[other]]
     key, group = np.unique(np.minimum(a, b) * size + np.maximum(a, b), return_inverse=True)
     first, second = m + key // size, m + key % size
     found = finder.events(finder.meetings(first, second))
@@ -593,6 +594,12 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
         apart -= TURN * whole_turns(apart)
     kept = np.unique(pick[np.abs(apart) <= AGREE * plane.lift_unit])
     return Events.joined([found[kept], _crossed_forms(plane, pieces, finder)])
+
+
+def _first_of_curve(curves: Ints) -> Ints:
+    """Return of each feature the first one of its curve: it stands for all."""
+    _, first, back = np.unique(curves, return_index=True, return_inverse=True)
+    return np.asarray(first[back])
 
 
 def _shared(one: Ints, other: Ints) -> Ints:
@@ -652,13 +659,14 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     """Return events at which a contact may cross a form that stands alone."""
     m = plane.count
     lifts = np.flatnonzero(plane.scaled[:m, :, 1:].any(axis=(1, 2)))
-    features = np.unique(pieces.feature)
+    feature = _first_of_curve(plane.contacts.curves)[pieces.feature]
+    features = np.unique(feature)
     i, j = (x.ravel() for x in np.meshgrid(lifts, m + features, indexing="ij"))
     found = finder.events(finder.meetings(i, j))
-    feature = found.what[:, 1:].max(axis=1, initial=0) - m
-    order = np.argsort(pieces.feature, kind="stable")
-    begin = np.searchsorted(pieces.feature[order], feature)
-    end = np.searchsorted(pieces.feature[order], feature + 1)
+    of = found.what[:, 1:].max(axis=1, initial=0) - m
+    order = np.argsort(feature, kind="stable")
+    begin = np.searchsorted(feature[order], of)
+    end = np.searchsorted(feature[order], of + 1)
     pick, k = ranges(begin, end)
     k, t = order[k], found.t[pick]
     slack = NEAR * plane.base_unit + found.radius[pick]

@@ -28,6 +28,9 @@ Range = tuple[float, float] | None
 FEW = 16
 """Forms that are looked at together at many places."""
 
+FAR_APART = 1e-9
+"""A scaled form of discs above this parts them, whatever its rounding."""
+
 TINY = 1e-300
 """Keeps 0 / 0 at zero where a form has neither amplitude nor constant."""
 
@@ -326,48 +329,59 @@ def runs(values: Ints) -> tuple[Ints, Ints]:
 
 
 class Separation:
-    """Which pairs of bodies are apart? Any one clause of a pair shows it; all its forms must.
+    """Tests that part pairs of bodies: any one clause of a pair shows it; all its forms must.
 
     Parameters
     ----------
     plane : Plane
         Whose features these are.
+    pairs : ndarray of bool, shape (pairs,), optional
+        Which pairs; default all.
+
+    Attributes
+    ----------
+    pairs : ndarray of int
+    doubt : float
+        A height this near to zero has no sign.
     """
 
     def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
         contacts = plane.contacts
         chosen = np.full(contacts.pairs, True) if pairs is None else pairs
-        rows = which(chosen[contacts.pair]) if contacts.pairs else np.arange(0)
         self.plane, self.pairs = plane, which(chosen)
-        self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
-        self.corners: Ints = which(contacts.corners[rows])
-        sides = plane.sides[rows][self.corners] / plane.powers
-        self.sides: Floats = sides.swapaxes(0, 1).reshape(-1, 9)  # all first ones first
+        self.discs: Floats = (plane.scale(contacts.discs[self.pairs]) / plane.powers).reshape(-1, 9)
         doubts = (plane.eps[plane.count :] + 16 * UNIT) * plane.scaled_size[plane.count :]
-        self.doubt = float(doubts[rows].max(initial=0.0))
-        clause, pair = contacts.clause[rows], contacts.pair[rows]
-        self.clauses: Ints = runs(clause)[0]
-        self.starts: Ints = runs(pair[self.clauses])[0]
+        self.doubt = float(doubts[chosen[contacts.pair]].max(initial=0.0))
 
     def heights(self, t: Floats, v: Floats) -> Floats:
         """Return of each pair, at paired base and lift values, what parts it best, (len(t), pairs).
 
-        A value of a scaled form, positive where the two are apart.
+        A value of a scaled form, positive where the two are apart. Most pairs are parted by discs.
         """
         result = np.empty((len(t), len(self.pairs)))
-        if not len(self.pairs):
-            return result
-        step = max(1, MOST_VALUES // (len(self.forms) + len(self.sides)))
+        step = max(1, MOST_VALUES // max(1, len(self.pairs)))
         for k in range(0, len(t), step):
             products = self.plane.products(t[k : k + step], v[k : k + step])
-            values = products @ self.forms.T
-            if len(self.corners):
-                sides = (products @ self.sides.T).reshape(len(products), SIDES, -1).min(axis=1)
-                corners = values[:, self.corners]
-                values[:, self.corners] = np.where(sides >= -NEGLIGIBLE, corners, -np.inf)
-            parted = np.minimum.reduceat(values, self.clauses, axis=1)
-            result[k : k + step] = np.maximum.reduceat(parted, self.starts, axis=1)
+            values = products @ self.discs.T
+            for p in which((values <= FAR_APART).any(axis=0)).tolist():
+                near = which(values[:, p] <= FAR_APART)
+                values[near, p] = self._height(int(self.pairs[p]), products[near])
+            result[k : k + step] = values
         return result
+
+    def _height(self, pair: int, products: Floats) -> Floats:
+        """Return what parts one pair best, from the nine factors of a form, (n, 9) to (n,)."""
+        plane, contacts = self.plane, self.plane.contacts
+        first, last = contacts.pair.searchsorted([pair, pair + 1])
+        rows = np.arange(first, last)
+        values = products @ plane.table[plane.count + rows].reshape(-1, 9).T
+        corners = which(contacts.corners[rows])
+        if len(corners):
+            sides = (plane.sides[rows[corners]] / plane.powers).reshape(-1, 9)
+            lowest = (products @ sides.T).reshape(len(products), -1, SIDES).min(axis=2)
+            values[:, corners] = np.where(lowest >= -NEGLIGIBLE, values[:, corners], -np.inf)
+        clauses, _ = runs(contacts.clause[rows])
+        return np.asarray(np.minimum.reduceat(values, clauses, axis=1).max(axis=1))
 
 
 def _polar(c: Floats, doubt: Floats | None = None) -> tuple[Floats, Floats, Floats]:
