@@ -46,9 +46,6 @@ FEW = 2**9
 """Polynomials of a kind up to which they are solved with others: one call costs more than they."""
 
 
-OF_ONE = np.array([not kind.degrees[1] for kind in KINDS.values()])
-
-
 def univariate(plane: Plane, tables: Floats) -> Complexes:
     """Turn scaled (m, 3, 3) coefficients into polynomials of the base, (m, 3 of the lift, 3).
 
@@ -276,7 +273,7 @@ class Finder:
     def _none(self, found: _Request) -> Bools:
         """Tell which polynomials are zero everywhere: doubles propose it, balls decide it."""
         none = found.blank
-        for k in which(none).tolist():
+        for k in which(none & (found.errors > 0)).tolist():
             event = NUMBER[found.kind], int(found.i[k]), int(found.j[k])
             none[k] = self.precise.vanishes(event)
         return none
@@ -288,10 +285,9 @@ class Finder:
         found = [NO_EVENTS]
         for what, stack, errors in _blocks(requests):
             blank = (np.abs(stack) <= errors[:, None]).all(axis=1)
-            # Of one form nothing cancels: what is exactly zero is zero everywhere.
-            nothing = blank & OF_ONE[what[:, 0]] & ~stack.any(axis=1)
-            what, stack, errors = (x[which(~nothing)] for x in (what, stack, errors))
-            blank = blank[which(~nothing)]
+            # Without any term nothing cancels: it is zero everywhere.
+            some = which(errors > 0)
+            what, stack, errors, blank = (x[some] for x in (what, stack, errors, blank))
             found += [self._all_of(tuple(what[k].tolist())) for k in which(blank).tolist()]
             rows = which(~blank)
             found.append(self._of(what[rows], stack[rows], errors[rows]))

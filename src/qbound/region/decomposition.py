@@ -377,78 +377,71 @@ class _Fibres:
 
     def _order(self) -> None:
         """Number the places of roots: doubles put in order what they can, balls the rest."""
-        reach = self.values + self.errors
-        least = self.values - self.errors
-        n = len(self.slab)
+        reach, least = self.values + self.errors, self.values - self.errors
+        n, curve = len(self.slab), self._curves()
         close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
         close[1:] = (self.slab[1:] == self.slab[:-1]) & (least[1:] <= reach[:-1])
         self.group = (~close).cumsum() - 1
+        # Roots of one curve are one; where others are as near, balls decide.
+        doubtful = which(close & (curve != np.roll(curve, 1)))
         first, last = runs(self.slab)
-        seam = np.zeros(0, dtype=np.int64)
-        if self.circle:
-            wraps = (reach[last] >= least[first] + TURN) & (last > first)
-            seam = which(wraps)
-        if not close.any() and not len(seam):
+        seams = which(reach[last] >= least[first] + TURN) if self.circle else doubtful[:0]
+        seams = seams[last[seams] > first[seams]]
+        if not len(doubtful) and not len(seams):
             return
-        order, same = list(range(n)), dict[int, int]()  # row to the row that it is one with
-        dropped: set[int] = set()
-        rows = which(close).tolist()
-        clusters: list[list[int]] = []
-        for row in rows:
-            if clusters and clusters[-1][-1] == row - 1:
-                clusters[-1].append(row)
-            else:
-                clusters.append([row - 1, row])
-        moved: dict[int, float] = {}
-        for k in seam.tolist():
+        starts, ends = runs(self.group)
+        clusters = {
+            int(starts[g]): list(range(starts[g], ends[g] + 1))
+            for g in np.unique(self.group[doubtful]).tolist()
+        }
+        order, leader = list(range(n)), starts[self.group].tolist()
+        across: list[tuple[int, list[int], list[int]]] = []  # at the cut of a circle
+        for k in seams.tolist():
             a, b = int(first[k]), int(last[k])
-            tail = next((c for c in clusters if c[-1] == b), None)
-            head = next((c for c in clusters if c[0] == a and c is not tail), None)
-            if tail is not None and tail[0] == a:
-                continue
-            own_tail, own_head = tail or [b], head or [a]
-            for cluster in (tail, head):
-                if cluster is not None:
-                    clusters.remove(cluster)
-            clusters.append(own_tail + own_head)
-            moved |= dict.fromkeys(own_tail, -TURN)
-        begin = {}
-        for cluster in clusters:
-            values = [float(self.values[r]) + moved.get(r, 0.0) for r in cluster]
-            groups = self._ranked(cluster, values)
-            flat = [row for group in groups for row in group]
-            begin[min(cluster)] = (cluster, flat)
-            for group in groups:
-                for row in group[1:]:
-                    same[row] = group[0]
-        # Put rows in their new order, those of a seam where their cluster now begins and ends.
-        for cluster, flat in begin.values():
-            across = [row for row in cluster if row in moved]
-            if not across:
-                for spot, row in zip(sorted(cluster), flat, strict=True):
-                    order[spot] = row
-        for cluster, flat in begin.values():
-            across = [row for row in cluster if row in moved]
-            if not across:
-                continue
-            slab = int(self.slab[cluster[0]])
-            a, b = int(first[slab == self.slab[first]][0]), int(last[slab == self.slab[last]][0])
-            rest = [row for row in order[a : b + 1] if row not in cluster]
-            for row in across:  # a turn earlier they stand at the front
-                self.values[row] -= TURN
-                self.roots[row, 2] -= 1
-            order[a : b + 1] = flat + rest
-        new = np.array(order)
+            head = list(range(a, ends[self.group[a]] + 1))
+            tail = list(range(starts[self.group[b]], b + 1))
+            if tail[0] != a:
+                clusters.pop(head[0], None)
+                clusters.pop(tail[0], None)
+                across.append((a, head, tail))
+        for cluster in clusters.values():
+            flat = self._led(cluster, leader, {})
+            for spot, row in zip(cluster, flat, strict=True):
+                order[spot] = row
+        for a, head, tail in across:  # the tail stands a turn earlier, at the front
+            flat = self._led(tail + head, leader, dict.fromkeys(tail, -TURN))
+            self.values[tail] -= TURN
+            self.roots[tail, 2] -= 1
+            rest = order[a + len(head) : tail[0]]
+            order[a : tail[-1] + 1] = flat + rest
         if not self.circle:
-            dropped = self._beyond_ends(order, same)
-            new = np.array([row for row in order if row not in dropped])
-        leader = np.array([same.get(row, row) for row in new.tolist()])
+            dropped = self._beyond_ends(order, leader)
+            order = [row for row in order if row not in dropped]
+        new = np.array(order)
+        led = np.array(leader)[new]
         self._take(new)
         change = np.ones(len(new), dtype=np.bool_)
-        change[1:] = leader[1:] != leader[:-1]
+        change[1:] = led[1:] != led[:-1]
         self.group = change.cumsum() - 1
 
-    def _beyond_ends(self, order: list[int], same: dict[int, int]) -> set[int]:
+    def _led(self, cluster: list[int], leader: list[int], shift: dict[int, float]) -> list[int]:
+        """Return rows of a cluster in order, and write the first of those that are one for each."""
+        values = [float(self.values[row]) + shift.get(row, 0.0) for row in cluster]
+        groups = self._ranked(cluster, values)
+        for group in groups:
+            for row in group:
+                leader[row] = group[0]
+        return [row for group in groups for row in group]
+
+    def _curves(self) -> Ints:
+        """Number the curves that roots follow: features of one curve have one number."""
+        form, branch, count = self.roots[:, 0], self.roots[:, 1], self.plane.count
+        curves = self.plane.contacts.curves
+        most = curves.max(initial=0) + 1
+        number = np.append(curves, 0)[np.clip(form - count, 0, len(curves))]
+        return np.asarray(3 * np.where(form >= count, number, most + 2 + form) + branch)
+
+    def _beyond_ends(self, order: list[int], leader: list[int]) -> set[int]:
         """Return rows that lie below the lower end of the lift's range, or above the upper one."""
         dropped: set[int] = set()
         place = {row: k for k, row in enumerate(order)}
@@ -457,10 +450,8 @@ class _Fibres:
         highs = {int(slab[r]): r for r in which(self.roots[:, 0] == HIGHEST.form).tolist()}
         for row in order:
             low, high = lows[int(slab[row])], highs[int(slab[row])]
-            lead = same.get(row, row)
-            if place[row] < place[low] and lead != same.get(low, low):
-                dropped.add(row)
-            if place[row] > place[high] and lead != same.get(high, high):
+            below = place[row] < place[low] and leader[row] != leader[low]
+            if below or (place[row] > place[high] and leader[row] != leader[high]):
                 dropped.add(row)
         return dropped
 
@@ -650,7 +641,8 @@ class _Fibres:
         counted = ~pieces.resting[pair]
         rows, pair = rows[counted], pair[counted]
         enters = pieces.enters[self.piece[rows]]
-        key = np.unique((self.group[rows] * pairs + pair) * 2 + enters)
+        key = np.sort((self.group[rows] * pairs + pair) * 2 + enters)
+        key = key[np.diff(key, prepend=-1) > 0]
         group, sense = key // (2 * pairs), key % 2
         return np.bincount(group, np.where(sense == 1, 1.0, -1.0), len(self.start))
 
