@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
-from qbound.region.critical import to_float_key
 from qbound.region.decomposition import Cell, Decomposition, turned_root
 from qbound.region.plane import Plane, ranges, runs, which
-from qbound.region.precise import LEVELS, UndecidedError
+from qbound.region.precise import UndecidedError, in_order
 from qbound.tolerances import SAME_POINT, TOUCH, UNIT
 
 Floats = NDArray[np.float64]
@@ -293,7 +292,9 @@ class CellComplex:
         if not line:
             return _Marks(np.zeros(0, dtype=np.int64), none, none, np.zeros((0, 3), dtype=np.int64))
         at, rows = np.array(line), np.array(row)
-        c, errors, real = plane.side_roots(rows - first, self.abscissae[at], found.critical.radius[at])
+        c, errors, real = plane.side_roots(
+            rows - first, self.abscissae[at], found.critical.radius[at]
+        )
         branch, k = np.nonzero(np.isfinite(c) & (real >= 0))
         v = c[branch, k]
         if self.circle:
@@ -462,31 +463,15 @@ class _Ranks:
         if self._are_one(own):
             return [own]
         found, line = self.found, int(self.line[own[0]])
-        groups: list[tuple[Any, list[int]]] = []
-        for bits in LEVELS:
-            base = found.critical.ball(line, bits)
-            known: dict[Any, Any] = {}
-            balls = []
-            for k, value in zip(own, values, strict=True):
-                form, branch, _ = self.root[k].tolist()
-                name = form, branch, int(self.side[k])
-                if name not in known:
-                    side = 1 if self.side[k] == 0 else -1
-                    known[name] = turned_root(
-                        found.precise, form, branch, base, bits, value, side
-                    )
-                balls.append((known[name], k))
-            balls.sort(key=lambda item: to_float_key(item[0]))
-            groups, overlap = [], False
-            for ball, k in balls:
-                if groups and groups[-1][0].overlaps(ball):
-                    overlap = True
-                    groups[-1] = groups[-1][0].union(ball), [*groups[-1][1], k]
-                else:
-                    groups.append((ball, [k]))
-            if not overlap:
-                break
-        return [group for _, group in groups]
+        near = dict(zip(own, values, strict=True))
+
+        def ball(k: int, bits: int) -> Any:
+            base, side = found.critical.ball(line, bits), 1 if self.side[k] == 0 else -1
+            form, branch, _ = self.root[k].tolist()
+            return turned_root(found.precise, form, branch, base, bits, near[k], side)
+
+        names = [(*self.root[k, :2].tolist(), int(self.side[k])) for k in own]
+        return [group for _, group in in_order(own, ball, names)]
 
     def _are_one(self, own: list[int]) -> bool:
         """Tell whether the line's events themselves say that ends are one."""

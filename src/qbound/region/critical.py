@@ -28,8 +28,7 @@ from qbound.region.precise import (
     Precise,
     UndecidedError,
     Zero,
-    midpoint,
-    precision,
+    in_order,
     to_float,
 )
 from qbound.tolerances import UNIT
@@ -478,7 +477,9 @@ class Lines:
                 found = Zero(None, 0, lambda: precise.ends("base")[int(line == last)])
             else:
                 members = self.members[line]
-                best = sorted(members, key=lambda k: (self.events.exact[k] < 0, self.events.radius[k]))
+                best = sorted(
+                    members, key=lambda k: (self.events.exact[k] < 0, self.events.radius[k])
+                )
                 for k in best:
                     found = self.finder.zero(self.events, k)
                     if found is not None:
@@ -598,7 +599,10 @@ def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
     key = events.key[rows[0]]
     if key < 0 or (events.key[rows] != key).any():
         return False
-    places = {(*what, t) for what, t in zip(events.what[rows].tolist(), events.t[rows].tolist(), strict=True)}
+    places = {
+        (*what, t)
+        for what, t in zip(events.what[rows].tolist(), events.t[rows].tolist(), strict=True)
+    }
     return len({place[:3] for place in places}) == len(places)
 
 
@@ -628,44 +632,11 @@ def _resolved(
         else:
             owners += _owned(finder, events, t, own)
     found = []
-    for ball, members in group_zeros(precise, owners):
+    for ball, members in in_order(owners, lambda item, bits: precise.refined(item[1], bits)):
         value = to_float(ball)
         error = float(ball.rad()) * 1.01 + 2 * UNIT * abs(value)
         found.append((value, error, [k for own, _ in members for k in own], members[0][1]))
     return found
-
-
-def group_zeros(precise: Precise, named: Sequence[tuple[Any, Zero]]) -> list[tuple[Any, list[Any]]]:
-    """Put named zeros in order, those together that 1,024 bits do not part: ball, and names."""
-    groups: list[tuple[Any, list[Any]]] = []
-    for bits in LEVELS:
-        balls = [(precise.refined(zero, bits), (name, zero)) for name, zero in named]
-        balls.sort(key=lambda item: to_float_key(item[0]))
-        groups, overlap = [], False
-        for ball, member in balls:
-            if groups and groups[-1][0].overlaps(ball):
-                overlap = True
-                groups[-1] = groups[-1][0].union(ball), [*groups[-1][1], member]
-            else:
-                groups.append((ball, [member]))
-        if not overlap:
-            break
-    return groups
-
-
-def to_float_key(ball: Any) -> Any:
-    """Order balls by their middles, exactly."""
-    return _Exactly(ball.mid())
-
-
-class _Exactly:
-    """A key of exact numbers for sorting."""
-
-    def __init__(self, value: Any) -> None:
-        self.value = value
-
-    def __lt__(self, other: _Exactly) -> bool:
-        return bool(self.value < other.value)
 
 
 def _owned(
@@ -678,6 +649,3 @@ def _owned(
     if t[best] != events.t[best]:
         zero = shifted(finder.precise, zero, -1)
     return [(own, zero)]
-
-
-__all__ = ["Events", "Finder", "Lines", "find_lines", "midpoint", "precision", "univariate"]

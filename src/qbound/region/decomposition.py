@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, turns_up_to
-from qbound.region.critical import NO_EVENTS, NUMBER, Events, Finder, Lines, find_lines, to_float_key
+from qbound.region.critical import NO_EVENTS, NUMBER, Events, Finder, Lines, find_lines
 from qbound.region.pieces import END, INSIDE, Pieces, crossings, find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges, runs, which
-from qbound.region.precise import LEVELS, Precise, UndecidedError, midpoint, precision
+from qbound.region.precise import LEVELS, Precise, UndecidedError, in_order, midpoint, precision
 from qbound.tolerances import BEYOND_JUMP, SAME_POINT, UNCHANGED, UNIT
 
 Floats = NDArray[np.float64]
@@ -209,12 +209,14 @@ def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise)
     """Tell whether a form vanishes on a whole fibre."""
     c = plane.coefficients(np.array([row]), lines.t[line : line + 1][:, None])[:, 0, 0]
     scaled = np.abs(c) * plane.lift_unit ** np.arange(3)
-    doubt = (plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit)
+    doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
     if (scaled > doubt * max(1.0, plane.scaled_size[row])).any():
         return False
     for bits in LEVELS:
         with precision(bits):
-            if not all(x.contains(0) for x in precise.along_lift(row, lines.ball(line, bits), bits)):
+            if not all(
+                x.contains(0) for x in precise.along_lift(row, lines.ball(line, bits), bits)
+            ):
                 return False
     return True
 
@@ -458,28 +460,13 @@ class _Fibres:
     def _ranked(self, rows: Sequence[int], values: Sequence[float]) -> list[list[int]]:
         """Return rows of one slab in their true order, those that are one together."""
         base = self.base(int(self.slab[rows[0]]))
-        curve = [self._curve(row) for row in rows]
-        if len(set(curve)) == 1:
-            return [list(rows)]
-        groups: list[tuple[Any, list[int]]] = []
-        for bits in LEVELS:
-            balls = []
-            known: dict[Any, Any] = {}
-            for row, value, name in zip(rows, values, curve, strict=True):
-                if name not in known:
-                    known[name] = self.root(row, base, bits, value)
-                balls.append((known[name], row))
-            balls.sort(key=lambda item: to_float_key(item[0]))
-            groups, overlap = [], False
-            for ball, row in balls:
-                if groups and groups[-1][0].overlaps(ball):
-                    overlap |= self._curve(groups[-1][1][-1]) != self._curve(row)
-                    groups[-1] = groups[-1][0].union(ball), [*groups[-1][1], row]
-                else:
-                    groups.append((ball, [row]))
-            if not overlap:
-                break
-        return [group for _, group in groups]
+        near = dict(zip(rows, values, strict=True))
+        groups = in_order(
+            list(rows),
+            lambda row, bits: self.root(row, base, bits, near[row]),
+            [self._curve(row) for row in rows],
+        )
+        return [own for _, own in groups]
 
     def _curve(self, row: int) -> tuple[int, int, int]:
         """Name the curve that a root follows: features of one curve have one name."""

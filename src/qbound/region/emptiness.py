@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.region.decomposition import decompose
+from qbound.region.exact import ExactRows
 from qbound.region.pieces import INSIDE
 from qbound.region.plane import Plane
-from qbound.region.exact import ExactRows
 from qbound.region.precise import Precise
 from qbound.region.problem import Problem
 

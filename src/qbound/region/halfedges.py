@@ -12,7 +12,6 @@ from itertools import accumulate, chain
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.forms.angles import TURN
 from qbound.region.cells import CellComplex
 from qbound.region.plane import ranges, runs, which
 from qbound.tolerances import TOUCH

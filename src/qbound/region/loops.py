@@ -201,18 +201,19 @@ class Layout:
         rows = self.cells.decomposition.standing.get(line, ())
         base = basis_and_slope(plane.base_kind, np.array([t]))[0]
         lift = basis(plane.lift_kind, np.array(v))
-        found = []
+        touching, found = [], []
         for row in rows:
             if row >= plane.count:
                 sides = plane.sides[row - plane.count] / plane.powers
                 if (np.einsum("i,sij,j->s", base[0], sides, lift) < -WALL).any():
                     continue
+            touching.append(row)
             slope = base[1] @ plane.table[row] @ lift
             if slope * plane.base_unit * (-1 if up else 1) > WALL:
                 found.append(row)
-        if not found:
+        if not touching:
             raise UndecidedError(f"which boundary stands at base value {t:.17g}")
-        return tuple(found)
+        return tuple(found or touching)  # bodies may touch there and be apart on both sides
 
     # --- places ---------------------------------------------------------------------------------
 

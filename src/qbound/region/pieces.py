@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
-from qbound.region.critical import NO_EVENTS, Events, Finder, group_zeros, shifted
+from qbound.region.critical import NO_EVENTS, Events, Finder, shifted
 from qbound.region.plane import Plane, normalised, ranges, which
-from qbound.region.precise import KINDS, Zero, midpoint, precision
+from qbound.region.precise import KINDS, Zero, in_order, midpoint, precision
 from qbound.tolerances import AGREE, BOX, NEAR, UNIT, WALL
 
 Floats = NDArray[np.float64]
@@ -207,11 +207,12 @@ class _Contacts:
         plane, feature = self.plane, self.chosen[of]
         row = plane.count + feature
         c = np.einsum("ni,nij->jn", basis(plane.base_kind, found.t), plane.table[row])
-        values, errors, real = plane.roots_and_errors(row, c)
+        slack = 4 * found.radius / plane.base_unit
+        values, errors, real = plane.roots_and_errors(row, c, slack)
         over, _ = _sides_over(plane, feature, found.t, values)
         moved = np.sqrt(found.radius / plane.base_unit) + np.minimum(errors / plane.lift_unit, 1.0)
-        slack = DRIFT * (moved + 1e-9)
-        held = (over >= -slack.T[:, :, None]).all(axis=2)
+        drift = DRIFT * (moved + 1e-9)
+        held = (over >= -drift.T[:, :, None]).all(axis=2)
         return np.asarray(held.any(axis=1) & (real >= 0))
 
     def _cut(self, of: Ints, found: Events) -> None:
@@ -316,7 +317,8 @@ class _Contacts:
                 found.exact[r] = len(self.finder.zeros)
                 self.finder.zeros.append(zero)
         known = [(r, zero) for r, zero in zeros if zero is not None]
-        return [[r for r, _ in group] for _, group in group_zeros(self.finder.precise, known)]
+        groups = in_order(known, lambda item, bits: self.finder.precise.refined(item[1], bits))
+        return [[r for r, _ in group] for _, group in groups]
 
     def _within(self, found: Events, row: int) -> bool:
         """Tell whether an event beside an end of the range lies inside; on the end it does not.
@@ -329,11 +331,10 @@ class _Contacts:
             return False
         upper = bool(found.t[row] > sum(plane.ends) / 2)
         end = Zero(None, 0, lambda: precise.ends("base")[int(upper)])
-        groups = group_zeros(precise, [("event", zero), ("end", end)])
+        groups = in_order([zero, end], precise.refined)
         if len(groups) == 1:
             return False
-        first = groups[0][1][0][0]
-        inside = first == ("end" if not upper else "event")
+        inside = (groups[0][1][0] is zero) == upper
         if not inside and plane.base_range is None:
             turns = -1 if upper else 1
             found.t[row] += turns * TURN

@@ -18,7 +18,7 @@ from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.angles import TURN
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
-from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, WALL, ZERO_AMPLITUDE
+from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -240,7 +240,9 @@ class Plane:
         c = np.einsum("ni,nij->jn", factors, tables)
         c = c / (self.lift_unit ** np.arange(3))[:, None]
         slack = 2 * radius / self.base_unit
-        doubt = (self.side_eps.reshape(-1)[side] + 8 * UNIT + slack) * np.abs(tables).sum(axis=(1, 2))
+        doubt = (self.side_eps.reshape(-1)[side] + 8 * UNIT + slack) * np.abs(tables).sum(
+            axis=(1, 2)
+        )
         values, errors, real = self._roots(c, doubt)
         if self.lift_kind == "prismatic":
             values = np.where((c[2] == 0) & (c[1] == 0), np.nan, values)

@@ -148,7 +148,9 @@ def _radii(stack: Complexes, z: Complexes, degree: Ints, errors: Floats) -> Floa
         value = np.abs(_horner(stack, z)) + doubt
         radius = np.full(z.shape, np.inf)
         for k in range(1, min(most, DERIVATIVES) + 1):
-            ways = np.array([math.comb(d, k) for d in range(most + 1)], dtype=float)[degree][:, None]
+            ways = np.array([math.comb(d, k) for d in range(most + 1)], dtype=float)[degree][
+                :, None
+            ]
             slope = np.abs(_horner(_taylor(stack, k), z)) - ways * doubt
             bound = (ways * value / np.maximum(slope, 1e-300)) ** (1 / k)
             radius = np.where(slope > 0, np.minimum(radius, bound), radius)

@@ -13,14 +13,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.contacts import SIDES
-from qbound.region.plane import HIGHEST, LOWEST, Plane
+from qbound.region.plane import HIGHEST, Plane
 
 if TYPE_CHECKING:
-    from flint import arb, arb_series
+    from flint import arb_series
 
 Ball = Any
 """An `arb`."""
@@ -305,9 +304,7 @@ class Precise:
 
                 low, high = self.plane.ends
                 places = [arb(low + (high - low) * (k + 0.37) / 20) for k in range(20)]
-                every = all(
-                    self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places
-                )
+                every = all(self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places)
             self._zeros[key] = [] if every else [Zero(event, 0, 0)]
         return not self._zeros[key]
 
@@ -352,6 +349,9 @@ class Precise:
         over = self.taylor(event, part, bits, ORDERS)
         top = next((k for k, value in enumerate(over) if _sign(value)), None)
         if top is None:
+            over = self._centred(event, part, bits)
+            top = next((k for k, value in enumerate(over) if _sign(value)), None)
+        if top is None:
             return None
         ends = [part.lower(), part.upper()]
         zeros: list[tuple[int, Ball]] = []
@@ -359,9 +359,7 @@ class Precise:
             marks = [(k, ends[0]), *zeros, (k, ends[1])]
             signs = [_sign(self.taylor(event, x, bits, k + 1)[k]) for _, x in marks]
             found = [mark for mark, sign in zip(marks[1:-1], signs[1:-1], strict=True) if not sign]
-            for (_, a), (_, b), one, other in zip(
-                marks, marks[1:], signs, signs[1:], strict=False
-            ):
+            for (_, a), (_, b), one, other in zip(marks, marks[1:], signs, signs[1:], strict=False):
                 if one * other < 0:
                     found.append((k, self._between(event, k, a, b, one, bits)))
             for mark, sign in ((marks[0], signs[0]), (marks[-1], signs[-1])):
@@ -369,6 +367,24 @@ class Precise:
                     found.append(mark)
             zeros = sorted(found, key=lambda item: float(item[1].mid()))
         return zeros
+
+    def _centred(self, event: tuple[int, int, int], part: Ball, bits: int) -> list[Ball]:
+        """Return the derivatives over a ball by those at its middle: nothing cancels there twice.
+
+        Taylor's polynomial, its last term with the derivative over the whole ball.
+        """
+        from flint import arb
+
+        n = 2 * ORDERS
+        middle = self.taylor(event, arb(part.mid()), bits, n)
+        last = self.taylor(event, part, bits, n + 1)[n]
+        step, found = arb(0, part.rad()), []
+        for k in range(ORDERS):
+            value = last * math.comb(n, k)
+            for j in reversed(range(k, n)):
+                value = value * step + middle[j] * math.comb(j, k)
+            found.append(value)
+        return found
 
     def _between(
         self, event: tuple[int, int, int], k: int, a: Ball, b: Ball, sign: int, bits: int
@@ -385,9 +401,11 @@ class Precise:
             middle = arb(box.mid())
             value = self.taylor(event, middle, bits, k + 1)[k]
             if _sign(slope):
-                new = (middle - value / slope).intersection(box) if (
-                    (middle - value / slope).overlaps(box)
-                ) else middle
+                new = (
+                    (middle - value / slope).intersection(box)
+                    if ((middle - value / slope).overlaps(box))
+                    else middle
+                )
                 if arb(new.rad()) * 2 < arb(box.rad()):
                     low, high = arb(new.lower()), arb(new.upper())
                     continue
@@ -436,9 +454,7 @@ class Precise:
 
     # --- roots along the lift -------------------------------------------------------------------
 
-    def root(
-        self, row: int, branch: int, t: Ball, bits: int, side: int = 0
-    ) -> Ball | None:
+    def root(self, row: int, branch: int, t: Ball, bits: int, side: int = 0) -> Ball | None:
         """Return a root along the lift over a base value, as `Plane.follow` does.
 
         Parameters
@@ -475,8 +491,10 @@ class Precise:
         height = arb(0) if rest < 0 else rest.nonnegative_part().sqrt()
         if rest.contains(0):
             height = _around_root(rest)
-        theta = arb.atan2(c2, c1) if not (c2.contains(0) and c1 < 0) else (
-            arb.pi() - arb.atan2(c2, -c1)
+        theta = (
+            arb.atan2(c2, c1)
+            if not (c2.contains(0) and c1 < 0)
+            else (arb.pi() - arb.atan2(c2, -c1))
         )
         return theta + branch * arb.atan2(height, -c0)
 
@@ -549,6 +567,55 @@ def _apart(zeros: list[Zero]) -> list[Zero]:
     return kept
 
 
+def in_order(
+    items: Sequence[Any], ball_of: Callable[[Any, int], Ball], names: Sequence[Any] | None = None
+) -> list[tuple[Ball, list[Any]]]:
+    """Put items in the order of their numbers; those that 1,024 bits do not part are together.
+
+    Parameters
+    ----------
+    ball_of : callable
+        Of an item and the number of bits.
+    names : sequence, optional
+        Items with one name have one number, and need not be told apart.
+
+    Returns
+    -------
+    list of (arb, list)
+        Ascending: a ball, and the items whose number it holds.
+    """
+    names = range(len(items)) if names is None else names
+    groups: list[tuple[Ball, list[int]]] = []
+    for bits in LEVELS:
+        with precision(bits):
+            known: dict[Any, Ball] = {}
+            for item, name in zip(items, names, strict=True):
+                if name not in known:
+                    known[name] = ball_of(item, bits)
+            order = sorted(range(len(items)), key=lambda k: _Exactly(known[names[k]].mid()))
+            groups, vague = [], False
+            for k in order:
+                ball = known[names[k]]
+                if groups and groups[-1][0].overlaps(ball):
+                    vague |= any(names[j] != names[k] for j in groups[-1][1])
+                    groups[-1] = groups[-1][0].union(ball), [*groups[-1][1], k]
+                else:
+                    groups.append((ball, [k]))
+        if not vague:
+            break
+    return [(ball, [items[k] for k in own]) for ball, own in groups]
+
+
+class _Exactly:
+    """A key of exact numbers for sorting."""
+
+    def __init__(self, value: Ball) -> None:
+        self.value = value
+
+    def __lt__(self, other: _Exactly) -> bool:
+        return bool(self.value < other.value)
+
+
 def midpoint(a: Ball, b: Ball) -> Ball:
     """Return an exact number between two balls."""
     from flint import arb
@@ -559,7 +626,3 @@ def midpoint(a: Ball, b: Ball) -> Ball:
 def to_float(x: Ball) -> float:
     """Return the double nearest to the middle of a ball."""
     return float(x.mid())
-
-
-TURN_HALF = math.pi
-__all__ = ["LOWEST", "Precise", "UndecidedError", "Zero", "midpoint", "precision", "to_float"]

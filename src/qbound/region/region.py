@@ -17,12 +17,12 @@ from qbound.printable import printable
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import decompose, nothing_in
-from qbound.region.exact import ExactRows
-from qbound.region.precise import Precise
 from qbound.region.emptiness import irreducible
+from qbound.region.exact import ExactRows
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.plane import Plane
+from qbound.region.precise import Precise
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
 from qbound.tolerances import UNREAL_AREA
