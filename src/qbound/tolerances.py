@@ -166,3 +166,9 @@ Quarter turns are written with six digits or more: a cosine beside 1 is then rig
 
 UNIT: Final = 2.0**-52
 """Rounding of one operation on doubles; the measure of every error bound."""
+
+ON_ARC: Final = 1e-8
+"""Margin, beside the lengths that go into it, below which a place of an arc is on its boundary.
+
+A place of an arc is a root in doubles: what it leaves is its rounding, 1e-14 of these lengths, and
+where a small distance is kept the square root of that."""

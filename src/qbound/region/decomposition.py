@@ -503,6 +503,7 @@ class _Fibres:
             slab,
             values,
         )
+        self.double = self._doubles()
         if self.plane.contacts.pairs:
             gap &= self._apart(gap, first, last)
         free = which(gap)
@@ -530,6 +531,15 @@ class _Fibres:
             names[k] = tuple(sorted({int(self.roots[row, 0]) for row in best}))
         return chosen, names
 
+    def _doubles(self) -> Bools:
+        """Tell which rows are one of both roots of a form at one place: it only touches there."""
+        name = self.group * (len(self.plane.eps) + 2) + self.roots[:, 0] + 2
+        order = np.argsort(name, kind="stable")
+        same = (np.diff(name[order]) == 0) & (self.roots[order[1:], 0] >= 0)
+        double = np.zeros(len(name), dtype=np.bool_)
+        double[order[1:][same]] = double[order[:-1][same]] = True
+        return double
+
     def _acting(self, rows: Sequence[int], lower: bool) -> list[int]:
         """Return those of coinciding rows that part a cell above them, or below, from the rest.
 
@@ -537,6 +547,7 @@ class _Fibres:
         """
         pieces, contacts = self.pieces, self.plane.contacts
         senses: dict[int, set[bool]] = {}
+        rows = [row for row in rows if not self.double[row]]
         for row in rows:
             if self.piece[row] >= 0:
                 k = int(self.piece[row])
@@ -623,7 +634,7 @@ class _Fibres:
         into collision and out of it at once only touches.
         """
         pieces, pairs = self.pieces, self.plane.contacts.pairs
-        rows = which(self.piece >= 0)
+        rows = which((self.piece >= 0) & ~self.double)
         pair = self.plane.contacts.pair[pieces.feature[self.piece[rows]]]
         counted = ~pieces.resting[pair]
         rows, pair = rows[counted], pair[counted]

@@ -78,6 +78,8 @@ class Plane:
         Of pairs of bodies that are to keep apart.
     errors : ndarray, shape (m, 3, 3), optional
         Bounds of the errors of the forms' coefficients; default 0.
+    caution : float, optional
+        By how much all errors are overestimated.
     """
 
     def __init__(
@@ -87,7 +89,9 @@ class Plane:
         base: int,
         contacts: Contacts = NO_CONTACTS,
         errors: Floats | None = None,
+        caution: float = 1.0,
     ) -> None:
+        self.caution = caution
         self.count, self.base, self.contacts = len(forms.coefficients), base, contacts
         self.base_kind: Kind = forms.kinds[base]
         self.lift_kind: Kind = forms.kinds[1 - base]
@@ -126,7 +130,7 @@ class Plane:
         """Bound the errors of scaled coefficients: as they were given, and of scaling them."""
         turned = (x if self.base == 0 else np.swapaxes(x, -1, -2) for x in (tables, errors))
         table, error = (np.abs(x * self.powers).max(axis=(-2, -1), initial=0.0) for x in turned)
-        return np.asarray(4 * UNIT + error / np.where(table > 0, table, 1.0))
+        return np.asarray(self.caution * (4 * UNIT + error / np.where(table > 0, table, 1.0)))
 
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
