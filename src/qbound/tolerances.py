@@ -172,3 +172,6 @@ ON_ARC: Final = 1e-8
 
 A place of an arc is a root in doubles: what it leaves is its rounding, 1e-14 of these lengths, and
 where a small distance is kept the square root of that."""
+
+POLISHED: Final = 1e-6
+"""How far, in units of a joint, polishing may move a vertex: a double root is known to 1e-8."""

@@ -106,6 +106,6 @@ def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:
     parts = flat_parts(robot, body)
     called = [f"part {i}, " if len(parts) > 1 else "" for i in range(len(parts))]
     return [
-        (Core.of(corners, name), radius)
+        (Core.of(corners, name, body.name), radius)
         for (corners, radius), name in zip(parts, called, strict=True)
     ]

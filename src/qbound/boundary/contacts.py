@@ -174,14 +174,17 @@ class Core:
         Anticlockwise; one is a point, two a segment, which has an edge on either side.
     corner_names, edge_names : tuple of str
         The edge of a corner's number begins there.
+    body : str
+        Whose part it is.
     """
 
     corners: Floats
     corner_names: tuple[str, ...]
     edge_names: tuple[str, ...]
+    body: str = ""
 
     @classmethod
-    def of(cls, corners: Floats, part: str = "") -> Core:
+    def of(cls, corners: Floats, part: str = "", body: str = "") -> Core:
         """Make it of corners either way round; they keep their numbers, and so do the edges."""
         m, order = len(corners), anticlockwise(corners)
         clockwise = order[0] > order[-1]
@@ -190,6 +193,7 @@ class Core:
             corners[order],
             tuple(f"{part}corner {k}" for k in order),
             tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
+            body,
         )
 
     @cached_property
@@ -345,9 +349,10 @@ def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any
     A contact of an edge and a corner goes over to one of two corners where the corner leaves the
     edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
     vanish there with a side condition of each, so the event has one name. Corners are named by
-    their places, because parts of one outline share some.
+    their bodies and places, because parts of one outline share some. Corners of two bodies are
+    not, even at one place: doubles do not tell that they are exactly there.
     """
-    p, u = ([tuple(corner) for corner in core.corners.tolist()] for core in (one, other))
+    p, u = ([(core.body, *corner) for corner in core.corners.tolist()] for core in (one, other))
     curves: list[Hashable] = []
     keys: list[tuple[Hashable, ...]] = []
     ends: list[tuple[Hashable, ...]] = []
@@ -409,7 +414,7 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
         free = np.zeros((1, SIDES, 3, 3))
         free[..., 0, 0] = 1.0
         no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
-        curve = "height", *corner, *normal.tolist(), level
+        curve = "height", core.body, *corner, *normal.tolist(), level
         own = ((curve,), ((),), ((),))
         yield Features(form[None], free, no, ~no, clause, (name,), sizes, *errors, *own)
 

@@ -350,6 +350,11 @@ class CellComplex:
         return np.asarray((spot - start) % count)
 
     @cached_property
+    def is_circle(self) -> Bools:
+        """Which elements are whole circles: of lines on which no cell ends."""
+        return np.asarray(self._count[self.elements.line] == 0)
+
+    @cached_property
     def _spot(self) -> Ints:
         """The place of each element's lower end."""
         spot = np.zeros(len(self.elements.line), dtype=np.int64)

@@ -22,7 +22,7 @@ from qbound.region.cells import CellComplex
 from qbound.region.halfedges import DOWN, UP, UPPER, HalfEdges
 from qbound.region.plane import Plane, runs, which
 from qbound.region.precise import UndecidedError
-from qbound.tolerances import NEWTON_DONE, TRANSVERSAL, WALL
+from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -266,7 +266,12 @@ class Layout:
         if not met.any():
             return
         corner, last = corner[met], last[met]
-        q = _newton(self.plane, pair[met], starts[corner])
+        before = starts[corner]
+        q = _newton(self.plane, pair[met], before)
+        # Where both are flat there Newton has no direction; the place is known well enough.
+        units = np.array([self.plane.base_unit, self.plane.lift_unit])
+        near = (np.abs(q - before) <= POLISHED * units).all(axis=1, keepdims=True)
+        q = np.where(near, q, before)
         ends[last] += q - starts[corner]  # which may be some turns away
         starts[corner] = q
 

@@ -221,8 +221,8 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
 def _loops(region: Region) -> list[str]:
     """Compare the number of loops of each component with Euler's count of its cells.
 
-    A component is cells joined over open elements of lines. A cell counts 1, or 0 where it is a
-    whole circle, an element -1, and a point between two elements that join the same cells 1. In a
+    A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
+    where they are whole circles, and a point between two elements that join the same cells 1. In a
     plane or on a cylinder as many loops bound it as 2 less that count; on a torus, of which it is
     all but some holes, 2 less.
     """
@@ -231,7 +231,7 @@ def _loops(region: Region) -> list[str]:
     found = []
     count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float))
     elements = cells.elements
-    joined = which(elements.joined)
+    joined = which(elements.joined & ~cells.is_circle)
     np.subtract.at(count, part[elements.cell[0, joined]], 1)
     np.add.at(count, part[elements.cell[0, _between(cells)]], 1)
     for k, component in enumerate(region.components):
