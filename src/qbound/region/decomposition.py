@@ -115,14 +115,15 @@ class Decomposition:
         return lambda bits: self.critical.ball(line, bits)
 
 
-def decompose(plane: Plane, precise: Precise) -> Decomposition:
-    """Find all critical base values and all feasible cells.
+def decompose(precise: Precise) -> Decomposition:
+    """Find all critical base values and all feasible cells of a plane.
 
     Raises
     ------
     UndecidedError
         If something of the structure could not be decided.
     """
+    plane = precise.plane
     finder = Finder(plane, precise)
     pieces = find_pieces(plane, finder)
     lines = critical_lines(plane, pieces, finder)
@@ -132,8 +133,9 @@ def decompose(plane: Plane, precise: Precise) -> Decomposition:
     return _without_idle_lines(found)
 
 
-def nothing_in(plane: Plane, precise: Precise) -> Decomposition:
+def nothing_in(precise: Precise) -> Decomposition:
     """Return a decomposition without cells."""
+    plane = precise.plane
     lines = find_lines(Finder(plane, precise), NO_EVENTS)
     none, roots = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
     return Decomposition(plane, lines, none, roots, np.zeros((0, 2), dtype=np.int64), [], {})

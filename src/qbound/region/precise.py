@@ -196,6 +196,15 @@ class Precise:
     a feature together; -1 and -2 are the ends of the lift's range.
     """
 
+    @classmethod
+    def of(cls, problem: Problem, base: int, caution: float = 1.0) -> Precise:
+        """Return a problem's plane over a joint with its exact coefficients."""
+        from qbound.region.exact import ExactRows
+
+        forms, ranges, contacts = problem.forms, problem.ranges, problem.contacts
+        plane = Plane(forms, ranges, base, contacts, problem.errors, caution)
+        return cls(plane, ExactRows(problem))
+
     def __init__(self, plane: Plane, rows: Rows) -> None:
         self.plane, self.rows = plane, rows
         self.features = plane.count + len(plane.contacts.forms)

@@ -19,10 +19,8 @@ from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
 from qbound.region.decomposition import decompose, nothing_in
 from qbound.region.emptiness import irreducible
-from qbound.region.exact import ExactRows
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
-from qbound.region.plane import Plane
 from qbound.region.precise import Precise, UndecidedError
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
@@ -437,8 +435,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
     if blocked:
-        plane, precise = _plane(inner, base, 1.0)
-        nothing = CellComplex(nothing_in(plane, precise))
+        nothing = CellComplex(nothing_in(Precise.of(inner, base)))
         because = tuple(blocked[:1])
         return Region((), problem, nothing, base, {}, because, irrelevant, inner=inner)
     asked = _Asked(problem, inner, home, irrelevant)
@@ -458,11 +455,6 @@ DELICATE = 1e-6
 
 CAUTION = (1.0, 2.0**12)
 """By how much errors of doubles are overestimated: at first, and where a region was not right."""
-
-
-def _plane(inner: Problem, base: int, caution: float) -> tuple[Plane, Precise]:
-    plane = Plane(inner.forms, inner.ranges, base, inner.contacts, inner.errors, caution)
-    return plane, Precise(plane, ExactRows(inner))
 
 
 @dataclass(frozen=True, eq=False)
@@ -500,8 +492,7 @@ class _Asked:
 
     def unresolved(self, base: int, reasons: Sequence[str]) -> Region:
         """Return a region without components that says why it has none."""
-        plane, precise = _plane(self.inner, base, 1.0)
-        cells = CellComplex(nothing_in(plane, precise))
+        cells = CellComplex(nothing_in(Precise.of(self.inner, base)))
         return Region(
             (),
             self.problem,
@@ -515,8 +506,7 @@ class _Asked:
 
     def _region(self, base: int, caution: float) -> Region:
         problem, inner = self.problem, self.inner
-        plane, precise = _plane(inner, base, caution)
-        cells = CellComplex(decompose(plane, precise))
+        cells = CellComplex(decompose(Precise.of(inner, base, caution)))
         if not len(cells.slabs):
             because = irreducible(inner, base)
             return Region((), problem, cells, base, {}, because, self.irrelevant, inner=inner)
@@ -534,9 +524,7 @@ class _Asked:
         components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
         owner = {k: i for i, (_, own) in enumerate(components) for k in own}
         every = tuple(component for component, _ in components)
-        return Region(
-            every, problem, cells, base, owner, irrelevant=self.irrelevant, inner=inner
-        )
+        return Region(every, problem, cells, base, owner, irrelevant=self.irrelevant, inner=inner)
 
 
 def _differences(one: Region, other: Region) -> tuple[str, ...]:
