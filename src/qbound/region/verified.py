@@ -68,7 +68,8 @@ def _off(region: Region) -> Iterator[str]:
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
     margins = np.abs(region.problem.evaluator.margins(q))
     off = np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0]
-    off[limited] = np.abs(_to_limits(region, q[limited]))
+    if limited.any():
+        off[limited] = _to_limits(region, q[limited])
     allowed = ON_ARC * np.where(limited, 1.0, region.problem.evaluator.sizes[rows])
     for k, place in np.argwhere(off > allowed[:, None]).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k, place])
