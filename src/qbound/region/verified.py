@@ -58,12 +58,10 @@ def _off(region: Region) -> Iterator[str]:
     if not arcs:
         return
     column = {name: k for k, name in enumerate(region.boundaries)}
-    every = len(PLACES) + 1
-    q = np.empty((len(arcs), every, 2))
-    for arc, own in zip(arcs, q, strict=True):
-        k = (len(arc.pieces.roots) - 1) // 2
-        own[:-1] = arc.pieces[k : k + 1].places(np.array(PLACES))[0]
-        own[-1] = arc.start
+    laid = arcs[0].laid  # all arcs are laid behind one another
+    first, end = np.array([arc.span for arc in arcs]).T
+    starts = ordered(laid.start[first], laid.base)[:, None]
+    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), starts], axis=1)
     limited = np.array([arc.row < 0 for arc in arcs])
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
     margins = np.abs(region.problem.evaluator.margins(q))
