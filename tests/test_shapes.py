@@ -16,7 +16,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from qbound import RobotFileError, clearance, components, load_robot, save_robot
+from qbound import RobotFileError, clearance, load_robot, save_robot
+from qbound.boundary.functions import components
 from qbound.geometry.convex import convex_parts, polygon_fault
 from qbound.measures import bodies
 from qbound.model.robot import BodyPair, Capsule, Disc, HalfSpace, Polygon

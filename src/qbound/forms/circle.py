@@ -68,7 +68,7 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 
     Examples
     --------
-    >>> from qbound import circle_roots
+    >>> from qbound.forms.circle import circle_roots
     >>> roots = circle_roots(1.0, 0.0, 0.5)
     >>> int(roots.count), roots.q.round(4).tolist(), roots.slope.tolist()
     (2, [-1.0472, 1.0472], [1, -1])
@@ -135,7 +135,7 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
 
     Examples
     --------
-    >>> from qbound import circle_arc
+    >>> from qbound.forms.circle import circle_arc
     >>> arc = circle_arc(-1.0, 0.0, 0.5)
     >>> float(arc.centre.round(4)), float(arc.half_width.round(4))
     (3.1416, 1.0472)
