@@ -247,7 +247,7 @@ def test_pairs_that_collisions_make_come_after_the_files_boundaries_in_chain_ord
     assert {b.clearance for b in robot.used} == {0.01, 0.005}
     assert robot.boundary("link 1, post").bodies == ("link 1", "post")
     assert robot.body("crate") is robot.obstacles[1]
-    assert repr(robot).endswith("7 boundaries>")
+    assert repr(robot).endswith("2 boundaries and 5 pairs of bodies>")
 
 
 def test_without_collisions_only_what_boundaries_name_keeps_apart() -> None:
