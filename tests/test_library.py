@@ -17,6 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import qbound
 from qbound import (
     HarmonicForm,
+    clearance,
     find_region,
     find_slices,
     is_feasible,
@@ -31,6 +32,7 @@ from qbound import (
 )
 from qbound.boundary.evaluator import evaluator
 from qbound.export.outlines import find_outlines
+from qbound.forms.circle import circle_arc, circle_roots
 from qbound.region import Problem, clearance_problem, solve
 from support.forms import LENS, LIMITS, PP, RR, forms
 
@@ -202,6 +204,13 @@ def test_feasible_counts_limits_and_keeping_clear_does_not() -> None:
     assert "limits" in inspect.getdoc(keeps_clear).splitlines()[0]
 
 
+def test_who_asks_bodies_for_a_form_is_told_what_they_have() -> None:
+    robot = load_robot("two-links-on-a-table")
+    with pytest.raises(ValueError, match=r"no single boundary function; margins\(robot, q\)"):
+        clearance(robot, robot.used[0])
+    assert robot.used[0].name in dict(margins(robot, robot.home))
+
+
 def test_violated_takes_one_configuration() -> None:
     with pytest.raises(ValueError, match="one configuration"):
         violated(MINERVA, np.zeros((3, 2)))
@@ -247,6 +256,9 @@ def test_what_is_no_real_number_is_refused_everywhere(bad) -> None:
     for ask in questions:
         with pytest.raises(ValueError, match=r"NaN|finite|real|numbers"):
             ask(q)
+    for solve_one in (circle_roots, circle_arc):
+        with pytest.raises(ValueError, match=r"finite|real"):
+            solve_one(bad, 1.0, 0.5)
     for ask in (REGION.contains, REGION.component_of, lambda q: margins(MINERVA, q)):
         with pytest.raises(ValueError, match=r"NaN|finite|real|numbers"):
             ask(np.array([q] * 300))

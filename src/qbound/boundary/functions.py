@@ -293,7 +293,8 @@ def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
 
 
 def _of_bodies(boundary: Boundary) -> str:
-    return f"{printable(boundary.name)} is about whole bodies: it has no single boundary function"
+    said = f"{printable(boundary.name)} is about whole bodies: it has no single boundary function"
+    return f"{said}; margins(robot, q) has its signed distance"
 
 
 # --- a point carried along the chain --------------------------------------------------------------
