@@ -24,7 +24,11 @@ CELL_NODES: Final = (NODES[0], 32, *NODES[1:])
 """Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
 
 ROOM: Final = 1.25
-"""Above the tallest fibre at a cell's nodes no fibre of it is taller than so many times that."""
+"""No fibre of a cell is taller than so many times the tallest one at its nodes.
+
+Roots are analytic between critical values, and the nodes lie densest at both ends. Where a fibre
+were taller, a sample would have a little less of it.
+"""
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -338,7 +338,7 @@ class Region:
         >>> q.shape, bool(region.contains(q).all())
         ((1000, 2), True)
         """
-        if not self.owner:
+        if not self.components:
             raise ValueError("the region is empty: there is nothing to draw from")
         own = np.array(sorted(self.owner))
         return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(rng))
