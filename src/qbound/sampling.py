@@ -58,7 +58,7 @@ BATCH = 50_000
 def sample(
     robot: Robot,
     n: int,
-    predicate: Predicate,
+    predicate: Predicate | None = None,
     *,
     seed: int,
     limits: ArrayLike | None = None,
@@ -68,8 +68,9 @@ def sample(
 
     Parameters
     ----------
-    predicate : callable
-        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision.
+    predicate : callable, optional
+        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision;
+        default: `keeps_clear`.
     seed : int
         Of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
@@ -80,12 +81,13 @@ def sample(
     Examples
     --------
     >>> from qbound import load_robot
-    >>> drawn = sample(load_robot("minervabot-v2"), 1000, keeps_clear, seed=1)
+    >>> drawn = sample(load_robot("minervabot-v2"), 1000, seed=1)
     >>> drawn.fraction_free, round(drawn.standard_error, 3)
     (0.667, 0.015)
 
     The region's exact part of the square is 0.6546; a sample knows it to its standard error only.
     """
+    predicate = keeps_clear if predicate is None else predicate
     low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
     tool, free = np.empty((n, 3)), np.empty(n, dtype=bool)
@@ -104,7 +106,9 @@ def joint_ranges(robot: Robot) -> Floats:
 
 
 def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int = 1) -> Bools:
-    """Every boundary in use keeps its clearance: eqs. (11) and (12).
+    """Tell which configurations keep every boundary in use; joint limits are not looked at.
+
+    Eqs. (11) and (12) without (10): `qbound.violated` and `Region.contains` look at limits too.
 
     Parameters
     ----------
@@ -124,6 +128,15 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
         If the last axis has not one value a joint, or one is NaN or infinite.
     ModuleNotFoundError
         If it is to be machine code, and there is no Numba.
+
+    Examples
+    --------
+    A configuration that no boundary forbids counts as clear even beyond a joint's limits:
+
+    >>> from qbound import load_robot, violated
+    >>> robot, q = load_robot("ur5"), [7.0, -1.57, 1.57, -1.57, -1.57, 0.0]
+    >>> bool(keeps_clear(robot, q)), [name for name, _ in violated(robot, q)]
+    (True, ['shoulder_pan_joint.upper'])
     """
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)

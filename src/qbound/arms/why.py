@@ -23,7 +23,7 @@ from qbound.arms.separations import Block, JointTravel, Separation, separation, 
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot, robot_text
+from qbound.model.robotfile import parse_robot, robot_text, written_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify, no_certificate
@@ -122,7 +122,7 @@ class Why:
 
 
 def why(
-    source: str | Path,
+    source: str | Path | Robot,
     start: ArrayLike,
     goal: ArrayLike,
     *,
@@ -134,8 +134,8 @@ def why(
 
     Parameters
     ----------
-    source : str or Path
-        A robot file, or the name of a packaged robot.
+    source : str, Path or Robot
+        A robot file, the name of a packaged robot, or a robot.
     start, goal : array_like, shape (n,)
         rad or length.
     seed : int
@@ -156,7 +156,9 @@ def why(
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
     and a paving that separates with one of "no path". An arm that certificates cannot hold has none
-    (`Why.no_certificate` says why): its paths are found by pavings alone.
+    (`Why.no_certificate` says why): its paths are found by pavings alone. Of a robot that was
+    changed, or not read from a robot file, the certificate is about the file that `save_robot`
+    writes.
 
     Examples
     --------
@@ -164,9 +166,10 @@ def why(
     >>> found.answer, found.path.shape, found.certificate.verdict.value
     ('connected', (2, 2), 'proved')
 
-    Of this robot, too, a joint has ranges that nothing passes:
+    Of this robot, too, a joint has ranges that nothing passes. A robot may be given as it is:
 
-    >>> found = why("minervabot-v2", [0.0, 0.0], [0.0, 2.3])
+    >>> from qbound import load_robot
+    >>> found = why(load_robot("minervabot-v2"), [0.0, 0.0], [0.0, 2.3])
     >>> found.answer, found.separation.travel.name
     ('separated', 'q2')
 
@@ -176,8 +179,11 @@ def why(
     >>> found.answer, found.separation, found.certificate.verdict.value
     ('separated', None, 'proved')
     """
-    text, _ = robot_text(source)
-    robot = parse_robot(tomllib.loads(text))
+    if isinstance(source, Robot):
+        text, robot = written_text(source), source
+    else:
+        text, _ = robot_text(source)
+        robot = parse_robot(tomllib.loads(text))
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
@@ -340,7 +346,7 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
 # --- a paving -------------------------------------------------------------------------------------
 
 
-def _paved(asked: _Asked, source: str | Path) -> Why:
+def _paved(asked: _Asked, source: str | Path | Robot) -> Why:
     """Pave the joints in which the ends differ, the others held; all of them where they are few."""
     robot, ends, n = asked.robot, asked.ends, len(asked.robot.joints)
     moving = list(range(n)) if n <= MOST_PAVED and not asked.hold else differing(ends)

@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from qbound.boundary.margins import violated
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
-from qbound.region.region import violated
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
 from qbound.urdf.robot_text import robot_text
 

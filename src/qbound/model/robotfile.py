@@ -38,6 +38,7 @@ __all__ = [
     "robot_table",
     "robot_text",
     "save_robot",
+    "written_text",
 ]
 
 ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
@@ -154,6 +155,22 @@ def save_robot(robot: Robot, path: str | Path) -> None:
     except RobotFileError as error:
         raise RobotFileError(f"{path}: not written: {error}") from None
     write_whole(path, tomlkit.dumps(table).encode())
+
+
+def written_text(robot: Robot) -> str:
+    """Return the text of the file that a robot was read from, or of one that says the same.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If it was changed, or not read from a robot file, and there is no tomlkit.
+    """
+    if isinstance(robot.source, str) and _built(read_table(tomllib.loads(robot.source))) == robot:
+        return robot.source
+    require("tomlkit")
+    import tomlkit
+
+    return tomlkit.dumps(robot_table(robot))
 
 
 def packaged_robots() -> tuple[str, ...]:
