@@ -24,7 +24,7 @@ from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.precise import Precise, UndecidedError
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
-from qbound.region.verified import faults
+from qbound.region.verified import Found, faults
 from qbound.tolerances import UNIT
 from qbound.units import limited_joints, margin_text
 
@@ -617,7 +617,8 @@ class _Asked:
             except UndecidedError as error:
                 reasons = (str(error),)
                 continue
-            reasons = tuple(faults(region))
+            found = Found(self.problem, self.inner, region.cells, region.found, region.owner)
+            reasons = tuple(faults(found))
             if not reasons:
                 return region, ()
         return None, reasons
