@@ -766,7 +766,7 @@ def test_certify_tells_of_its_way_from_nought_to_one():
 STOPPED = {
     "certify": (SCALED, "qbound.cli.certify.certify"),
     "pave": (["pave", "minervabot-v2"], "qbound.cli.pave.pave"),
-    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.connected.connection"),
+    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.why.why"),
 }
 
 

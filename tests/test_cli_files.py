@@ -116,8 +116,8 @@ EXAMPLES = [
 
 
 def test_every_help_ends_with_an_example() -> None:
-    for name, parser in command_parsers().items():
-        assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: qbound {name}")
+    for parser in command_parsers().values():
+        assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: {parser.prog}")
 
 
 SWEEP = """

@@ -541,9 +541,7 @@ def test_boundaries_that_bound_nothing_are_not_crossed_with_each_other(monkeypat
 
 def test_a_region_with_too_many_boundaries_has_no_workspace_and_says_so(monkeypatch):
     monkeypatch.setattr(layers, "MOST_BOUNDING", 1)
-    with pytest.raises(
-        NoPlanarWorkspaceError, match=r"boundaries bound the region, .* 1 are the most"
-    ):
+    with pytest.raises(NoPlanarWorkspaceError, match=r"bound the region, .* 1 are"):
         find_workspace(planar_arm(MINERVA), clearance_problem(MINERVA), MINERVA.home)
 
 

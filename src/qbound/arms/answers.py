@@ -33,6 +33,8 @@ def why_lines(found: Why) -> Iterator[str]:
         yield f"separated{_held(found)}: {found.tried[-1]}"
     elif found.path is not None:
         yield from _connected(found)
+    elif found.answer == "connected":
+        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
     else:
         yield "not decided whether a path joins start and goal; what was tried:"
         yield from (f"- {said}" for said in found.tried)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -29,11 +30,12 @@ from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.disconnected import certify_disconnected
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
 from qbound.proofs.paving import Paving
+from qbound.proofs.proved_region import Unproved, prove_region, proved_component
 from qbound.proofs.verdict import Verdict
-from qbound.region import violated
+from qbound.region import Region, find_region, violated
 
 Floats = NDArray[np.float64]
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
@@ -48,6 +50,12 @@ SEEDS = 3
 
 MOST_PAVED = 3
 """Joints that a paving takes."""
+
+MOST_PROVED = 40
+"""Boundaries of a region that is proved: any two may cross, and are looked at."""
+
+FEW_CELLS = 50_000
+"""Undecided cells of a paving that is made for a certificate alone, of what is proved before."""
 
 KEPT = 0.8
 """Part of the least margin seen along a path for which a proof is tried first."""
@@ -82,7 +90,8 @@ class Why:
     separation : Separation or None
         The joint that cannot pass.
     path : ndarray, shape (k, n), or None
-        Corners, proved feasible with all that lies between; as the certificate has them.
+        Corners, proved feasible with all that lies between; as the certificate has them. None, too,
+        where a proved region has both ends in one component and no path was found.
     margin : str
         Length that the path is proved to keep from every boundary: a decimal.
     least : float
@@ -93,7 +102,8 @@ class Why:
         Of the path, of what separates (a joint, or a paving), or of a violated boundary; what
         `check` reads.
     tried : tuple of str
-        What was tried, in sentences.
+        What was tried, in sentences; the last one proves the answer, where something does that is
+        neither a path nor a joint.
     """
 
     robot: Robot
@@ -179,44 +189,80 @@ def why(
         with during("a proof that an end is infeasible"):
             return _infeasible(text, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
     with during("ranges that nothing passes"):
-        travels = separations(source)
-        found = _separated(text, robot, ends, hold, travels)
-    if found is not None:
-        return found
-    asked = _Asked(text, robot, ends, hold, travels)
-    with during("a path"):
-        path = _joined(asked, seed, 1, QUICK)
-    if path is not None:
-        return path
-    with during("a paving of the joints in which both ends differ"):
-        paved = _paved(asked, source)
-    if paved.answer != "undecided":
-        return paved
-    with during("a path, for longer"):
-        path = _joined(asked, seed, SEEDS, TRIES)
-    if path is not None:
-        return path
-    none = f"a search for a path ({SEEDS} times two growing trees) found none"
-    if not _certifiable(robot):
-        none = (
-            "no path was searched for: certificates know no parallelogram, and would not prove it"
-        )
-    return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
+        asked = _Asked(source, text, robot, ends, hold, seed, separations(source))
+    tried = []
+    for what, attempt in _ATTEMPTS.items():
+        with during(what):
+            found = attempt(asked)
+        if isinstance(found, Why):
+            return found
+        tried += [found] if found else []
+    return asked.answer("undecided", tried=tuple(tried))
 
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
     """What is asked, and what is blocked."""
 
+    source: str | Path
     text: str
     robot: Robot
     ends: Floats
     hold: bool
+    seed: int
     travels: tuple[JointTravel, ...]
 
     def answer(self, answer: Answer, **found: Any) -> Why:
         """Return an answer to it."""
         return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+
+    @cached_property
+    def moving(self) -> list[int]:
+        """Joints that may move; where they are many, those in which the ends differ."""
+        n = len(self.robot.joints)
+        return list(range(n)) if n <= MOST_PAVED and not self.hold else differing(self.ends)
+
+    @property
+    def all_move(self) -> bool:
+        """Whether what is proved of the moving joints answers the question."""
+        return self.hold or len(self.moving) == len(self.robot.joints)
+
+    @cached_property
+    def problem(self) -> ExactProblem:
+        """The clearance rule of the moving joints, the others held, in exact numbers.
+
+        Raises
+        ------
+        Unproved
+            If its bodies are not exactly in one plane, or an outline has no convex parts.
+        """
+        try:
+            return exact_problem(exact_robot(self.source), self._held)
+        except ValueError as error:
+            raise Unproved(str(error)) from None
+
+    @cached_property
+    def region(self) -> Region | None:
+        """The region of two moving joints, in floating point; None of more or fewer."""
+        both = len(self.moving) == 2 and self.all_move
+        return find_region(self.robot, self._held) if both else None
+
+    @property
+    def _held(self) -> dict[int, float]:
+        joints = range(len(self.robot.joints))
+        return {j: float(self.ends[0, j]) for j in joints if j not in self.moving}
+
+    @cached_property
+    def components(self) -> list[int | None]:
+        """Number of the component that each end lies in, in floating point; empty for others."""
+        if self.region is None:
+            return []
+        return [self.region.component_of(q) for q in self.ends[:, self.moving]]
+
+    @property
+    def seems_separated(self) -> bool:
+        """Whether the region in floating point has the ends in different components."""
+        return len(set(self.components)) == 2
 
 
 def differing(ends: Floats) -> list[int]:
@@ -227,6 +273,11 @@ def differing(ends: Floats) -> list[int]:
 def _certifiable(robot: Robot) -> bool:
     """Tell whether certificates know every type of joint of a robot."""
     return not any(isinstance(joint, Parallelogram) for joint in robot.joints)
+
+
+def _of_bodies(robot: Robot) -> bool:
+    """Tell whether a boundary is about bodies."""
+    return any(bounds_bodies(boundary) for boundary in robot.used)
 
 
 # --- an end that violates something ---------------------------------------------------------------
@@ -247,18 +298,16 @@ def _infeasible(
 # --- a joint that cannot pass ---------------------------------------------------------------------
 
 
-def _separated(
-    text: str, robot: Robot, ends: Floats, hold: bool, travels: tuple[JointTravel, ...]
-) -> Why | None:
-    parted = separation(travels, *ends.tolist())
+def _separated(asked: _Asked) -> Why | str:
+    parted = separation(asked.travels, *asked.ends.tolist())
     if parted is None:
-        return None
+        return _said_of_separations(asked.robot)
     proved = None
-    if _certifiable(robot):
+    if _certifiable(asked.robot):
         ranges = [_widest(block) for block in parted.blocks]
-        certificate = certify_no_path(text, ends[0], ends[1], ranges)
+        certificate = certify_no_path(asked.text, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
-    return Why(robot, ends, "separated", hold, travels, separation=parted, certificate=proved)
+    return asked.answer("separated", separation=parted, certificate=proved)
 
 
 def _widest(block: Block) -> BlockedRange:
@@ -267,24 +316,28 @@ def _widest(block: Block) -> BlockedRange:
 
 def _said_of_separations(robot: Robot) -> str:
     said = "no joint has a range between both ends that one boundary blocks by itself"
-    bodies = any(bounds_bodies(boundary) for boundary in robot.used)
-    return f"{said} (boundaries about bodies were not looked at)" if bodies else said
+    return f"{said} (boundaries about bodies were not looked at)" if _of_bodies(robot) else said
 
 
 # --- a path ---------------------------------------------------------------------------------------
 
 
-def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
+def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
     if not _certifiable(asked.robot):
-        return None
+        return (
+            "no path was searched for: certificates know no parallelogram, and would not prove it"
+        )
+    if asked.seems_separated:
+        return ""
+    start, goal = asked.ends
     for k in range(seeds):
-        start, goal = asked.ends
-        path = find_path(asked.robot, start, goal, SEEDS * seed + k, tries=tries, hold=asked.hold)
+        seed = SEEDS * asked.seed + k
+        path = find_path(asked.robot, start, goal, seed, tries=tries, hold=asked.hold)
         found = None if path is None else _connected(asked, path)
         if found is not None:
             return found
-    return None
+    return f"a search for a path ({SEEDS} times two growing trees) found none"
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
@@ -339,20 +392,59 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
     return s, np.asarray(margins.min(axis=1, initial=np.inf))
 
 
+# --- a proved region ------------------------------------------------------------------------------
+
+
+def _by_region(asked: _Asked) -> Why | str:
+    """Prove the region of two joints, and in which of its components the ends lie."""
+    if asked.region is None:
+        return ""
+    try:
+        if len(asked.problem.names) > MOST_PROVED:
+            raise Unproved(f"{len(asked.problem.names)} boundaries; {MOST_PROVED} are the most")
+        proved = prove_region(asked.problem, asked.region)
+        places = asked.ends[:, asked.moving]
+        one, other = (proved_component(asked.problem, proved, q) for q in places)
+    except Unproved as reason:
+        return f"the region is not proved ({reason}); {_said_of_components(asked)}"
+    said = "the boundary of the region is proved, and start and goal lie in"
+    if one != other:
+        said = f"{said} components {one} and {other} of it"
+        return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
+    found = _joined(asked, SEEDS, TRIES)
+    said = f"{said} component {one} of it"
+    return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+
+
+def _for_file(asked: _Asked) -> Certificate | None:
+    """Return a certificate that two ends are separated, where a paving of few cells gives one."""
+    if not _certifiable(asked.robot) or _of_bodies(asked.robot):
+        return None
+    start, goal = asked.ends[:, asked.moving]
+    found = connection(asked.problem, start, goal, FEW_CELLS)
+    return _disconnected(asked, found.paving) if found.answer == "separated" else None
+
+
+def _said_of_components(asked: _Asked) -> str:
+    one, other = asked.components
+    if one is None or other is None:
+        return "in floating point an end lies on its boundary"
+    where = f"components {one} and {other}" if one != other else f"component {one}"
+    return f"in floating point start and goal lie in {where} of it"
+
+
 # --- a paving -------------------------------------------------------------------------------------
 
 
-def _paved(asked: _Asked, source: str | Path) -> Why:
+def _paved(asked: _Asked) -> Why | str:
     """Pave the joints in which the ends differ, the others held; all of them where they are few."""
-    robot, ends, n = asked.robot, asked.ends, len(asked.robot.joints)
-    moving = list(range(n)) if n <= MOST_PAVED and not asked.hold else differing(ends)
-    if any(bounds_bodies(boundary) for boundary in robot.used):
-        return asked.answer("undecided", tried=("pavings know no boundaries about bodies",))
+    robot, ends, moving = asked.robot, asked.ends, asked.moving
     if not 0 < len(moving) <= MOST_PAVED:
-        said = f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
-        return asked.answer("undecided", tried=(said,))
-    still = {j: float(ends[0, j]) for j in range(n) if j not in moving}
-    found = connection(exact_problem(exact_robot(source), still), *ends[:, moving])
+        return f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
+    try:
+        found = connection(asked.problem, *ends[:, moving])
+    except Unproved as reason:
+        return f"no paving was made: {reason}"
     if found.path is not None:
         path = np.tile(ends[0], (len(found.path), 1))
         path[:, moving] = found.path
@@ -360,15 +452,15 @@ def _paved(asked: _Asked, source: str | Path) -> Why:
         if connected is not None:
             return connected
     said = _said_of_paving(robot, moving, found)
-    if found.answer == "separated" and (asked.hold or len(moving) == n):
+    if found.answer == "separated" and asked.all_move:
         proved = _disconnected(asked, found.paving)
         return asked.answer("separated", held=found, certificate=proved, tried=(said,))
-    return asked.answer("undecided", held=found, tried=(said,))
+    return said
 
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
-    if not _certifiable(asked.robot):
+    if not _certifiable(asked.robot) or _of_bodies(asked.robot):
         return None
     certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
@@ -383,3 +475,13 @@ def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
     if found.answer == "connected":
         return f"{cells} proves that a path joins both ends{others}"
     return f"{cells} does not decide it{others}"
+
+
+_ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
+    "a joint that cannot pass": _separated,
+    "a path": lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
+    "a proof of the region": _by_region,
+    "a paving of the joints in which both ends differ": _paved,
+    "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
+}
+"""What is tried in turn: each gives an answer, or says in a sentence why it has none."""

@@ -1,8 +1,8 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `reach`,
-  `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
-  (`import_urdf`), `robots`;
+- commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
+  `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
+  `import` (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -29,8 +29,8 @@ COMMANDS = {
     "region": "region",
     "workspace": "workspace",
     "contains": "contains",
-    "connected": "connected",
     "why": "why",
+    "connected": "why",
     "traverse": "traverse",
     "fibre": "fibre",
     "reach": "reach",
@@ -164,7 +164,7 @@ def _parsers(
     parser = _Parser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action=_Version)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for name in (COMMANDS if chosen is None else chosen).values():
+    for name in dict.fromkeys((COMMANDS if chosen is None else chosen).values()):
         import_module(f"qbound.cli.{name}").add_to(commands)
     if chosen is None:
         _add_others(commands)

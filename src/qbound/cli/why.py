@@ -1,4 +1,4 @@
-"""``qbound why``: tell whether the arm can get from start to goal, and why or why not."""
+"""``qbound why``, or ``connected``: whether the arm gets from start to goal, and why."""
 
 from __future__ import annotations
 
@@ -23,10 +23,12 @@ def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "why",
-        help="why does my plan fail? a path, proved, or what separates start and goal",
-        description="Can the arm get from START to GOAL? First: does either violate a boundary?"
-        " Then: can one joint not pass a range, whatever the others do? Then a path is searched"
-        " and proved. Else up to three joints are paved, the others held.",
+        aliases=["connected"],
+        help="can the arm get from start to goal? a path, proved, or what separates them",
+        description="Can the arm get from START to GOAL? First: does either violate a boundary?\n"
+        "Then: can one joint not pass a range, whatever the others do? Then a path is searched\n"
+        "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
+        "others held, a paving is made.",
         epilog="example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)
