@@ -780,6 +780,32 @@ def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypa
     assert err.endswith("\r\033[K")
 
 
+def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatch) -> None:
+    """None of `draw`, `workspace` or `contains` did: of an imported arm they take many seconds."""
+    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.0005)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    status, _, err = run(capsys, "workspace two-links-on-a-table")
+    assert status == 0
+    assert "qbound workspace: 0 s" in err
+    assert err.endswith("\r\033[K")
+
+
+def test_a_paving_of_many_joints_says_what_memory_it_takes_before_it_begins(capsys) -> None:
+    status, out, err = run(capsys, "pave ur5 --memory 1")
+    assert (status, out) == (2, "")
+    assert "about 1.5 GB" in err
+    assert "--slice" in err
+    assert "--memory 2" in err
+    assert run(capsys, "pave minervabot-v2 --memory 0 --tolerance 0.5")[0] == 2
+
+
+def test_a_paving_ends_when_its_time_is_over(capsys) -> None:
+    for option in ("", " --columns"):
+        line = f"pave minervabot-v2 --tolerance 1e-9 --seconds 0.05{option}"
+        assert run(capsys, line)[0] == 3
+    assert "above 0" in run(capsys, "pave minervabot-v2 --seconds 0")[2]
+
+
 # --- sentences -----------------------------------------------------------------------------------
 
 

@@ -22,6 +22,7 @@ from itertools import chain, pairwise
 from typing import Any, NoReturn
 
 from qbound.cli.files import check_targets
+from qbound.cli.progress import waiting
 from qbound.cli.terminal import complain, finish_output, plain_terminal, say
 from qbound.printable import printable
 
@@ -118,7 +119,8 @@ def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -
         options = command_line(words[0] if words else None).parse_args(words)
         _check_files(vars(options))
         before_work()
-        return int(options.run(options))
+        with waiting(f"qbound {words[0]}"):
+            return int(options.run(options))
     finally:
         finish_output()
 

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import math
+from typing import Final
 
 from qbound.cli.progress import working
 from qbound.model.robot import Robot
 from qbound.region import Region, Rule, find_region
+
+MEMORY: Final = 2
+"""Gigabytes that a command takes without being asked to."""
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -43,3 +48,39 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
     count = len(robot.used)
     with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
         return find_region(robot, values, rule)
+
+
+def add_memory(parser: argparse.ArgumentParser) -> None:
+    """Add the most memory that a command may take."""
+    parser.add_argument(
+        "--memory",
+        type=float,
+        default=MEMORY,
+        metavar="GB",
+        help=f"most memory to use, as it is estimated before the work (default {MEMORY})",
+    )
+
+
+def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) -> None:
+    """Refuse work that would take more memory than `--memory` allows.
+
+    Parameters
+    ----------
+    estimate : float
+        Bytes.
+    instead : str
+        What to do, in an imperative.
+
+    Raises
+    ------
+    ValueError
+        If the estimate is more, or `--memory` is no positive number.
+    """
+    if not options.memory > 0:
+        raise ValueError(f"--memory {options.memory}: a number of GB above 0 is wanted")
+    needed = estimate / 1e9
+    if needed > options.memory:
+        raise ValueError(
+            f"this takes about {needed:.1f} GB of memory, and --memory allows {options.memory:g};"
+            f" {instead}, or allow it with --memory {math.ceil(needed)}"
+        )
