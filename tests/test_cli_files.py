@@ -815,6 +815,16 @@ def test_one_is_counted_as_one(capsys) -> None:
     assert "1 value for 2 joints" in run(capsys, "contains minervabot-v2 0")[2]
 
 
+def test_a_slice_beyond_a_limit_is_not_laid_on_home(capsys) -> None:
+    """Home is at 90 deg; it is the slice that holds the elbow at 400 deg."""
+    rest = "shoulder_pan_joint=0 wrist_1_joint=0 wrist_2_joint=0"
+    status, out, _ = run(capsys, f"region ur5 --slice elbow_joint=400deg {rest}")
+    assert status == 1
+    said = "the slice holds elbow_joint = 400 deg, which violates elbow_joint.upper, margin -40 deg"
+    assert said in out
+    assert "home violates" not in out
+
+
 def test_a_unit_stands_beside_every_number(capsys, arm) -> None:
     unsafe = ARM.replace("a = 0, b = 20", "a = 150, b = 45")
     Path("unsafe.toml").write_text(unsafe)

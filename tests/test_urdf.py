@@ -324,7 +324,8 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
     for more, says in (
         (["--to", "tool1"], "ur5.urdf: no link 'tool1'"),
         (["--limits", "knee=0..1"], "ur5.urdf: limits of 'knee'"),
-        (["--srdf", "panda.urdf", "--home", "folded"], "no state 'folded'"),
+        (["--srdf", "panda.urdf"], "panda.urdf: no group, no state"),
+        (["--srdf", "panda.srdf", "--home", "folded"], "no state 'folded'"),
     ):
         assert main(["import", "ur5.urdf", *more, "-o", "-"]) == 2
         said = capsys.readouterr().err

@@ -108,7 +108,9 @@ def joint_ranges(robot: Robot) -> Floats:
 
 
 def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int = 1) -> Bools:
-    """Every boundary in use keeps its clearance: eqs. (11) and (12).
+    """Tell which configurations keep every boundary in use; joint limits are not looked at.
+
+    Eqs. (11) and (12) without (10): `qbound.violated` and `Region.contains` look at limits too.
 
     Parameters
     ----------
@@ -128,6 +130,15 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
         If the last axis has not one value a joint, or one is NaN or infinite.
     ModuleNotFoundError
         If it is to be machine code, and there is no Numba.
+
+    Examples
+    --------
+    A configuration that no boundary forbids counts as clear even beyond a joint's limits:
+
+    >>> from qbound import load_robot, violated
+    >>> robot, q = load_robot("ur5"), [7.0, -1.57, 1.57, -1.57, -1.57, 0.0]
+    >>> bool(keeps_clear(robot, q)), [name for name, _ in violated(robot, q)]
+    (True, ['shoulder_pan_joint.upper'])
     """
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from functools import cache, partial
 from typing import Any
 
+from qbound.boundary.evaluator import limit_names
 from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
 from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
@@ -113,9 +114,16 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 def _lines(region: Region) -> Iterator[str]:
     unit, robot, limited = region.area_unit, region.robot, region.limited
     home = home_content(region)
+    beyond = {n: j for j in region.problem.held for n in limit_names(robot.joints[j].name)}
+    violates = "home's values of these joints violate" if _elsewhere(region) else "home violates"
     for item in home["violated"]:
-        margin = margin_text(robot, item["boundary"], item["margin"], limited)
-        yield f"home violates {item['boundary']}, margin {margin}"
+        name = item["boundary"]
+        margin = margin_text(robot, name, item["margin"], limited)
+        if name in beyond:
+            held = joint_text(robot, [region.problem.held[beyond[name]]], [beyond[name]])
+            yield f"the slice holds {held}, which violates {name}, margin {margin}"
+        else:
+            yield f"{violates} {name}, margin {margin}"
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
     elif "touches" in home:
@@ -129,10 +137,14 @@ def _lines(region: Region) -> Iterator[str]:
 
 
 def _home(region: Region) -> str:
-    """Name what of the home pose a slice holds: all of it if its other joints are at home."""
-    problem, home = region.problem, region.robot.home
-    elsewhere = any(value != home[j] for j, value in problem.held.items())
-    return "home's values of these joints" if elsewhere else "the home pose"
+    """Name what of the home pose a slice holds."""
+    return "home's values of these joints" if _elsewhere(region) else "the home pose"
+
+
+def _elsewhere(region: Region) -> bool:
+    """Tell whether a joint is held away from home."""
+    home = region.robot.home
+    return any(value != home[j] for j, value in region.problem.held.items())
 
 
 def _draw(region: Region) -> bytes:
