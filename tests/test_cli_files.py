@@ -26,7 +26,7 @@ from shapely.geometry import Polygon, shape
 
 import qbound
 from qbound import find_region, load_robot
-from qbound.cli import command_parsers, main, progress
+from qbound.cli import COMMANDS, command_parsers, main, progress
 from qbound.cli.files import write_all
 from qbound.files import write_whole
 from support.oracles import packaged_table, point_seen_from
@@ -118,6 +118,12 @@ EXAMPLES = [
 def test_every_help_ends_with_an_example() -> None:
     for parser in command_parsers().values():
         assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: {parser.prog}")
+
+
+def test_every_help_says_what_the_exit_status_means() -> None:
+    ours = [command_parsers()[name] for name in COMMANDS]
+    for parser in ours:
+        assert "exit status: 0 " in parser.format_help()
 
 
 SWEEP = """

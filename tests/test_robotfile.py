@@ -784,9 +784,9 @@ def test_what_is_no_robot_is_not_written(tmp_path: Path) -> None:
     path = tmp_path / "arm.toml"
     path.write_text("kept", encoding="utf-8")
     with pytest.raises(RobotFileError, match=r"arm\.toml: not written: home\.q1: inf is not a fin"):
-        save_robot(replace(robot, home=np.array([np.inf, 0])), path)
+        save_robot(replace(robot, home=np.array([np.inf, 0])), path, force=True)
     with pytest.raises(RobotFileError, match="no point '99'"):
-        save_robot(replace(robot, tool="99"), path)
+        save_robot(replace(robot, tool="99"), path, force=True)
     assert path.read_text("utf-8") == "kept"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -802,7 +802,7 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monke
 
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space"):
-        save_robot(load_robot("minervabot-v2"), path)
+        save_robot(load_robot("minervabot-v2"), path, force=True)
     assert path.read_text("utf-8") == "kept"
     assert list(tmp_path.iterdir()) == [path]
 

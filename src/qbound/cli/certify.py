@@ -35,7 +35,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "certify",
         help="prove that every configuration of a set is safe",
-        epilog="example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
+        epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
+        "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
     add_robot(parser)
     sets = parser.add_mutually_exclusive_group()

@@ -18,7 +18,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "check",
         help="check a certificate in exact arithmetic",
-        epilog="example: qbound check cert.json minervabot-v2",
+        epilog="exit status: 0 proved, 1 refuted, 2 neither\n"
+        "example: qbound check cert.json minervabot-v2",
     )
     parser.add_argument("certificate")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")

@@ -23,7 +23,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "contains",
         help="is a configuration safe, and by how much?",
-        epilog="example: qbound contains minervabot-v2 20deg -45deg",
+        epilog="exit status: 0 feasible, 1 a margin is negative; 2 bad input\n"
+        "example: qbound contains minervabot-v2 20deg -45deg",
     )
     add_robot(parser)
     parser.add_argument(

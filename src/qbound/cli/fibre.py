@@ -21,7 +21,8 @@ def add_to(commands: Any) -> None:
         help="how far may one joint move, the others held? exactly, and what ends it",
         description="Print every interval in which a joint may be while the others are held, and "
         "the boundary or limit that ends it on either side; for any number of joints.",
-        epilog="example: qbound fibre minervabot-v2 q2 20deg -45deg",
+        epilog="exit status: 0 listed, 1 the joint may be nowhere; 2 bad input\n"
+        "example: qbound fibre minervabot-v2 q2 20deg -45deg",
     )
     add_robot(parser)
     parser.add_argument("joint", metavar="JOINT", help="the joint that moves, by name or index")

@@ -9,6 +9,7 @@ from typing import Any
 
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
+from qbound.model.robotfile import RobotFileError, refuse_replacing
 from qbound.region.region import violated
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
 from qbound.urdf.robot_text import robot_text
@@ -22,7 +23,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "import",
         help="make a robot file of a URDF, its links covered by balls",
-        epilog="example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o arm.toml",
+        epilog="exit status: 0 imported, whether home is feasible or not; 2 bad input\n"
+        "example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o ur5.toml",
     )
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
     parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
@@ -58,11 +60,19 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="- is standard output"
     )
+    parser.add_argument(
+        "--force", action="store_true", help="replace a robot file that qbound did not make"
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Import; 0, also where home is not feasible: that is an answer, and is said."""
+    if not options.force and options.output != "-":
+        try:
+            refuse_replacing(options.output)
+        except RobotFileError as error:
+            raise ValueError(f"{error}, or give --force") from None
     with working("covering links"):
         imported = import_urdf(
             options.urdf,

@@ -23,7 +23,8 @@ def add_to(commands: Any) -> None:
         description="Map the places of the tool over all feasible configurations. One joint's "
         "travel is exact, the others are drawn: a voxel that is marked is reached. "
         "The same seed gives the same map.",
-        epilog="example: qbound reach pr-gantry-arm --voxel 0.2 --svg reach.svg",
+        epilog="exit status: 0 mapped, 1 nothing feasible was found; 2 bad input\n"
+        "example: qbound reach pr-gantry-arm --voxel 0.2 --svg reach.svg",
     )
     add_robot(parser)
     parser.add_argument(

@@ -29,7 +29,9 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "region",
         help="all regions of two joints",
-        epilog="example: qbound region minervabot-v2 --json -",
+        epilog="exit status: 0 home is in a component, 1 it is in none (with --strip: every slice\n"
+        "is empty); 2 bad input\n"
+        "example: qbound region minervabot-v2 --json -",
     )
     add_robot(parser)
     add_rule(parser)

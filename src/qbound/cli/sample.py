@@ -24,7 +24,8 @@ def add_to(commands: Any) -> None:
         "sample",
         help="random configurations and whether they are free",
         description="Draw configurations evenly and judge each. The same seed draws the same ones.",
-        epilog="example: qbound sample minervabot-v2 -n 1000 --seed 1 --csv sample.csv",
+        epilog="exit status: 0 drawn: a sample proves nothing; 2 bad input\n"
+        "example: qbound sample minervabot-v2 -n 1000 --seed 1 --csv sample.csv",
     )
     add_robot(parser)
     parser.add_argument("-n", type=int, required=True, metavar="N", help="how many")

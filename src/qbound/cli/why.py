@@ -29,7 +29,8 @@ def add_to(commands: Any) -> None:
         "Then: can one joint not pass a range, whatever the others do? Then a path is searched\n"
         "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
         "others held, a paving is made.",
-        epilog="example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
+        epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
+        "example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)
     parser.add_argument(

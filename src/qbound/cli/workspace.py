@@ -21,7 +21,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "workspace",
         help="the exact geometric workspace",
-        epilog="example: qbound workspace minervabot-v2 --rule paper --at=-20,40",
+        epilog="exit status: 0 done, 1 home, a place or the passage asked for is not safe; 2 bad input\n"
+        "example: qbound workspace minervabot-v2 --rule paper --at=-20,40",
     )
     add_robot(parser)
     add_rule(parser)
