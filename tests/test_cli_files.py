@@ -474,7 +474,9 @@ def test_a_link_stays_a_link_and_its_target_is_written() -> None:
         ("traverse nobody 1 2", "nobody"),
         ("sample minervabot-v2 -n 0 --seed 1", "one configuration or more"),
         ("sample minervabot-v2 -n 5 --seed -1", "0 or above"),
-        ("sample minervabot-v2 -n 5", "--seed"),
+        ("sample minervabot-v2 -n 1.5", "-n"),
+        ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg:20deg: the low end"),
+        ("reach ur5 --voxel 5kg", "--voxel: '5kg' is no value"),
         ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
         ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
@@ -819,6 +821,45 @@ def test_one_is_counted_as_one(capsys) -> None:
     assert "1 component, area" in run(capsys, "region rp-telescopic-boom")[1]
     assert run(capsys, "traverse minervabot-v2 1 2 --scale 0.5")[1].startswith("1 leg: ")
     assert "1 value for 2 joints" in run(capsys, "contains minervabot-v2 0")[2]
+
+
+def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
+    plain, with_units = (
+        run(capsys, f"contains rp-telescopic-boom {values}") for values in ("-60 1.5", "-60° 150cm")
+    )
+    assert plain == with_units
+    assert run(capsys, "contains rp-telescopic-boom -60deg 1500mm") == plain
+    assert run(capsys, "sample minervabot-v2 -n 1e2") == run(
+        capsys, "sample minervabot-v2 -n 100 --seed 0"
+    )
+
+
+def test_every_file_that_is_written_is_named(capsys) -> None:
+    assert "written: a.svg, a.csv" in run(capsys, "region minervabot-v2 --svg a.svg --csv a.csv")[1]
+    assert run(capsys, "explore minervabot-v2 -o a.html")[1] == "written: a.html\n"
+
+
+def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys) -> None:
+    pose = "0 -90 90 -90 -90 0"
+    few, every = (run(capsys, f"contains ur5 {pose}{more}")[1] for more in ("", " --all"))
+    assert len(few.splitlines()) < 20
+    assert len(every.splitlines()) > 200
+    assert "12 of 205 boundaries and limits, the nearest; --all lists them" in few
+    amounts = [float(line.split()[1]) for line in few.splitlines() if line.startswith("  margin")]
+    assert amounts == sorted(amounts)
+    folded = run(capsys, "contains ur5 0 -90 180 -90 -90 0")
+    assert folded[0] == 1
+    assert len(folded[1].splitlines()) < 20
+
+
+def test_home_in_collision_is_told_with_what_it_violates(capsys, arm) -> None:
+    """It was told that home is in no component, and not why."""
+    Path("unsafe.toml").write_text(ARM.replace("a = 0, b = 20", "a = 150, b = 45"))
+    for line in ("explore unsafe.toml -o x.html", "workspace unsafe.toml"):
+        status, _, err = run(capsys, line)
+        assert status == 1
+        assert "home violates a.upper, margin -30 deg" in err
+    assert "opens with an arm that is not safe" in run(capsys, "explore unsafe.toml -o x.html")[2]
 
 
 def test_a_slice_beyond_a_limit_is_not_laid_on_home(capsys) -> None:

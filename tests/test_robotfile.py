@@ -615,9 +615,14 @@ def test_a_file_that_is_no_table_is_named(tmp_path: Path, content, says) -> None
 
 
 def test_a_file_that_is_missing_says_which_robots_there_are(tmp_path: Path) -> None:
-    for source in (tmp_path / "none.toml", tmp_path, "minervabot-v3"):
+    for source in (tmp_path / "none.toml", "minervabot-v3"):
         with pytest.raises(RobotFileError, match=r": .*; packaged robots are .*minervabot-v2"):
             load_robot(source)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe")
+    for source, reason in ((tmp_path, "directory"), (tmp_path / "binary.toml", "not UTF-8 text")):
+        with pytest.raises(RobotFileError, match=reason) as error:
+            load_robot(source)
+        assert "packaged" not in str(error.value)
 
 
 def test_nothing_in_a_file_is_evaluated(tmp_path: Path) -> None:

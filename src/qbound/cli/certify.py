@@ -89,6 +89,8 @@ def run(options: argparse.Namespace) -> int:
         say(
             *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
         )
+        if answer.verdict == "undecided":
+            say("a smaller set takes less work: a larger --inset, a lower --scale, or a --box")
     return STATUS[answer.verdict]
 
 
@@ -194,5 +196,7 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
             say(f"scale {safe}: proved", *lines, *_how_to_check(options, proof))
     if refutation is not None and refutation.verdict == "refuted" and options.output != "-":
         say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
+    if proof is None and options.output != "-":
+        say("no scale is proved: the centre of the polygon of home's vertices is not safe itself")
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

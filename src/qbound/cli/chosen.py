@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Iterator
 from typing import Final
 
+from qbound.boundary.evaluator import limit_names
 from qbound.cli.progress import working
+from qbound.export.document import home_content
 from qbound.model.robot import Robot
 from qbound.region import Region, Rule, find_region
+from qbound.units import joint_text, margin_text
 
 MEMORY: Final = 2
 """Gigabytes that a command takes without being asked to."""
@@ -84,3 +88,27 @@ def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) ->
             f"this takes about {needed:.1f} GB of memory, and --memory allows {options.memory:g};"
             f" {instead}, or allow it with --memory {math.ceil(needed)}"
         )
+
+
+def home_lines(region: Region) -> Iterator[str]:
+    """Say what the home pose violates, or touches where it is feasible and in no component."""
+    robot, limited = region.robot, region.limited
+    home = home_content(region)
+    beyond = {n: j for j in region.problem.held for n in limit_names(robot.joints[j].name)}
+    violates = "home's values of these joints violate" if is_elsewhere(region) else "home violates"
+    for item in home["violated"]:
+        name = item["boundary"]
+        margin = margin_text(robot, name, item["margin"], limited)
+        if name in beyond:
+            held = joint_text(robot, [region.problem.held[beyond[name]]], [beyond[name]])
+            yield f"the slice holds {held}, which violates {name}, margin {margin}"
+        else:
+            yield f"{violates} {name}, margin {margin}"
+    if region.components and "touches" in home:
+        yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
+
+
+def is_elsewhere(region: Region) -> bool:
+    """Tell whether a joint is held away from home."""
+    home = region.robot.home
+    return any(value != home[j] for j, value in region.problem.held.items())

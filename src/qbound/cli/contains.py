@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from qbound.arms.links import link_pair
 from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
@@ -16,6 +17,9 @@ from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import load_robot
 from qbound.tolerances import SAME_POINT
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
+
+MOST_SHOWN = 12
+"""Margins that are listed unless all of them are asked for."""
 
 
 def add_to(commands: Any) -> None:
@@ -41,6 +45,12 @@ def add_to(commands: Any) -> None:
         metavar="W",
         help="weights of the two joints in the distance to the boundary (default 1 1)",
     )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help=f"list every boundary and limit; by default, of more than {MOST_SHOWN}, each pair of"
+        " links once, the nearest first",
+    )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.set_defaults(run=run)
 
@@ -49,25 +59,42 @@ def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
     content = configuration_facts(robot, configuration(robot, options.values), options.weights)
-    deliver(
-        [(options.json, lambda: json_text(with_version(robot, content)))], _lines(robot, content)
-    )
+    document = (options.json, lambda: json_text(with_version(robot, content)))
+    deliver([document], _lines(robot, content, everything=options.all))
     return 0 if content["feasible"] else 1
 
 
-def _lines(robot: Robot, content: dict[str, Any]) -> Iterator[str]:
+def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterator[str]:
     amounts = dict(_margins(robot, content))
     features = {item["boundary"]: _features(item) for item in content["margins"]}
-    violated = [item["boundary"] for item in content["margins"] if item["margin"] < 0]
-    for name in violated:
+    shown = content["margins"]
+    if not everything and len(shown) > MOST_SHOWN:
+        shown = _nearest_of_links(robot, shown)
+    violated = [item["boundary"] for item in shown if item["margin"] < 0]
+    for name in violated[:MOST_SHOWN] if not everything else violated:
         yield f"violated: {name}, margin {amounts[name]}{features[name]}"
     if not violated:
         yield "feasible" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
-    for name in (name for name in amounts if name not in violated):
+    kept = [item["boundary"] for item in shown if item["boundary"] not in violated]
+    kept = kept if everything else kept[: max(0, MOST_SHOWN - len(violated))]
+    for name in kept:
         yield f"  margin {amounts[name]}: {name}{features[name]}"
+    said = len(kept) + len(violated if everything else violated[:MOST_SHOWN])
+    if said < len(amounts):
+        yield f"  {said} of {len(amounts)} boundaries and limits, the nearest; --all lists them"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
+
+
+def _nearest_of_links(robot: Robot, margins: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the least margin of each pair of links, the least first; limits come after them."""
+    links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
+    limited = limited_joints(robot)
+    found = dict[str, dict[str, Any]]()
+    for item in sorted(margins, key=lambda item: (item["boundary"] in limited, item["margin"])):
+        found.setdefault(links.get(item["boundary"], item["boundary"]), item)
+    return sorted(found.values(), key=lambda item: item["margin"] >= 0)
 
 
 def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -7,15 +7,14 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from qbound.arms.reports import by_links
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
 from qbound.model.robotfile import RobotFileError, refuse_replacing
 from qbound.region.region import violated
+from qbound.units import parse_length
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
 from qbound.urdf.robot_text import robot_text
-
-MOST_SHOWN = 5
-"""Pairs that touch at home that are named."""
 
 
 def add_to(commands: Any) -> None:
@@ -40,13 +39,13 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument(
         "--excess",
-        type=float,
-        default=EXCESS,
+        default=str(EXCESS),
         metavar="LENGTH",
-        help=f"how far a ball may stick out of a link, m (default {EXCESS})",
+        help=f"how far a ball may stick out of a link: 2cm, or a plain number of m"
+        f" (default {EXCESS})",
     )
     parser.add_argument(
-        "--clearance", type=float, default=0.0, metavar="LENGTH", help="kept by every pair, m"
+        "--clearance", default="0", metavar="LENGTH", help="kept by every pair: 1cm, or 0.01 (m)"
     )
     parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
     parser.add_argument(
@@ -79,9 +78,9 @@ def run(options: argparse.Namespace) -> int:
             chain=(options.first, options.last),
             srdf=options.srdf,
             limits=limits(options.limits),
-            excess=options.excess,
+            excess=parse_length(options.excess, "m", "--excess"),
             packages=options.package,
-            clearance=options.clearance,
+            clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
         )
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
@@ -121,7 +120,5 @@ def _lines(imported: Imported) -> Iterable[str]:
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."
     if touching := [name for name, _ in violated(robot, robot.home)]:
-        named = "; ".join(touching[:MOST_SHOWN])
-        more = f" and {len(touching) - MOST_SHOWN} more" if len(touching) > MOST_SHOWN else ""
-        yield f"The home pose is not feasible: {named}{more}."
+        yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
         yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."

@@ -10,18 +10,24 @@ from collections.abc import Iterator
 from functools import cache, partial
 from typing import Any
 
-from qbound.boundary.evaluator import limit_names
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.chosen import (
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    is_elsewhere,
+    region_by_rule,
+)
 from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
 from qbound.cli.values import held, strip
-from qbound.export.document import home_content, slices_document
+from qbound.export.document import slices_document
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.region import Region, Slices, find_slices
-from qbound.units import counted, joint_text, margin_text
+from qbound.units import counted, joint_text
 
 
 def add_to(commands: Any) -> None:
@@ -114,22 +120,10 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 
 def _lines(region: Region) -> Iterator[str]:
-    unit, robot, limited = region.area_unit, region.robot, region.limited
-    home = home_content(region)
-    beyond = {n: j for j in region.problem.held for n in limit_names(robot.joints[j].name)}
-    violates = "home's values of these joints violate" if _elsewhere(region) else "home violates"
-    for item in home["violated"]:
-        name = item["boundary"]
-        margin = margin_text(robot, name, item["margin"], limited)
-        if name in beyond:
-            held = joint_text(robot, [region.problem.held[beyond[name]]], [beyond[name]])
-            yield f"the slice holds {held}, which violates {name}, margin {margin}"
-        else:
-            yield f"{violates} {name}, margin {margin}"
+    unit = region.area_unit
+    yield from home_lines(region)
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
-    elif "touches" in home:
-        yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
     parts = counted(len(region.components), "component")
     yield f"{parts}, area {region.area:.9g} {unit} in all"
     for component in region.components:
@@ -140,13 +134,7 @@ def _lines(region: Region) -> Iterator[str]:
 
 def _home(region: Region) -> str:
     """Name what of the home pose a slice holds."""
-    return "home's values of these joints" if _elsewhere(region) else "the home pose"
-
-
-def _elsewhere(region: Region) -> bool:
-    """Tell whether a joint is held away from home."""
-    home = region.robot.home
-    return any(value != home[j] for j, value in region.problem.held.items())
+    return "home's values of these joints" if is_elsewhere(region) else "the home pose"
 
 
 def _draw(region: Region) -> bytes:

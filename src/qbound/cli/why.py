@@ -80,4 +80,4 @@ def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:
-        yield f"{file}: the certificate; check it with qbound check"
+        yield f"{file} is a certificate; check it with qbound check"

@@ -249,10 +249,12 @@ def robot_text(source: str | Path) -> tuple[str, str]:
         return _read(f"{ROBOTS}/{name}", "utf-8"), name
     try:
         return _read(source, "utf-8-sig"), str(source)
-    except (OSError, UnicodeDecodeError) as error:
+    except FileNotFoundError as error:
         known = ", ".join(packaged_robots())
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise RobotFileError(f"{source}: {reason}; packaged robots are {known}") from None
+        raise RobotFileError(f"{source}: {error.strerror}; packaged robots are {known}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text, so no robot file"
+        raise RobotFileError(f"{source}: {reason}") from None
 
 
 def _read(path: str | Path, encoding: str) -> str:

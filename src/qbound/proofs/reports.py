@@ -22,6 +22,9 @@ from qbound.units import counted, file_units
 COLUMN = ("low", "high", "feasible", "undecided")
 """What a document tells of each column."""
 
+SMALLEST = 1e-300
+"""A volume rounded up from zero is below it."""
+
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
 
@@ -91,7 +94,10 @@ def columns_lines(robot: Robot, paving: ColumnPaving) -> Iterator[str]:
 
 
 def _bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
-    yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
+    if not undecided and outer < SMALLEST:
+        yield f"volume 0 {unit}: nothing is feasible, proved"
+    else:
+        yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
     yield f"{100 * undecided:.3g} % of the range is undecided"
 
 
