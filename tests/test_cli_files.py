@@ -844,12 +844,21 @@ def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys
     few, every = (run(capsys, f"contains ur5 {pose}{more}")[1] for more in ("", " --all"))
     assert len(few.splitlines()) < 20
     assert len(every.splitlines()) > 200
-    assert "12 of 205 boundaries and limits, the nearest; --all lists them" in few
+    assert "the nearest of 205 boundaries and limits; --all lists every one" in few
+    assert "/" not in few  # links, no balls
     amounts = [float(line.split()[1]) for line in few.splitlines() if line.startswith("  margin")]
     assert amounts == sorted(amounts)
     folded = run(capsys, "contains ur5 0 -90 180 -90 -90 0")
     assert folded[0] == 1
     assert len(folded[1].splitlines()) < 20
+
+
+def test_commands_that_take_no_bodies_say_which_do(capsys) -> None:
+    for line in ("fibre two-links-on-a-table shoulder", "reach two-links-on-a-table",
+                 "allowed two-links-on-a-table"):  # fmt: skip
+        status, _, err = run(capsys, line)
+        assert status == 2
+        assert "qbound region" in err
 
 
 def test_home_in_collision_is_told_with_what_it_violates(capsys, arm) -> None:

@@ -368,3 +368,12 @@ def test_a_robot_file_that_somebody_wrote_is_not_replaced(tmp_path, capsys) -> N
     save_robot(load_robot("minervabot-v2"), own)
     assert own.read_text().startswith("# Made by qbound")
     assert load_robot(own).name == load_robot("minervabot-v2").name
+
+
+def test_what_touches_at_home_is_told_by_links_not_by_balls(tmp_path, capsys) -> None:
+    """Of an imported arm it named balls: "base/1, l7/1 and 170 more"."""
+    words = ["import", "ur5.urdf", "--clearance", "30cm", "-o", str(tmp_path / "ur5.toml")]
+    assert main(words) == 0
+    [said] = [line for line in capsys.readouterr().out.splitlines() if "not feasible" in line]
+    assert "forearm_link" in said
+    assert "/" not in said

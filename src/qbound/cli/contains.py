@@ -18,6 +18,9 @@ from qbound.model.robotfile import load_robot
 from qbound.tolerances import SAME_POINT
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
+Row = tuple[str, dict[str, Any]]
+"""A boundary, or a pair of links, and what is known of it."""
+
 MOST_SHOWN = 12
 """Margins that are listed unless all of them are asked for."""
 
@@ -66,35 +69,34 @@ def run(options: argparse.Namespace) -> int:
 
 def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterator[str]:
     amounts = dict(_margins(robot, content))
-    features = {item["boundary"]: _features(item) for item in content["margins"]}
-    shown = content["margins"]
-    if not everything and len(shown) > MOST_SHOWN:
-        shown = _nearest_of_links(robot, shown)
-    violated = [item["boundary"] for item in shown if item["margin"] < 0]
-    for name in violated[:MOST_SHOWN] if not everything else violated:
-        yield f"violated: {name}, margin {amounts[name]}{features[name]}"
+    rows = [(item["boundary"], item) for item in content["margins"]]
+    shown = rows if everything or len(rows) <= MOST_SHOWN else _nearest_of_links(robot, rows)
+    violated = [row for row in shown if row[1]["margin"] < 0]
+    for label, item in violated:
+        yield f"violated: {label}, margin {amounts[item['boundary']]}{_features(item)}"
     if not violated:
         yield "feasible" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
-    kept = [item["boundary"] for item in shown if item["boundary"] not in violated]
-    kept = kept if everything else kept[: max(0, MOST_SHOWN - len(violated))]
-    for name in kept:
-        yield f"  margin {amounts[name]}: {name}{features[name]}"
-    said = len(kept) + len(violated if everything else violated[:MOST_SHOWN])
-    if said < len(amounts):
-        yield f"  {said} of {len(amounts)} boundaries and limits, the nearest; --all lists them"
+    for label, item in shown:
+        if item["margin"] >= 0:
+            yield f"  margin {amounts[item['boundary']]}: {label}{_features(item)}"
+    if len(shown) < len(rows):
+        yield f"  the nearest of {len(rows)} boundaries and limits; --all lists every one"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
 
 
-def _nearest_of_links(robot: Robot, margins: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the least margin of each pair of links, the least first; limits come after them."""
+def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
+    """Return the least margin of each pair of links, called by them: what is violated, the nearest.
+
+    Limits come after lengths, because their margins are of another unit.
+    """
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()
-    for item in sorted(margins, key=lambda item: (item["boundary"] in limited, item["margin"])):
-        found.setdefault(links.get(item["boundary"], item["boundary"]), item)
-    return sorted(found.values(), key=lambda item: item["margin"] >= 0)
+    for name, item in sorted(rows, key=lambda row: (row[0] in limited, row[1]["margin"])):
+        found.setdefault(links.get(name, name), item)
+    return sorted(found.items(), key=lambda row: row[1]["margin"] >= 0)[:MOST_SHOWN]
 
 
 def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]:
