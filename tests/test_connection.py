@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import label
 
 from qbound import find_region, load_robot
-from qbound.proofs.connection import connection, outer_groups, separated
+from qbound.proofs.connection import connection, outer_groups, separated, separating_cells
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
 from qbound.region import solve
@@ -121,11 +121,11 @@ def test_an_angle_of_astronomical_size_is_never_decided_wrongly():
     assert connection(PAPER, [0.0, 0.0], [turns, 0.0]).answer == "connected"
 
 
-def test_infeasible_cells_alone_separate_by_an_independent_flood_fill():
+def test_the_wall_alone_separates_by_an_independent_flood_fill():
     found = connection(PAPER, CENTRES[0], CENTRES[1])
     n = 1024
     blocked = np.zeros((n, n), dtype=bool)
-    for cells in found.paving.infeasible:
+    for cells in separating_cells(found.paving, CENTRES[0]):
         low, high = (
             np.rint((p + np.pi) / (2 * np.pi) * n).astype(int)
             for p in found.paving.bounds.places(cells)

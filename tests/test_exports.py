@@ -27,6 +27,8 @@ from qbound.proofs.reports import paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.report import workspace_report
+from support.exact import stated
+from support.forms import RR
 
 MINERVA = load_robot("minervabot-v2")
 BOOM = load_robot("rp-telescopic-boom")
@@ -179,6 +181,14 @@ def test_a_paving_is_told_alike_as_json_and_in_words():
     assert cells == ", ".join(f"{count} cells {word}" for word, count in n.items())
     assert undecided == f"{100 * content['undecided']:.3g} % of the range is undecided"
     assert f"{content['volume']['inner']:.9g}" in volume
+
+
+def test_of_an_empty_region_no_volume_is_told():
+    """It was "between 0 rad^2 and 4.94e-324 rad^2"."""
+    below = {"00": -1}
+    volume, undecided, _ = paving_lines(MINERVA, pave(stated(RR, [below]), 0.5))
+    assert volume == "volume 0 rad^2: nothing is feasible, proved"
+    assert undecided == "0 % of the range is undecided"
 
 
 # --- points of statements -------------------------------------------------------------------------

@@ -294,6 +294,12 @@ def test_the_command_says_it_and_its_status_too(file, capsys, values, status, sa
     assert said in found.out + found.err
 
 
+def test_the_length_of_a_path_has_a_number_for_each_unit(capsys):
+    """It was "3.14 rad and m long"."""
+    assert main(["why", "rp-telescopic-boom", "-60", "1.5", "-50", "1.7"]) == 0
+    assert "0.175 rad and 0.2 m long" in capsys.readouterr().out
+
+
 def test_the_command_writes_certificate_document_and_picture(file, tmp_path, capsys):
     files = [tmp_path / name for name in ("c.json", "w.json", "w.svg")]
     values = ["0", "1rad", "0", "0", "4rad", "0"]

@@ -156,6 +156,25 @@ def separated(paving: Paving, one: ArrayLike, other: ArrayLike) -> bool:
     return not groups.containing(paving, one) & groups.containing(paving, other)
 
 
+def separating_cells(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
+    """Return the infeasible cells that enclose the group of a configuration: what separates it.
+
+    Every cell that touches the group and is not of it is among them.
+    """
+    groups = outer_groups(paving)
+    held = groups.containing(paving, q)
+    own = np.concatenate([np.isin(label, list(held)) for label in groups.label])
+    everything = (*groups.cells, *paving.infeasible)
+    edges = touching(everything, all_round(paving), corners=True)
+    inside = np.concatenate([own, np.zeros(sum(map(len, paving.infeasible)), dtype=bool)])
+    one, other = edges.T
+    met = np.zeros(len(inside), dtype=bool)
+    met[other[inside[one]]] = met[one[inside[other]]] = True
+    ends = np.cumsum([len(c) for c in everything])[:-1]
+    chosen = np.split(met & ~inside, ends)[len(groups.cells) :]
+    return tuple(c[k] for c, k in zip(paving.infeasible, chosen, strict=True) if k.any())
+
+
 def _verdicts(paving: Paving, q: ArrayLike) -> set[Verdict]:
     words = paving.verdicts(q)
     if not words:
