@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from qbound.forms.angles import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
+from qbound.region import Problem
 from qbound.region.arcs import NODES, converged, legendre
 from qbound.tolerances import CHORD, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
@@ -68,11 +69,12 @@ class Layers:
             u = _apart(np.concatenate([u, [0, farthest]]))
             problem = next(iter(self.sides.values())).problem
             ends = {*(problem.ranges[0] or ()), *(self.square[0] or ())}
-            crossing = crossing_distances(self.arm, self._bounding(), sorted(ends), farthest)
+            forms = self._bounding(problem)
+            crossing = crossing_distances(self.arm, forms, sorted(ends), farthest)
             u = np.concatenate([u, *self._met(u, np.sort(crossing))])
         return _apart(u)
 
-    def _bounding(self) -> HarmonicForm:
+    def _bounding(self, problem: Problem) -> HarmonicForm:
         """Return the forms, of boundaries and of features of bodies, that end any interval.
 
         Raises
@@ -80,17 +82,25 @@ class Layers:
         NoPlanarWorkspaceError
             If they are more than `MOST_BOUNDING`.
         """
-        tables = [np.zeros((0, 3, 3))]
+        forms, features = set[int](), set[int]()
         for part in self.sides.values():
-            roots = {root.form for cell in part.cells.cells for root in (cell.lower, cell.upper)}
-            tables += [part.cells.plane.form(row).coefficients[None] for row in roots if row >= 0]
-        found = np.unique(np.concatenate(tables), axis=0)  # most are on both sides of det J
-        if len(found) > MOST_BOUNDING:
-            raise NoPlanarWorkspaceError(
-                f"the workspace is not computed: {len(found)} boundaries bound the region, and any"
-                f" two may cross; {MOST_BOUNDING} are the most"
+            left_out = {problem.names.index(name) for name in part.irrelevant}.union(
+                part.problem.constants
             )
-        return HarmonicForm(found, self.arm.kinds)
+            kept = [k for k in range(len(problem.names)) if k not in left_out]
+            for cell in part.cells.cells:
+                for row in (cell.lower.form, cell.upper.form):
+                    if row >= len(kept):
+                        features.add(row - len(kept))
+                    elif row >= 0:
+                        forms.add(kept[row])
+        if len(forms) + len(features) > MOST_BOUNDING:
+            raise NoPlanarWorkspaceError(
+                f"the workspace is not computed: {len(forms) + len(features)} boundaries bound the"
+                f" region, and any two may cross; {MOST_BOUNDING} are the most"
+            )
+        tables = problem.forms.coefficients[sorted(forms)], problem.contacts.forms[sorted(features)]
+        return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
 
     def _met(self, lines: Floats, crossing: Floats) -> Iterator[Floats]:
         """Yield of the distances of possible crossings those at which ends of both postures meet.
