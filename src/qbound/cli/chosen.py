@@ -9,7 +9,6 @@ from typing import Final
 
 from qbound.boundary.evaluator import limit_names
 from qbound.cli.progress import working
-from qbound.export.document import home_content
 from qbound.model.robot import Robot
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_text, margin_text
@@ -92,6 +91,8 @@ def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) ->
 
 def home_lines(region: Region) -> Iterator[str]:
     """Say what the home pose violates, or touches where it is feasible and in no component."""
+    from qbound.export.document import home_content  # with the workspace: slow to import
+
     robot, limited = region.robot, region.limited
     home = home_content(region)
     beyond = {n: j for j in region.problem.held for n in limit_names(robot.joints[j].name)}

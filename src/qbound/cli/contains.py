@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from qbound.arms.links import link_pair
 from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
@@ -91,6 +90,8 @@ def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
 
     Limits come after lengths, because their margins are of another unit.
     """
+    from qbound.arms.links import link_pair  # for arms of many boundaries alone
+
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()
