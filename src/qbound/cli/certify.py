@@ -197,6 +197,7 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
     if refutation is not None and refutation.verdict == "refuted" and options.output != "-":
         say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
     if proof is None and options.output != "-":
-        say("no scale is proved: the centroid of home's vertices seems to be unsafe itself; try --region")
+        centre = "the centroid of home's vertices seems to be unsafe itself"
+        say(f"no scale is proved: {centre}; try --region")
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

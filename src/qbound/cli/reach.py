@@ -21,10 +21,10 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "reach",
         help="where does the tool get to? a map of voxels, and its volume",
-        description="Map the places of the tool over all feasible configurations. One joint's "
-        "travel is exact, the others are drawn: a voxel that is marked is reached. "
-        "The same seed gives the same map. Of arms of points and balls; of bodies in a plane, "
-        "qbound workspace measures two joints.",
+        description="Map the places of the tool over all feasible configurations. One joint's\n"
+        "travel is exact, the others are drawn: a voxel that is marked is reached. The same\n"
+        "seed gives the same map. Of arms of points and balls; of bodies in a plane, qbound\n"
+        "workspace measures two joints.",
         epilog="exit status: 0 mapped, 1 nothing feasible was found; 2 bad input\n"
         "example: qbound reach ur5 --voxel 25cm --svg reach.svg",
     )
