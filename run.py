@@ -24,6 +24,7 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import re
 import shutil
 import subprocess
@@ -71,8 +72,16 @@ CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results 
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
 # What of the shell's environment may change a result, by the beginning of its name.
-COUNTS = ("PYTHON", "IPYTHON", "JUPYTER", "MPL", "NUMPY", "NPY", "OMP_", "OPENBLAS", "MKL")
-COUNTS += ("LANG", "LC_", "TZ")
+COUNTS = ("PYTHON", "IPYTHON", "JUPYTER", "MPL", "NUMPY", "LANG", "LC_", "TZ")
+# The book is computed in one arithmetic, which every x86 has: this kernel of OpenBLAS, and NumPy
+# without the features that a processor may have or not. A shell's own choice does not count there.
+KERNEL = "Nehalem"
+CHOOSES = ("OPENBLAS", "NPY_", "MKL_", "OMP_")
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # one order of a sum's terms
+FEATURES = """import numpy, scipy.linalg
+from numpy._core._multiarray_umath import __cpu_dispatch__ as names, __cpu_features__ as has
+print(*names)
+print(*(name for name in names if has[name]))"""
 # Chapters that take long, the longest first: those that begin late are short, and both processes
 # end at about the same time. A new one may be left out; it costs nothing but time.
 LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "certainty", "many_robots"]
@@ -123,16 +132,22 @@ def say(text: str) -> None:
     print(text, flush=True)
 
 
-def call(title: str, command: Command, quiet: bool = False, **settings: object) -> int:
+def call(
+    title: str,
+    command: Command,
+    quiet: bool = False,
+    base: dict[str, str] | None = None,
+    **settings: object,
+) -> int:
     """Run a step in the repository, say how long it took, and return its exit status.
 
     A quiet command gets a sign of life every 15 seconds; the others show their own progress.
-    Settings are added to its environment.
+    Settings are added to its environment, which is `environment()` unless another is the base.
     """
     say(f"-- {title}")
     start = time.monotonic()
-    more = {name: str(value) for name, value in settings.items()}
-    with subprocess.Popen(command, cwd=ROOT, env=environment() | more) as process:
+    whole = (base or environment()) | {name: str(value) for name, value in settings.items()}
+    with subprocess.Popen(command, cwd=ROOT, env=whole) as process:
         while process.poll() is None:
             try:
                 process.wait(timeout=15 if quiet else None)
@@ -161,11 +176,52 @@ def environment() -> dict[str, str]:
         "IPYTHONDIR": str(VENV / "ipython"),
         "JUPYTER_PREFER_ENV_PATH": "1",
         "MPLCONFIGDIR": str(VENV / "matplotlib"),
-        "OMP_NUM_THREADS": "1",  # sums of matrix products in one order, whatever the cores
-        "OPENBLAS_NUM_THREADS": "1",
+        **ONE_THREAD,
         "PYTHONHASHSEED": os.environ.get("QBOUND_HASH_SEED", "0"),  # .ci/run takes another
         "PYTHONNOUSERSITE": "1",
     }
+
+
+def one_arithmetic() -> dict[str, str]:
+    """Return the environment of what makes the book, in which every x86 computes the same bits.
+
+    NumPy and OpenBLAS ignore a name that they do not know, so they are asked whether they obey.
+    """
+    fixed = {k: v for k, v in environment().items() if not k.upper().startswith(CHOOSES)}
+    fixed |= ONE_THREAD
+    if not is_x86():
+        return fixed
+    optional, _, _ = arithmetic(fixed)
+    fixed |= {"OPENBLAS_CORETYPE": KERNEL, "NPY_DISABLE_CPU_FEATURES": " ".join(optional)}
+    _, used, kernels = arithmetic(fixed)
+    if used or kernels != {KERNEL}:
+        found = " ".join([*sorted(kernels), *used]) or "no OpenBLAS"
+        raise Failed(f"The book is computed with {KERNEL}'s arithmetic; it cannot be had: {found}")
+    return fixed
+
+
+def is_x86() -> bool:
+    """Tell whether the one arithmetic can be had; on a Mac, NumPy computes with Apple's own."""
+    return platform.machine() in {"x86_64", "AMD64"} and sys.platform != "darwin"
+
+
+def arithmetic(base: dict[str, str]) -> tuple[list[str], list[str], set[str]]:
+    """Ask how .venv computes in an environment.
+
+    Returns the features that NumPy can do without, those of them in use, and OpenBLAS's kernels.
+    """
+    done = subprocess.run(
+        [in_venv("python"), "-c", FEATURES],
+        cwd=ROOT,
+        env=base | {"OPENBLAS_VERBOSE": "2"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        raise Failed(f"NumPy cannot be imported:\n{done.stderr}")
+    optional, used = (line.split() for line in done.stdout.splitlines())
+    return optional, used, set(re.findall(r"^Core: (\w+)", done.stderr, re.MULTILINE))
 
 
 def remove(path: Path) -> None:
@@ -414,6 +470,7 @@ def build_pages() -> None:
         "Building the pages",
         sphinx("html", in_next(ROOT / "book"), in_next(BUILD)),
         quiet=True,
+        base=one_arithmetic(),
         QBOUND_RESULTS=in_next(RESULTS),
     )
 
@@ -483,6 +540,7 @@ def execute(notebooks: list[Path], now: dict[str, str]) -> None:
     must(
         f"Executing {len(chapters)} notebooks",
         [*pytest, *ours, *nbmake, *chapters],
+        base=one_arithmetic(),
         PYTHONPATH=TOOLS / "reads",
         QBOUND_MADE=NEXT / "made",
     )
@@ -511,6 +569,9 @@ def collect_executed() -> None:
 def collect(chapter: Path, now: dict[str, str]) -> None:
     """Take over a chapter's results, and write down all that the chapter was made from."""
     own = NEXT / "made" / chapter.stem
+    if not is_x86():
+        keep = [in_venv("python"), TOOLS / "keep_results.py", own, RESULTS]
+        must(f"Comparing the results of {chapter.name} with the recorded ones", keep)
     results = {file.name: hash_of(file) for file in own.glob("*.json")}
     for name in results:
         if in_next(RESULTS / name).exists():
@@ -584,6 +645,7 @@ def settings() -> dict[str, str]:
         "python": python.strip(),
         "lock": digest(LOCK.read_text(encoding="utf-8")),
         "packages": digest(*sorted(found)),
+        "arithmetic": KERNEL if is_x86() else platform.machine(),
         "environment": digest(*(f"{name}={counts[name]}" for name in sorted(counts))),
         "how": hash_of(TOOLS / "reads" / "sitecustomize.py") or "",
     }
@@ -728,7 +790,7 @@ def print_book(browser: str) -> None:
     scratch = BUILD / "pdf"
     remove(scratch)
     command = sphinx("singlehtml", ROOT / "book", scratch)
-    must("Building the book as one page", command, quiet=True)
+    must("Building the book as one page", command, quiet=True, base=one_arithmetic())
     draft, page = scratch / PDF.name, scratch / "singlehtml" / "index.html"
     options = ["--headless", "--disable-gpu", "--no-pdf-header-footer"]
     options += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # as in CI

@@ -105,6 +105,18 @@ def test_sometimes_with_two_witnesses() -> None:
     assert gap_at(robot, found.links, found.nearest) < 0 < gap_at(robot, found.links, found.apart)
 
 
+@pytest.mark.parametrize("length", [0.3, 0.737, 1.234, 51.7])
+def test_the_gap_of_two_balls_with_one_middle_is_that_of_their_places(length) -> None:
+    """A hand that folds back onto the base: the squared distance cancels to nothing there."""
+    elbow = joint(Revolute, 1, origin=(length, 0, 0))
+    foot, hand = ball("foot/1", "0", (0, 0, 0), 0.1), ball("hand/1", "2", (length, 0, 0), 0.124)
+    robot = arm([joint(Revolute, 0), elbow], [foot, hand])
+    found = only(robot)
+    assert found.gap == pytest.approx(-0.224, abs=1e-9 * length)
+    there = gap_at(robot, found.links, found.nearest)
+    assert found.gap == pytest.approx(there, abs=1e-14 * (1 + length))
+
+
 @pytest.mark.parametrize(
     ("limits", "contact"),
     [

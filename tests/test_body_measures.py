@@ -14,6 +14,7 @@ from qbound.boundary.nearest import nearest_features
 from qbound.export.configuration import configuration_document
 from qbound.export.document import region_document
 from qbound.forms.angles import nearest_turn
+from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.measures.nearest import moments, nearest_boundary
 from qbound.measures.scaling import first_exit, largest_safe_scale, worst_margins
@@ -28,7 +29,7 @@ from qbound.workspace.areas import find_workspace
 from qbound.workspace.fibres import find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import planar_arm, postures
-from support.scenes import random_scene
+from support.scenes import configurations, random_scene
 
 TABLE_FILE = """
 schema = 1
@@ -51,6 +52,26 @@ body = [
 obstacle = [
   { name = "disc", disc = { at = [0.5, 0, 0.4], radius = 0.1 } },
   { name = "crate", polygon = [[-0.7, 0.35], [-0.45, 0.35], [-0.45, 0.6], [-0.7, 0.6]] },
+]
+"""  # noqa: E501
+
+SLIDE_FILE = """
+schema = 1
+name = "A disc on two slides"
+length_unit = "m"
+angle_unit = "rad"
+home = { x = 2.5, y = 2 }
+tool = "tip"
+collisions = "all"
+joint = [
+  { name = "x", type = "prismatic", parent = "base", frame = "1", origin = [0, 0, 0], axis = [1, 0, 0], limits = [0, 5] },
+  { name = "y", type = "prismatic", parent = "1", frame = "2", origin = [0, 0, 0], axis = [0, 1, 0], limits = [0, 5] },
+]
+point = [{ name = "tip", frame = "2", at = [0, 0, 0] }]
+body = [{ name = "hand", frame = "2", disc = { at = [0, 0], radius = 0.5 } }]
+obstacle = [
+  { name = "wall", polygon = [[0, 4], [5, 4], [5, 5], [0, 5]] },
+  { name = "post", disc = { at = [4, 1], radius = 0.5 } },
 ]
 """  # noqa: E501
 
@@ -129,7 +150,7 @@ def test_a_ray_stops_at_the_first_contact_of_bodies(region, centre) -> None:
     rng, problem = np.random.default_rng(2), region.problem
     angle = rng.uniform(0, 2 * np.pi, 12)
     rays = 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    found, which = first_exit([], centre, rays, contacts=problem.contacts)
+    found, which = first_exit(problem.forms, centre, rays, contacts=problem.contacts)
     s = np.linspace(0, 1, 4001)
     bodies = slice(0, len(region.robot.used))
     for ray, scale, pair in zip(rays, found, which, strict=True):
@@ -144,9 +165,9 @@ def test_a_ray_stops_at_the_first_contact_of_bodies(region, centre) -> None:
 
 @pytest.mark.parametrize("centre", CENTRES)
 def test_the_largest_safe_scale_touches_and_what_is_below_is_safe(region, centre) -> None:
-    contacts = region.problem.contacts
+    problem = region.problem
     corners = centre + np.array([[-1, -1], [1.2, -1], [1, 1], [-1, 0.5]])
-    found = largest_safe_scale(corners, centre, [], contacts=contacts)
+    found = largest_safe_scale(corners, centre, problem.forms, contacts=problem.contacts)
     t = np.linspace(0, 1, 150)[:, None]
     edges = np.concatenate(
         [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)]
@@ -160,15 +181,97 @@ def test_the_largest_safe_scale_touches_and_what_is_below_is_safe(region, centre
     assert 0 < found.scale < 1
     assert least(found.proved) >= 0
     assert least(1.01 * found.scale) < 0
-    column = region.boundaries.index(contacts.boundaries[found.form])
+    column = region.boundaries.index(problem.contacts.boundaries[found.form])
     assert abs(region.margins(found.q)[column]) < 1e-9
 
 
 def test_bodies_that_overlap_at_the_centre_are_refused(region) -> None:
     (q,) = np.radians([[20.0, 50.0]])
     assert not region.contains(q)
+    problem = region.problem
     with pytest.raises(ValueError, match="violated at the centre"):
-        largest_safe_scale(q + np.eye(2), q, [], contacts=region.problem.contacts)
+        largest_safe_scale(q + np.eye(2), q, problem.forms, contacts=problem.contacts)
+
+
+@pytest.fixture(scope="module", params=[4, 1, 6, 7], ids=["RR", "RP", "PR", "PP"])
+def kind(request):
+    """Bodies alone, of each kind of arm: the region, and its deepest configuration of a few.
+
+    What turns all the way round gets limits, because what goes round a joint has no centre.
+    """
+    robot = random_scene(request.param, 3)
+    joints = tuple(replace(joint, limits=joint.limits or (-2.5, 2.5)) for joint in robot.joints)
+    found = find_region(replace(robot, joints=joints))
+    q = configurations(found.robot, 400)
+    return found, q[found.margins(q).min(axis=1).argmax()]
+
+
+def first_violation(region, centre, places, highest: float) -> float:
+    """The least of many scales at which a place, scaled about a centre, breaks a boundary.
+
+    By the signed distances of the bodies alone, without their features; limits do not count.
+    """
+    s = np.linspace(0, highest, 401)
+    margins = region.margins(centre + s[:, None, None] * (places - centre))
+    bad = (margins[..., : len(region.robot.used)] < 0).any(axis=(1, 2))
+    return float(s[bad.argmax()]) if bad.any() else highest
+
+
+def around(corners, n: int):
+    """Points of the edges of a polygon, n an edge."""
+    t = np.linspace(0, 1, n, endpoint=False)[:, None, None]
+    return (corners + t * (np.roll(corners, -1, axis=0) - corners)).reshape(-1, 2)
+
+
+def test_the_largest_safe_scale_is_that_of_dense_samples_for_each_kind_of_arm(kind) -> None:
+    """A stack of no form says that a joint slides: taken for one that turns, it was far off."""
+    region, centre = kind
+    corners = centre + np.array([[-1, -1], [1.2, -1], [1, 1], [-1, 0.5]])
+    problem = region.problem
+    assert not problem.names
+    found = largest_safe_scale(corners, centre, problem.forms, highest=2, contacts=problem.contacts)
+    dense = first_violation(region, centre, around(corners, 60), 2)
+    assert found.proved < found.scale < 2
+    assert dense - 0.02 < found.scale <= dense + 1e-9
+    column = region.boundaries.index(problem.contacts.boundaries[found.form])
+    assert abs(region.margins(found.q)[column]) < 1e-9
+
+
+def test_the_exact_scale_is_that_of_dense_samples_for_each_kind_of_arm(kind) -> None:
+    region, centre = kind
+    component = region.components[region.component_of(centre)]
+    found = exact_scale(region.problem, component, centre)
+    places = [arc.at(np.linspace(0, 1, 25)) for loop in component.loops for arc in loop]
+    dense = first_violation(region, centre, np.concatenate(places), 1 - 1e-6)
+    assert dense - 0.02 < found.scale <= dense + 2e-6
+    rings = inner_polygon(region.problem, component, 17)
+    assert 0.9 * component.area < sum(map(polygon.area, rings)) < component.area
+    for ring in rings:
+        assert region.margins(around(ring, 40)).min() > -1e-8
+
+
+def test_a_rectangle_with_a_post_in_it_is_not_safe(tmp_path) -> None:
+    """A disc on two slides, a post of radius 1/2: the rectangle's corner (9/2, 1/2) touches it.
+
+    Scaled by s about (2, 2) the corner is 1 from the post's middle, (4, 1):
+    (5 s / 2 - 2)^2 + (1 - 3 s / 2)^2 = 1.
+    """
+    file = tmp_path / "slide.toml"
+    file.write_text(SLIDE_FILE)
+    problem = clearance_problem(load_robot(file))
+    corners = [[0.5, 0.5], [4.5, 0.5], [4.5, 3], [0.5, 3]]
+    found = largest_safe_scale(corners, [2, 2], problem.forms, contacts=problem.contacts)
+    assert found.scale == pytest.approx((13 - np.sqrt(33)) / 17, abs=1e-12)
+    assert problem.contacts.boundaries[found.form] == "hand, post"
+
+
+def test_forms_that_are_no_stack_are_refused(region) -> None:
+    """One form, or a list of none, does not say of what joints the contacts are."""
+    problem = region.problem
+    three = HarmonicForm(np.zeros((1, 3, 3, 3)), ("revolute",) * 3)
+    for forms in (HarmonicForm(np.zeros((3, 3)), problem.forms.kinds), three):
+        with pytest.raises(ValueError, match="a stack of forms of two joints"):
+            largest_safe_scale(np.eye(2), [0, 0], forms, contacts=problem.contacts)
 
 
 def test_the_exact_scale_keeps_every_arc_inside_and_is_the_largest(region) -> None:

@@ -6,7 +6,7 @@ shapely, regions from the boxes and inequalities themselves.
 
 from __future__ import annotations
 
-from itertools import pairwise, permutations
+from itertools import combinations, pairwise, permutations
 
 import numpy as np
 import shapely
@@ -77,6 +77,12 @@ def test_every_walk_that_returns_crosses_itself_and_four_that_do_not_return_are_
         [4, 3, 2, 1, 0, 5],
         [5, 0, 1, 2, 3, 4],
     ]
+
+
+def test_the_six_points_put_the_tool_at_six_places() -> None:
+    places = [tool_path([i, j]).coords[0] for i in range(6) for j in [(i + 1) % 6]]
+    apart = [np.hypot(*np.subtract(a, b)) for a, b in combinations(places, 2)]
+    assert min(apart) > 1
 
 
 def test_the_second_path_is_the_first_through_the_opposite_points() -> None:

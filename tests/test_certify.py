@@ -615,7 +615,7 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert cli.main(["check", file, "minervabot-v2-corrected"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--scale", "0.97", "-o", file]) == 1
     assert "cm" in capsys.readouterr().out
-    assert cli.main(["check", file]) == 1
+    assert cli.main(["check", file]) == 3
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30", "q2=-80deg:-40deg"]) == 0
     assert cli.main(["certify", "minervabot-v2", "--margin", "-1"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30"]) == 2
@@ -708,7 +708,7 @@ def test_a_refutation_and_the_largest_scale_have_their_checker_too(tmp_path):
     one, other = tmp_path / "one", tmp_path / "other"
     assert cli.main([*SCALED[:3], "0.97", "--with-checker", str(one)]) == 1
     assert cli.main([*SCALED[:2], "--largest-scale", "--with-checker", str(other)]) == 0
-    assert check.main([str(one / "certificate.json")]) == 1
+    assert check.main([str(one / "certificate.json")]) == 3
     assert check.main([str(other / "certificate.json")]) == 0
 
 

@@ -402,13 +402,13 @@ def box_witness(boundary="B7", at=("4", "4")):
 
 
 def agreed(tmp_path, data):
-    """Return the exit status, which is 2 exactly where the other checker refuses."""
+    """Return the exit status, which is 2 exactly where the other checker refuses, and never 1."""
     found = status(tmp_path, data)
     if found == 2:
         with pytest.raises(ValueError, match=r"\w"):
             check_arb.verify(data if isinstance(data, str) else json.dumps(data))
     else:
-        assert check_arb.verify(json.dumps(data)) == ("proved", "refuted")[found]
+        assert check_arb.verify(json.dumps(data)) == {0: "proved", 3: "refuted"}[found]
     return found
 
 
@@ -467,7 +467,7 @@ def test_the_files_that_are_changed_here_are_true(tmp_path):
     assert agreed(tmp_path, square()) == 0
     assert agreed(tmp_path, box_file(1)) == agreed(tmp_path, box_file(2)) == 0
     assert agreed(tmp_path, box_file(high=("8", "0"))) == 0
-    assert agreed(tmp_path, box_witness()) == 1
+    assert agreed(tmp_path, box_witness()) == 3
 
 
 ROBOT_TEXTS = {
@@ -519,12 +519,16 @@ def test_the_bounds_of_the_page_are_those_of_the_checker():
 
 
 def test_the_answer_is_written_from_what_was_verified():
-    refuted, said = check.check(json.dumps(box_file(low=("-4", "0.50"))))
+    sha256 = check.digest(paper_robot()[0])
+    data = json.dumps(box_file(low=("-4", "0.50")))
+    pinned = check.check(data, sha256).said.splitlines()[0]
+    assert pinned == f"robot 'MinervaBotV2', sha256 {sha256}, the robot that was asked for"
+    refuted, said = check.check(data)
     assert not refuted
     first, second, *shown = said.splitlines()
-    assert first == f"robot 'MinervaBotV2', sha256 {check.digest(paper_robot()[0])}"
+    assert first == f"robot 'MinervaBotV2', sha256 {sha256}, compared with no robot file"
     assert second.startswith("proved: every configuration of the set keeps 'B1', 'B2', 'B3', 'B4'")
-    assert shown == ["set: box in ('q1' in deg, 'q2' in deg)", "(-4, 0.5) (8, 8)"]
+    assert shown == ["set: box in ('q1' in deg, 'q2' in deg)", "corners: (-4, 0.5) (8, 8)"]
     assert (
         "'B7' with a margin of 100 cm is violated at 'q1' = 4 deg, 'q2' = 4 deg"
         in check.check(json.dumps(box_witness())).said
@@ -550,8 +554,36 @@ def test_what_goes_all_the_way_round_is_said(high):
     text = harmless(robot_file(1, 2, "revolute"))
     around = {"set": "polygon", "margin": "0", "points": [low], "triangles": [[0, 1, 2], [0, 2, 3]]}
     said = check.check(certificates.certificate(text, around)).said
-    assert ("goes all the way round 'q1'" in said) == (high == "180")
+    assert ("takes every angle of 'q1'" in said) == (high == "180")
     assert "round 'q2'" not in said
+
+
+def of_free_robot(**statement):
+    """Return what is said of a set of a robot that is safe everywhere."""
+    text = harmless(robot_file(1, 2, "revolute"))
+    return check.check(certificates.certificate(text, {"margin": "0"} | statement)).said
+
+
+def test_a_long_path_is_named_by_its_ends_and_a_hash_of_all_its_places():
+    """By the ranges alone, two paths had one printed answer, which read as start and end."""
+    places = [[str(k % 7), str(k)] for k in range(51)]
+    other = [*places[:20], ["5.5", "20"], *places[21:]]
+    said, others = (of_free_robot(set="path", points=[path]) for path in (places, other))
+    assert "'q1' is between 0 and 6 deg in the set" in said
+    assert "path from (0, 0) to (1, 50)" in said
+    printed = " ".join(f"({x}, {y})" for x, y in places)
+    assert f"sha256 of their text {check.digest(printed)}" in said
+    assert "51 configurations, in 1 list(s)" in others
+    assert said != others
+
+
+def test_a_hole_is_not_printed_as_an_island():
+    outer = [["0", "0"], ["9", "0"], ["9", "9"], ["0", "9"]]
+    inner = [["3", "3"], ["3", "6"], ["6", "6"], ["6", "3"]]  # clockwise
+    ring = [[0, 1, 7], [0, 7, 4], [1, 2, 6], [1, 6, 7], [2, 3, 5], [2, 5, 6], [3, 0, 4], [3, 4, 5]]
+    said = of_free_robot(set="polygon", points=[outer, inner], triangles=ring).splitlines()
+    assert "outline: (0, 0) (9, 0) (9, 9) (0, 9)" in said
+    assert "hole: (3, 3) (3, 6) (6, 6) (6, 3)" in said
 
 
 def harmless(robot):
@@ -707,6 +739,35 @@ def run_checker(tmp_path, data, **options):
     file.write_text(json.dumps(data), encoding="utf-8")
     command = [sys.executable, "-I", str(FILE), str(file)]
     return subprocess.run(command, check=False, **options)
+
+
+BESIDE = ["__future__", "fractions", "hashlib", "json", "math", "re", "tomllib", "typing"]
+
+
+def test_modules_beside_the_checker_do_not_answer_for_it(tmp_path):
+    """Python looks for modules in the folder of a script first, unless it runs with -I."""
+    for name in BESIDE:
+        (tmp_path / f"{name}.py").write_text("import os\nos._exit(0)\n")
+    copy = tmp_path / "check.py"
+    copy.write_bytes(FILE.read_bytes())
+    (tmp_path / "cert.json").write_text(json.dumps(square() | {"verdict": "refuted"}))
+    done = subprocess.run(
+        [sys.executable, copy, tmp_path / "cert.json"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stdout.startswith("not proved: ")
+
+
+def test_an_older_python_has_no_answer_and_not_the_status_of_one():
+    """It ended with 1, by an exception, when that meant refuted."""
+    ast.parse(FILE.read_text(encoding="utf-8"), feature_version=(3, 8))
+    older = "import runpy, sys; sys.version_info = (3, 10, 12); runpy.run_path(sys.argv[1])"
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", older, FILE], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (2, "")
+    assert done.stdout == "not proved: check.py needs Python 3.11 or newer\n"
+    assert 1 not in (check.PROVED, check.REFUTED, check.NO_ANSWER)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from jsonschema import Draft202012Validator, ValidationError, validate
 
 from lizarraga2025 import printed as paper
@@ -27,6 +26,7 @@ from lizarraga2025.ledger.claims import (
     Count,
     claim,
     counts,
+    findings,
     from_content,
     identifiers,
     join,
@@ -40,6 +40,23 @@ ROOT = Path(__file__).resolve().parent.parent
 EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
 VERDICT = {name: verdict for kind in EXPECTED.values() for name, verdict in kind.items()}
 KIND = {name: kind for kind, names in EXPECTED.items() for name in names}
+
+SISTERS = (
+    ("E-3.1", "S-11.1"),
+    ("E-12", "F-4.3", "S-20.1"),
+    ("E-31", "TH-2"),
+    ("T-5.1", "T-5.2"),
+    ("T-6.4", "T-6.8", "T-6.9", "T-6.10", "B-2.3.1", "B-2.3.2", "B-4.3.1", "B-4.3.2", "B-5.1.2"),
+    ("T-6.7", "B-4.1.1", "B-4.1.2"),
+    ("F-10.2", "F-10.3", "S-36.2", "S-55"),
+    ("F-11.3", "S-42"),
+    ("S-1.1", "S-8", "S-50"),
+    ("S-2", "S-32", "S-52"),
+    ("S-6", "S-8.1", "S-39"),
+    ("S-9.1", "S-13", "S-16.1"),
+    ("S-9.2", "S-20.2", "S-20.4"),
+    ("S-22", "S-23", "S-23.2"),
+)
 
 every_id = pytest.mark.parametrize("name", identifiers())
 
@@ -229,6 +246,28 @@ def test_every_row_of_a_table_has_an_entry(table: int, rows: int) -> None:
     assert [n for n in identifiers() if re.match(rf"T-{table}(\.|$)", n)] == names
 
 
+def test_entries_confirmed_by_one_test_are_one_finding() -> None:
+    findings: dict[str, set[str]] = {}
+    for one in map(computed, identifiers()):
+        if one.verdict == "confirmed" and one.kind != "given":
+            findings.setdefault(one.evidence.test, set()).add(one.finding)
+    assert {test: names for test, names in findings.items() if len(names) > 1} == {}
+
+
+def test_what_is_given_is_no_finding() -> None:
+    ledger = [computed(name) for name in identifiers()]
+    given = [one for one in ledger if one.kind == "given"]
+    assert len(given) > 10
+    assert not {one.id for one in given} & findings(ledger)
+    assert counts(given)["confirmed"] == Count(len(given), 0)
+
+
+@pytest.mark.parametrize("names", SISTERS, ids=" ".join)
+def test_one_sentence_of_the_paper_has_one_verdict(names: tuple[str, ...]) -> None:
+    """Entries that judge the same sentence, or say the same of one figure or formula."""
+    assert len({VERDICT[name] for name in names}) == 1
+
+
 def test_every_figure_and_theorem_has_an_entry_and_the_text_many() -> None:
     kinds = Counter(KIND[name] for name in identifiers())
     figures = {int(re.match(r"F-(\d+)", n)[1]) for n in identifiers() if n.startswith("F-")}
@@ -363,11 +402,27 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
     return status, capsys.readouterr().out
 
 
-def test_claims_lists_by_verdict_and_kind(capsys) -> None:
-    status, text = said(capsys, "claims", "--verdict", "refuted", "--kind", "equation")
+def test_claims_lists_a_kind_in_one_line_each(capsys) -> None:
+    status, text = said(capsys, "claims", "--kind", "given")
     names = [line.split()[0] for line in text.splitlines()[:-2]]
-    wanted = [n for n in identifiers() if VERDICT[n] == "refuted" and KIND[n] == "equation"]
-    assert (status, names) == (0, wanted)
+    assert (status, names) == (0, [n for n in identifiers() if KIND[n] == "given"])
+    assert text.splitlines()[-1] == f"together: {len(names)} entries, 0 findings"
+
+
+def test_claims_of_a_verdict_have_their_numbers_and_tests(capsys) -> None:
+    """What does not hold as printed is refuted or a misprint: both can be asked for at once."""
+    status, text = said(capsys, "claims", "--verdict", "refuted", "--verdict", "misprint")
+    wanted = [n for n in identifiers() if VERDICT[n] in ("refuted", "misprint")]
+    assert status == 0
+    assert re.findall(r"(?m)^(\S+)  \S", text) == wanted
+    for name in wanted:
+        assert f"  found     {computed(name).found}" in text
+        assert computed(name).evidence.test in text
+
+
+def test_an_id_may_be_typed_in_small_letters(capsys) -> None:
+    assert said(capsys, "claims", "e-34") == said(capsys, "claims", "E-34")
+    assert said(capsys, "claims", "th-2")[0] == 0
 
 
 def test_claims_counts_entries_and_findings(capsys) -> None:
@@ -443,12 +498,14 @@ def test_an_entry_is_cited_with_version_verdict_and_anchor(capsys) -> None:
         assert record.count("{") == record.count("}")
 
 
-def test_the_book_and_the_command_cite_alike() -> None:
+def test_the_book_and_the_command_cite_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page is a committed file, which cannot name its commit."""
+    monkeypatch.setattr(cite, "state", lambda: None)
     page = (ROOT / "book" / "cite.md").read_text(encoding="utf-8")
     assert cite.PAPER in page
     assert cite.package() in page
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    assert citation["date-released"].year == cite.YEAR
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert project["tool"]["qbound"]["released"].year == cite.YEAR
 
 
 def test_anchors_are_unique_and_made_from_the_id() -> None:

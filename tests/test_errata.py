@@ -26,6 +26,15 @@ def test_all_that_does_not_hold_is_listed_once() -> None:
     assert not {one.id for one in LEDGER if one.verdict == "confirmed"} & set(listed)
 
 
+def test_the_errata_print_nothing_that_the_ledger_does_not_hold() -> None:
+    """No rule of this arm for every robot, no cause that is none, no unit that is open."""
+    assert "S-30.1" not in {one.id for entries in PARTS.values() for one in entries}
+    assert not {"T-5", "T-5.1", "T-5.2"} & {one.id for one in PARTS["T-4.1"]}
+    assert "Table 5" not in change("T-4.1")[0]
+    assert "third" not in change("E-9")[1]
+    assert "due to" not in change("F-10.2")[1]
+
+
 def test_the_inverse_tangent_has_its_part() -> None:
     assert {"E-34", "T-6.3", "T-6.6", "B-2.1.1", "B-3.3.2"} <= {one.id for one in PARTS["E-34"]}
 

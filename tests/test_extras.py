@@ -224,7 +224,7 @@ MISSING = [
     (["draw", "minervabot-v2", "-o", "x.svg"], "matplotlib"),
     (["workspace", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
     (["traverse", "minervabot-v2", "1", "2", "--svg", "x.svg", "--csv", "x.csv"], "matplotlib"),
-    (["pave", "minervabot-v2"], "flint"),
+    (["connected", "minervabot-v2", "0", "0", "11", "143"], "scipy"),
 ]
 
 
@@ -241,7 +241,6 @@ def test_a_command_says_how_to_install_what_it_misses(
 CALLS = {
     "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
     "sympy": "qbound.symbols.with_symbols(robot)",
-    "flint": "qbound.proofs.exact.exact_robot(robot)",
     "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
     "IPython": "qbound.figures.table(['a'], [[1]])",
 }
@@ -250,7 +249,7 @@ CALLS = {
 @pytest.mark.parametrize("module", CALLS)
 def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
     code = (
-        "import qbound.figures.pictures, qbound.model.robot, qbound.proofs.exact, qbound.symbols\n"
+        "import qbound.figures.pictures, qbound.model.robot, qbound.symbols\n"
         f"robot = qbound.load_robot('minervabot-v2')\n{CALLS[module]}"
     )
     done = plain.run("python", "-c", code)

@@ -261,6 +261,84 @@ def test_the_code_of_the_user_does_not_mix_in(
     assert environment["QBOUND_REQUIRE_BROWSER"] == "1"
 
 
+# --- run.py: the arithmetic -----------------------------------------------------------------------
+
+
+@pytest.fixture
+def here(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """run.py, where the Python of the tests stands for that of .venv."""
+    if not run.is_x86():
+        pytest.skip("only on an x86 the book has one arithmetic")
+    monkeypatch.setattr(run, "in_venv", lambda _: sys.executable)
+    return run
+
+
+def test_the_book_is_computed_in_one_arithmetic_whatever_the_shell_asks_for(
+    here: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = here.one_arithmetic()
+    asked = {"OPENBLAS_CORETYPE": "Haswell", "NPY_DISABLE_CPU_FEATURES": "", "OMP_DYNAMIC": "TRUE"}
+    asked |= {"OPENBLAS_NUM_THREADS": "2", "MKL_CBWR": "AVX2", "NPY_PROMOTION_STATE": "weak"}
+    for name, value in asked.items():
+        monkeypatch.setenv(name, value)
+    assert here.one_arithmetic() == before
+    optional, used, kernels = here.arithmetic(before)
+    assert len(optional) > 0
+    assert (used, kernels) == ([], {"Nehalem"})
+    assert here.arithmetic(here.environment())[2] == {"Haswell"}  # that of the tests is the shell's
+
+
+@pytest.mark.parametrize(
+    ("name", "word", "wrong"),
+    [("KERNEL", "Nehalem", "Nehalen"), ("FEATURES", "print(*names)", "print('AVX2')")],
+)
+def test_a_switch_that_nobody_obeys_is_noticed(
+    here: ModuleType, monkeypatch: pytest.MonkeyPatch, name: str, word: str, wrong: str
+) -> None:
+    """NumPy 2.4 knows X86_V3 and not AVX2, and says nothing."""
+    monkeypatch.setattr(here, name, getattr(here, name).replace(word, wrong))
+    with pytest.raises(here.Failed, match="cannot be had: "):
+        here.one_arithmetic()
+
+
+@pytest.mark.parametrize("x86", [True, False])
+def test_on_an_x86_no_result_is_kept(
+    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch, x86: bool
+) -> None:
+    titles = fake_steps(run, monkeypatch)
+    monkeypatch.setattr(run, "is_x86", lambda: x86)
+    run.make_book()
+    compared = "Comparing the results of 01_a.ipynb with the recorded ones"
+    assert titles == [EXECUTE_ONE, *([] if x86 else [compared]), BUILD]
+
+
+RESULT = {"id": "a", "unit": "cm", "value": [1.5, 2.0], "error": 0.015}
+
+
+@pytest.mark.parametrize(
+    ("value", "share", "kept"),
+    [([1.5, 2.0], None, True), ([1.5, 2.01], 0.67, True), ([1.5, 2.02], 1.3, False)],
+)
+def test_on_another_processor_a_result_is_kept_within_its_error_and_named(
+    value: list[float],
+    share: float | None,
+    kept: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tool = load_script("tools/keep_results.py")
+    for name, entry in {"old": RESULT, "new": RESULT | {"value": value, "error": 0.016}}.items():
+        (tmp_path / name).mkdir()
+        content = {"chapter": "c", "results": [entry]}
+        (tmp_path / name / "c.json").write_text(json.dumps(content))
+    assert tool.main(tmp_path / "new", tmp_path / "old") == 0
+    [entry] = json.loads((tmp_path / "new/c.json").read_text())["results"]
+    assert entry == (RESULT if kept else RESULT | {"value": value, "error": 0.016})
+    said = capsys.readouterr().out
+    assert said.startswith("c/a: kept" if kept else "c/a: NOT THE RECORDED ONE")
+    assert share is None or f" {share} of its error" in said
+
+
 def test_the_comparison_has_an_environment_of_its_own(
     run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -477,6 +555,7 @@ def fake_steps(
         (folder / "ran").touch()
 
     monkeypatch.setattr(run, "must", must)
+    monkeypatch.setattr(run, "one_arithmetic", dict)
     monkeypatch.setattr(run, "settings", lambda: {"python": "3.13"})
     return titles
 
@@ -585,6 +664,7 @@ def test_a_failing_step_ends_the_run_with_its_status(
 ) -> None:
     monkeypatch.setattr(run, "prepare", lambda: None)
     monkeypatch.setattr(run, "settings", dict)
+    monkeypatch.setattr(run, "one_arithmetic", dict)
     monkeypatch.setattr(run, "install_checkers", lambda _: None)
     monkeypatch.setattr(run, "call", lambda *_, **__: 3)
     assert run.main(["book"]) == 3
@@ -712,9 +792,10 @@ def test_settings_are_python_lock_packages_and_what_of_the_shell_counts(
         found.append(run.settings())
         return [key for key in found[-1] if found[-2][key] != found[-1][key]]
 
-    monkeypatch.setenv("EDITOR", "ed")
-    assert differs() == []
-    for name in ("MPLBACKEND", "LC_ALL", "PYTHONOPTIMIZE", "OMP_PROC_BIND"):
+    for name in ("EDITOR", "OPENBLAS_CORETYPE", "OMP_PROC_BIND"):
+        monkeypatch.setenv(name, "x")
+        assert differs() == []
+    for name in ("MPLBACKEND", "LC_ALL", "PYTHONOPTIMIZE"):
         monkeypatch.setenv(name, "x")
         assert differs() == ["environment"]
     run.LOCK.write_text(LOCK + "\n")
@@ -1162,9 +1243,15 @@ def test_the_change_log_begins_with_the_version_and_its_day() -> None:
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[(\S+)\] - (\S+)$", changes, re.MULTILINE)
     assert newest is not None
-    assert newest[1] == PROJECT["version"] == version("qbound")
     assert newest[2] == str(PYPROJECT["tool"]["qbound"]["released"])
-    assert str(Version(PROJECT["version"])) == PROJECT["version"]
+    now = Version(PROJECT["version"])
+    assert str(now) == PROJECT["version"] == version("qbound")
+    unreleased = changes.partition("## [Unreleased]\n")[2].partition("\n## [")[0]
+    if unreleased.strip():  # a citation must not call this the release
+        assert now.is_devrelease
+        assert now > Version(newest[1])
+    else:
+        assert newest[1] == PROJECT["version"]
 
 
 # --- the package ----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from math import hypot, pi
 
 import numpy as np
@@ -12,6 +13,7 @@ from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.measures.nearest import along, moments, nearest_boundary, vertex_centroid
+from qbound.model.robotfile import parse_robot
 from qbound.region import Problem, Region, paper_rule, solve
 from support.forms import LIMITS
 from support.regions import inside_limits, plate
@@ -191,6 +193,44 @@ def test_nearest_points_of_a_plate_in_closed_form():
     assert (corner.boundary, corner.distance) == ("x.lower", pytest.approx(0.1, abs=1e-12))
     inside_hole = nearest_boundary(region, [1.2, 1.0])
     assert inside_hole.distance == pytest.approx(0.8, abs=1e-12)
+
+
+SLANTING_FLOOR = """
+schema = 1
+name = "a tip above a slanting floor"
+length_unit = "cm"
+angle_unit = "deg"
+home = { q1 = 54, q2 = 1 }
+tool = "tip"
+joint = [
+  { name = "q1", type = "revolute", parent = "base", frame = "1", origin = [36.4, 82.9, -87.2], axis = [-0.154, -0.249, -0.647], rpy = [124, 57.7, 62.6] },
+  { name = "q2", type = "prismatic", parent = "1", frame = "2", origin = [-17.6, -102.6, -113], axis = [0.625, -0.32, 0.364], limits = [-87.6, 151.8] },
+]
+point = [{ name = "tip", frame = "2", at = [-0.9, -51.4, -148.4], radius = 13.4 }]
+boundary = [{ name = "floor", type = "half-space", point = "tip", normal = [-0.45, -0.208, -0.47], offset = -113 }]
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize("weights", [(1.0, 1.0), (100.0, 1.0), (1.0, 50.0)])
+def test_the_nearest_point_is_that_of_dense_arcs_where_a_curve_folds_between_two_points(weights):
+    """In rad and cm a curve may turn towards a configuration and away between two of its points."""
+    region = find_region(parse_robot(tomllib.loads(SLANTING_FLOOR)))
+    arcs = [arc for component in region.components for loop in component.loops for arc in loop]
+    dense = np.concatenate([arc.at(np.linspace(0, 1, 60_001)) for arc in arcs])
+    places = np.random.default_rng(3).uniform([-3, 80], [3, 110], (5, 2))
+    for q in [np.array([3.0458, 90.4295]), *places]:
+        gaps = dense - q
+        gaps[:, 0] = (gaps[:, 0] + pi) % TURN - pi
+        least = np.hypot(*(weights * gaps).T).min()
+        found = nearest_boundary(region, q, weights=weights)
+        assert least - 1e-5 * max(weights) < found.distance <= least * (1 + 1e-12)
+        assert abs(region.margins(found.q).min()) < 1e-9
+
+
+def test_from_the_middle_of_a_round_hole_every_place_is_the_nearest():
+    """No second derivative says which: the search ends all the same."""
+    region = solve(plate((2.0, 1.0, 1.0)), [-2, 1])
+    assert nearest_boundary(region, [2.0, 1.0]).distance == pytest.approx(1, abs=1e-12)
 
 
 def test_weights_stretch_the_metric():

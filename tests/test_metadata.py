@@ -76,6 +76,28 @@ def values(tree: Any) -> Iterator[Any]:
             yield from values(item)
 
 
+def of_version(folder: Path, version: str) -> dict[str, dict[str, Any]]:
+    """What the tables say of a version."""
+    folder.mkdir()
+    text = re.sub(r'(?m)^version = ".*"$', f'version = "{version}"', pyproject(HOME, OWN_DOI))
+    (folder / "pyproject.toml").write_text(text, encoding="utf-8")
+    copy_texts(folder)
+    assert metadata.main([], folder) == 0
+    return {name: yaml.safe_load((folder / name).read_text(encoding="utf-8")) for name in DATA}
+
+
+def test_a_version_between_releases_has_no_day(tmp_path: Path) -> None:
+    """They said 0.3.0 and its day of states that came long after."""
+    release = of_version(tmp_path / "release", "0.4.0")
+    between = of_version(tmp_path / "between", "0.4.0.dev0")
+    days = {"CITATION.cff": "date-released", ".zenodo.json": "publication_date"}
+    for name, key in (days | {"codemeta.json": "datePublished"}).items():
+        assert release[name]["version"] == "0.4.0"
+        assert between[name]["version"] == "0.4.0.dev0"
+        assert key in release[name]
+        assert key not in between[name]
+
+
 # --- one place ------------------------------------------------------------------------------------
 
 

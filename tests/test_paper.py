@@ -65,6 +65,19 @@ def test_table_1_labels_the_offsets_of_table_1() -> None:
         assert label[1:] == f"_{{{a},{b}}}"
 
 
+def test_table_1_names_a_joint_that_moves_nothing() -> None:
+    joints = {q for text in paper.EQUATION_29.values() for q in re.findall(r"q\d", text)}
+    named = {f"q{number}" for row in paper.TABLE_1 for number in re.findall(r"joint (\d)", row[2])}
+    assert named - joints == {"q3"}
+
+
+def test_vectors_have_two_indices_and_mark_no_observer_after_section_2() -> None:
+    names = {name for text in paper.EQUATION_29.values() for name in re.findall(r"[xz]_\w+", text)}
+    assert {name.count("_") for name in names} == {2}
+    assert max(paper.OBSERVERS) < min(paper.THEOREM_1)
+    assert len(set(paper.OBSERVERS.values())) == 2
+
+
 @pytest.mark.parametrize("label", paper.EQUATION_29)
 def test_equation_29_is_the_one_expanded_by_hand(label) -> None:
     for q in (Q, (2.0, 3.0), (-1.0, 0.0)):

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.closed_form import bound_curves, geometric_bounds, refined, vertices
-from qbound import find_region, load_robot
+from qbound import clearance, find_region, load_robot
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Boundary, Robot
 from qbound.model.robotfile import parse_robot
@@ -293,6 +293,21 @@ def test_floor_read_in_millimetres_leaves_no_six_vertices() -> None:
     row_of(table, "boundary", "B7")["offset"] = 1.132
     with pytest.raises(ValueError, match="neighbouring vertices share no bound: beta_"):
         vertices(parse_robot(table))
+
+
+def test_floor_read_in_millimetres_leaves_six_corners_of_its_component() -> None:
+    """Going round the box, the sign changes four times and two corners keep the limit."""
+    of = box(MINERVA)
+    (a, b), (c, d) = of.lower, of.upper
+    for height in (11.32, 1.132):
+        table = packaged_table()
+        row_of(table, "boundary", "B7")["offset"] = height
+        robot = parse_robot(table)
+        corners = np.array([[a, b], [c, b], [c, d], [a, d]])
+        sides = np.linspace(corners, np.roll(corners, -1, axis=0), 5001, axis=1).reshape(-1, 2)
+        keeps = clearance(robot, robot.boundary("B7"))(sides) > 0
+        crossings = int((np.diff(keeps.astype(int)) != 0).sum())
+        assert crossings + int(keeps[::5001].sum()) == 6
 
 
 def test_table_4_read_in_millimetres_leaves_beta_4_without_a_root() -> None:

@@ -12,7 +12,7 @@ from qbound import find_region, load_robot
 from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.proofs.proved_region import Unproved, prove_region, proved_component
+from qbound.proofs.proved_region import prove_region, proved_component
 from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS
@@ -122,7 +122,7 @@ def test_random_robots_are_proved_as_the_float_engine_finds_them(seed):
 def changed(**fields) -> Region:
     """The region with the home component changed."""
     home, *others = REGION.components
-    return replace(REGION, components=(replace(home, **fields), *others))
+    return replace(REGION, found=(replace(home, **fields), *others))
 
 
 @dataclass(frozen=True)
@@ -136,13 +136,13 @@ class Proposed:
 HOME = REGION.components[0]
 ARCS = tuple(Proposed(arc.boundary, arc.points) for arc in HOME.loops[0])
 FAULTS = {
-    "a component is missing": (replace(REGION, components=REGION.components[:-1]), "proved"),
-    "home is missing": (replace(REGION, components=REGION.components[1:]), "proved"),
+    "a component is missing": (replace(REGION, found=REGION.components[:-1]), "proved"),
+    "home is missing": (replace(REGION, found=REGION.components[1:]), "proved"),
     "a component comes twice": (
-        replace(REGION, components=(*REGION.components, HOME)),
+        replace(REGION, found=(*REGION.components, HOME)),
         "vertices are proposed",
     ),
-    "nothing is proposed": (replace(REGION, components=()), "proved|without a boundary"),
+    "nothing is proposed": (replace(REGION, found=()), "proved|without a boundary"),
     "a loop is missing": (changed(loops=()), "vertices are proposed|positive"),
     "an arc is missing": (changed(loops=(ARCS[1:],)), "no crossing|graph|short|run"),
     "the arcs run backwards": (

@@ -6,6 +6,7 @@ import ast
 import hashlib
 import importlib
 import re
+import subprocess
 from collections import defaultdict
 from collections.abc import Iterator
 from decimal import Decimal
@@ -29,6 +30,7 @@ from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.latex import escaped
+from lizarraga2025.ledger.state import State, state
 from lizarraga2025.results import grid_error
 from qbound import figures, load_robot
 from qbound.cli import main
@@ -346,6 +348,79 @@ def test_a_citation_states_value_error_version_and_robot(
     assert wanted["version"] in entry.fields["howpublished"]
 
 
+def test_a_citation_names_the_commit_and_the_tree(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The version is that of many states; it was 0.3.0 for what came long after that release."""
+    here = State("1234567890ab" + 28 * "0", "swh:1:dir:" + 40 * "a")
+    monkeypatch.setattr(cite, "state", lambda: here)
+    entries = parse_string(said(capsys, "results", "paper.area", "--bibtex"), "bibtex").entries
+    assert entries["qbound"].fields["swhid"] == here.swhid
+    assert entries["qbound"].fields["note"] == "Commit 1234567890ab"
+    assert "commit 1234567890ab" in entries["qbound-result-paper-area"].fields["howpublished"]
+
+
+def test_the_state_is_gits_and_a_changed_file_has_no_tree(tmp_path: Path) -> None:
+    def git(*words: str) -> str:
+        me = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false"]
+        command = ["git", *me, *words]
+        return subprocess.run(
+            command, cwd=tmp_path, check=True, capture_output=True, text=True
+        ).stdout.strip()
+
+    assert state(tmp_path / "nowhere") is None
+    git("init", "-q")
+    (tmp_path / "file").write_text("one")
+    git("add", "file")
+    git("commit", "-qm", "one")
+    assert state(tmp_path) == State(git("rev-parse", "HEAD"), "swh:1:dir:" + git("write-tree"))
+    (tmp_path / "file").write_text("two")
+    state.cache_clear()
+    changed = state(tmp_path)
+    assert changed == State(git("rev-parse", "HEAD"), "")
+    assert changed.text.endswith(" with changes")
+    state.cache_clear()
+
+
+# --- what a result is -----------------------------------------------------------------------------
+
+
+def test_every_result_has_a_sentence_and_every_sentence_a_result() -> None:
+    patterns = {recorded.pattern_of(name) for name in RESULTS}
+    assert patterns == set(recorded.sentences())
+    for name in RESULTS:
+        sentence = recorded.sentence(name)
+        assert re.fullmatch(r"[A-Zb].{15,}\.", sentence), name
+        assert not re.search(r"[{}]", sentence), name
+    with pytest.raises(ValueError, match="no sentence says what this result is"):
+        recorded.sentence("no.such.result")
+
+
+def test_results_are_found_by_a_word_of_their_description(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = said(capsys, "results", "Centroid")
+    assert "region/paper.centroid = " in text
+    assert "introduction/polygon.centroid = " in text
+    assert "the area to cite" in said(capsys, "results", "paper.area")
+    assert (
+        said(capsys, "results", "paper.area").count(" = ") == 3
+    )  # an id is no word: three chapters
+    assert main(["results", "no such word"]) == 2
+    assert "no result 'no such word'" in capsys.readouterr().err
+
+
+def test_times_are_no_results_and_the_command_says_where_they_are(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """They were 579 of 1158 results, five of them 0.0 s."""
+    assert [name for name in RESULTS if name.endswith(".time")] == []
+    assert main(["results", "side.stream-paper-10m-qbound-compiled.time"]) == 2
+    told = capsys.readouterr().err
+    assert "'stream-paper-10m-qbound-compiled' in benchmarks/side_by_side.json" in told
+    assert "0.0423 s" in told
+
+
 def test_greek_and_signs_become_latex() -> None:
     assert escaped("β_{1,3}, 50%, Δ") == (
         r"$\beta$\_\textbraceleft{}1,3\textbraceright{}, 50\%, $\Delta$"
@@ -396,7 +471,9 @@ def test_every_citation_can_be_read_without_a_script(page: BeautifulSoup) -> Non
     assert cited == [cite.result(entry) for entry in RESULTS.values()]
 
 
-def test_an_id_of_a_stranger_stays_text(pages: ModuleType) -> None:
+def test_an_id_of_a_stranger_stays_text(pages: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (recorded, cite):
+        monkeypatch.setattr(module, "sentence", lambda name: f"{name}.")
     entry = RESULTS["paper.area"] | {"id": "<b>&", "value": "<script>"}
     row = BeautifulSoup(pages.row(entry), "html.parser")
     assert row.find(["b", "script"]) is None

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from decimal import Decimal
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from lizarraga2025.results import EXACT, Results, last_place, places
+from lizarraga2025.results import EXACT, Results, last_place, places, share_of_error
 from qbound import __version__
 from qbound.model.robotfile import robot_text
 
@@ -229,3 +230,32 @@ def test_outside_of_a_build_nothing_is_written_and_a_line_says_so(
     [line] = capsys.readouterr().out.splitlines()
     assert line == "region.json is not written: results are recorded when the book is made."
     assert list((tmp_path / "results").iterdir()) == []
+
+
+# --- a result and its earlier self ----------------------------------------------------------------
+
+ENTRY = {"id": "a", "unit": "cm", "value": [1.5, 2.0, "up", 3], "error": 0.015}
+
+
+@pytest.mark.parametrize(
+    ("change", "share"),
+    [
+        ({}, 0.0),
+        ({"value": [1.5, 2.003, "up", 3]}, 0.2),
+        ({"value": [1.53, 2.0, "up", 3]}, 2.0),
+        ({"value": [1.5, 2.0, "up", 4]}, math.inf),
+        ({"value": [1.5, 2.0, "down", 3]}, math.inf),
+        ({"value": [1.5, 2.0, "up"]}, math.inf),
+        ({"unit": "mm"}, math.inf),
+        ({"error": 0.016}, 0.0),
+        ({"error": 0.03}, math.inf),
+    ],
+)
+def test_a_result_is_compared_by_its_stated_error(change: dict, share: float) -> None:
+    assert share_of_error(ENTRY | change, ENTRY) == pytest.approx(share)
+
+
+def test_an_exact_result_has_to_be_the_same() -> None:
+    exact = {"id": "a", "unit": "cm", "value": 2.5, "error": 0.0}
+    assert share_of_error(exact, exact) == 0
+    assert share_of_error(exact | {"value": 2.5000001}, exact) == math.inf

@@ -20,6 +20,7 @@ from qbound.measures.scaling import (
     least_along_edges,
     worst_margins,
 )
+from support.forms import PP, RR
 from support.oracles import equation_29
 
 MINERVA = load_robot("minervabot-v2")
@@ -32,7 +33,7 @@ def slides(**terms: float) -> HarmonicForm:
     table = np.zeros((3, 3))
     for name, value in terms.items():
         table[places[name]] = value
-    return HarmonicForm(table, ("prismatic", "prismatic"))
+    return HarmonicForm(table, PP)
 
 
 DISC = slides(one=1, xx=-1, yy=-1)
@@ -45,6 +46,12 @@ def below(height: float) -> HarmonicForm:
 
 def outside(x: float, y: float, radius: float) -> HarmonicForm:
     return slides(one=x * x + y * y - radius**2, x=-2 * x, y=-2 * y, xx=1, yy=1)
+
+
+def stack(*forms: HarmonicForm) -> HarmonicForm:
+    """Forms of the same two joints as one stack; of none, of two slides."""
+    tables = np.array([form.coefficients for form in forms]).reshape(-1, 3, 3)
+    return HarmonicForm(tables, forms[0].kinds if forms else PP)
 
 
 def floor(q: np.ndarray) -> np.ndarray:
@@ -64,7 +71,7 @@ def floor(q: np.ndarray) -> np.ndarray:
     ids=["corners", "an edge", "the nearest of three", "out of reach", "no form"],
 )
 def test_largest_safe_scale_in_closed_form(forms, scale, edges, form) -> None:
-    found = largest_safe_scale(SQUARE, [0, 0], forms)
+    found = largest_safe_scale(SQUARE, [0, 0], stack(*forms))
     assert found.scale == pytest.approx(scale, abs=1e-12)
     assert found.form == form
     assert found.edge in edges
@@ -77,7 +84,7 @@ def test_largest_safe_scale_in_closed_form(forms, scale, edges, form) -> None:
 )
 def test_an_edge_may_bind_between_its_vertices(edge, x, y) -> None:
     """A disc cut out beside the middle of any edge, the closing one too: no vertex touches it."""
-    found = largest_safe_scale(SQUARE, [0, 0], [outside(x, y, 0.5)])
+    found = largest_safe_scale(SQUARE, [0, 0], stack(outside(x, y, 0.5)))
     assert found.scale == pytest.approx(0.8, abs=1e-12)
     assert found.edge == edge
     expected = np.where(np.abs([x, y]) > 1, 0.8 * np.sign([x, y]), 0.2)
@@ -88,19 +95,19 @@ def test_an_edge_may_bind_between_its_vertices(edge, x, y) -> None:
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
 def test_scaling_about_any_centre_touches_the_nearest_wall(x, y) -> None:
     """Half-plane y <= 0.75: exact for every centre below it."""
-    found = largest_safe_scale(SQUARE, [x, y], [below(0.75)])
+    found = largest_safe_scale(SQUARE, [x, y], stack(below(0.75)))
     assert found.scale == pytest.approx((0.75 - y) / (1 - y), abs=1e-12)
 
 
 def test_highest_limits_the_search() -> None:
-    assert largest_safe_scale(SQUARE, [0, 0], [below(3)], highest=2).scale == 2
-    found = largest_safe_scale(SQUARE, [0, 0], [below(3)], highest=4)
+    assert largest_safe_scale(SQUARE, [0, 0], stack(below(3)), highest=2).scale == 2
+    found = largest_safe_scale(SQUARE, [0, 0], stack(below(3)), highest=4)
     assert found.scale == pytest.approx(3, abs=1e-12)
 
 
 def test_the_first_crossing_counts_and_not_the_last() -> None:
     """A strip forbidden between 0.5 and 0.6 is not jumped over, though 0.9 would be free."""
-    found = largest_safe_scale(SQUARE, [0, 0], [slides(one=0.3, y=-1.1, yy=1)])
+    found = largest_safe_scale(SQUARE, [0, 0], stack(slides(one=0.3, y=-1.1, yy=1)))
     assert found.scale == pytest.approx(0.5, abs=1e-12)
 
 
@@ -108,7 +115,7 @@ def test_floor_of_the_papers_polygon_against_brute_force() -> None:
     """Figure 6's remedy for B7: 400 scales, 3000 points an edge, by hand-written beta_{7,3}."""
     p = np.array([vertex.q for vertex in vertices(MINERVA)])
     g = centroid(p)
-    found = largest_safe_scale(p, g, [clearance(MINERVA, MINERVA.boundary("B7"))])
+    found = largest_safe_scale(p, g, stack(clearance(MINERVA, MINERVA.boundary("B7"))))
     scales = np.linspace(0.95, 0.98, 301)
     edges = along_edges(p, np.linspace(0, 1, 3001)).reshape(-1, 2)
     safe = [bool((floor(scaled(edges, s, g)) >= 0).all()) for s in scales]
@@ -138,7 +145,7 @@ def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
 @pytest.mark.parametrize("centre", [[2.0, 0.0], [0.0, 1.0]], ids=["outside", "on the boundary"])
 def test_a_centre_that_is_not_safe_is_refused(centre) -> None:
     with pytest.raises(ValueError, match="violated at the centre"):
-        largest_safe_scale(SQUARE, centre, [DISC])
+        largest_safe_scale(SQUARE, centre, stack(DISC))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -148,7 +155,7 @@ def test_numbers_that_are_not_finite_are_refused(bad, place) -> None:
     p, g = SQUARE.copy(), np.zeros(2)
     (p[0] if place == "vertices" else g)[0] = bad
     with np.errstate(all="ignore"), pytest.raises(ValueError, match=r"finite|centre"):
-        largest_safe_scale(p, g, [DISC])
+        largest_safe_scale(p, g, stack(DISC))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
@@ -161,7 +168,7 @@ def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
             for asks in (
                 lambda f=form, v=corners: least(f(), v, [0, 0]),
                 lambda f=form, v=corners: least_along_edges(f(), v),
-                lambda f=form, v=corners: first_exit([f()], [0, 0], v),
+                lambda f=form, v=corners: first_exit(stack(f()), [0, 0], v),
             ):
                 with pytest.raises(ValueError, match="finite numbers"):
                     asks()
@@ -170,7 +177,7 @@ def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
 def test_a_dip_that_no_sample_sees_is_found() -> None:
     """A hole of radius 1e-4 beside the middle of an edge, between any points that one would try."""
     hole = outside(0.4321, 0.7 + 1e-4, 1e-4)
-    found = largest_safe_scale(SQUARE, [0, 0], [hole])
+    found = largest_safe_scale(SQUARE, [0, 0], stack(hole))
     assert found.scale == pytest.approx(0.7, abs=1e-9)
     assert found.edge == 2
     assert found.proved < found.scale
@@ -182,14 +189,14 @@ def test_nothing_is_violated_at_the_proved_scale_and_something_just_above(seed) 
     rng = np.random.default_rng(seed)
     table = rng.normal(size=(3, 3, 3))
     table[:, 0, 0] = np.abs(table).sum(axis=(1, 2)) * rng.uniform(0.2, 0.5, 3)
-    forms = [HarmonicForm(t, ("revolute", "revolute")) for t in table]
+    forms = HarmonicForm(table, RR)
     polygon = np.array([[-2.0, -1.5], [2.5, -1], [0.5, 0.2], [1.5, 2], [-1, 1.8]])
-    if not all(form(np.zeros(2)) > 0 for form in forms):
+    if not (forms(np.zeros(2)) > 0).all():
         return
     found = largest_safe_scale(polygon, [0, 0], forms)
     edges = along_edges(found.proved * polygon, np.linspace(0, 1, 400)).reshape(-1, 2)
     inside = (np.linspace(0, 1, 60)[:, None, None] * edges).reshape(-1, 2)
-    assert all((form(inside) > 0).all() for form in forms)
+    assert (forms(inside) > 0).all()
     if found.form >= 0:
         assert forms[found.form](found.q) == pytest.approx(0, abs=1e-10)
         assert forms[found.form](found.q * (1 + 1e-5)) < 0
@@ -199,16 +206,15 @@ def test_nothing_is_violated_at_the_proved_scale_and_something_just_above(seed) 
 def test_a_ray_stops_at_the_first_root_of_all(seed) -> None:
     """Against signs on a fine grid along each ray."""
     rng = np.random.default_rng(seed)
-    forms = [HarmonicForm(t, ("revolute", "revolute")) for t in rng.normal(size=(2, 3, 3))]
+    forms = HarmonicForm(rng.normal(size=(2, 3, 3)), RR)
     centre = rng.uniform(-3, 3, 2)
-    if not all(form(centre) > 0 for form in forms):
+    if not (forms(centre) > 0).all():
         return
     rays = rng.normal(size=(20, 2)) * 3
     found, which = first_exit(forms, centre, rays)
     s = np.linspace(0, 1, 20001)
     for ray, scale, form in zip(rays, found, which, strict=True):
-        values = np.stack([f(centre + s[:, None] * ray) for f in forms])
-        negative = (values < 0).any(axis=0)
+        negative = (forms(centre + s[:, None] * ray) < 0).any(axis=1)
         expected = s[negative.argmax()] if negative.any() else 1.0
         assert scale <= expected + 1e-9
         assert scale >= expected - 6e-5  # a dip between two places of the grid may come first

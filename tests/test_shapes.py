@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import tomllib
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -586,3 +587,45 @@ def test_one_slide_has_the_plane_that_holds_it() -> None:
     table["home"], table["body"] = {"q1": 0}, []
     table["point"][0]["frame"] = "link 1"
     assert parse_robot(table).plane.across.tolist() == [[1, 0, 0], [0, 1, 0]]
+
+
+ONE_LINE = """
+schema = 1
+name = "two slides along one line"
+length_unit = "mm"
+angle_unit = "deg"
+home = {{ a = 0, b = 0 }}
+tool = "tip"
+joint = [
+  {{ name = "a", type = "prismatic", parent = "0", frame = "1", origin = [0, 0, 0], axis = {axis}, limits = [-9, 9] }},
+  {{ name = "b", type = "prismatic", parent = "1", frame = "2", origin = [0, 0, 0], axis = {axis}, limits = [-9, 9] }},
+]
+point = [{{ name = "tip", frame = "2", at = [0, 0, 0] }}]
+body = [{{ name = "hand", frame = "2", disc = {{ at = {hand}, radius = 1 }} }}]
+obstacle = [{{ name = "post", disc = {{ at = {post}, radius = 1 }} }}]
+boundary = [{{ name = "gap", type = "bodies", bodies = ["hand", "post"] }}]
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize(
+    ("axis", "post", "plane"),
+    [
+        ([1, 0, 0], [5, 180, 0], "the plane of x and z"),
+        ([0, 1, 0], [0, 5, 180], "the plane of x and y"),
+        ([1, 1, 1], [5, -175, 0], "the plane at right angles to ["),
+    ],
+    ids=["x", "y", "oblique"],
+)
+def test_a_refusal_says_which_plane_was_taken_for_slides_along_one_line(axis, post, plane) -> None:
+    text = ONE_LINE.format(axis=axis, hand=[0, 0, 0], post=post)
+    with pytest.raises(ValueError, match="off the plane of body 'hand'; all joints slide") as found:
+        parse_robot(tomllib.loads(text))
+    assert plane in str(found.value)
+    assert ("two numbers, or three" in str(found.value)) == (axis != [1, 1, 1])
+
+
+@pytest.mark.parametrize(("axis", "line"), [([1, 0, 0], [0, 2]), ([0, 1, 0], [0, 1])])
+def test_two_numbers_are_of_the_plane_that_was_taken(axis, line) -> None:
+    """What the refusal advises is taken."""
+    robot = parse_robot(tomllib.loads(ONE_LINE.format(axis=axis, hand=[0, 0], post=[5, 6])))
+    assert robot.obstacles[0].shape.places[0][line].tolist() == [5, 6]

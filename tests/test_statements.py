@@ -22,7 +22,7 @@ from qbound.geometry import polygon
 from qbound.measures import bodies
 from qbound.region import paper_rule
 from support.oracles import OFFSETS, equation_29
-from support.worlds import with_joints
+from support.worlds import with_boundaries, with_joints
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")
@@ -117,6 +117,18 @@ def test_the_flipped_elbow_is_infeasible_at_both_ends() -> None:
             assert (a & b).area + (b & c).area + (a & c).area > 1
 
 
+def test_the_flipped_elbow_is_shut_at_points_1_and_4_alone() -> None:
+    """From the other points the straight joint path to the second posture is feasible."""
+    t = np.linspace(0, 1, 3001)[:, None]
+    reached = []
+    for point in range(6):
+        q = legs((point, point), 0.95)[-1]
+        (other,) = [p for p in postures(tool(q)) if np.abs(p - q).max() > 1e-6]
+        if paper_rule.feasible(ROBOT, q + t * (other - q)).all():
+            reached.append(point + 1)
+    assert reached == [2, 3, 5, 6]
+
+
 # --- traversals -----------------------------------------------------------------------------------
 
 
@@ -150,6 +162,12 @@ def test_right_and_left_reach_equally_far_on_the_symmetric_arm() -> None:
         places = SYMMETRIC.frames(p[[3, 0]]).position("0", "3", "0") - [0, 0, 22.5]
         reach = np.linalg.norm(places, axis=-1)
         assert reach[0] == pytest.approx(reach[1], abs=1e-9)
+
+
+def test_right_and_left_reach_different_places() -> None:
+    right, left = (tool(legs(order, 0.95)) for order in ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0)))
+    apart = np.linalg.norm(right[:, None] - left, axis=-1)
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) == pytest.approx(15.1, abs=0.1)
 
 
 def test_tangents_stay_inside_and_chords_do_not() -> None:
@@ -224,6 +242,20 @@ def test_clearances_allow_links_that_overlap() -> None:
         assert (a & b).area + (b & c).area + (a & c).area > 5
 
 
+def test_pairs_depend_on_one_joint_and_the_walls_on_both() -> None:
+    step = np.array([[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]])
+    values = equation_29(*(CORNERS[0] + step).T)
+    for name, (at, first, second) in values.items():
+        joints = {q for q, moved in (("q1", first), ("q2", second)) if abs(moved - at) > 1e-9}
+        assert len(joints) == (2 if name[6] in "567" else 1), name
+
+
+def test_with_a_distance_that_no_pair_comes_to_there_is_one_region() -> None:
+    near = {name: {"clearance": 1e-4} for name in ("B1", "B2", "B3", "B4")}
+    assert len(find_region(with_boundaries(ROBOT, **near)).components) == 1
+    assert len(find_region(ROBOT).components) == 5
+
+
 def test_walls_5_and_6_are_nested() -> None:
     found = equation_29(*DRAWN.T)
     signs = np.stack([found[f"beta_{{{name}}}"] >= 0 for name in ("5,1", "6,1", "7,3")], -1)
@@ -280,6 +312,20 @@ def test_eq_31_leaves_no_angle_out_and_the_restated_interval_does() -> None:
         assert high - low >= 2 * np.pi - 1e-9
     q = np.linspace(-np.pi, np.pi, 1001)
     assert (0.6 * np.cos(q) + 0.8 * np.sin(q) < 0.5).any()
+
+
+def test_the_ends_of_eq_39_are_one_root_without_a_copy_between() -> None:
+    ends = [paper.expression(paper.THEOREM_2[f"39 {end}"], arctan="atan2") for end in BOTH_ENDS]
+    for a, b, c in ((3.0, 4.0, 2.0), (-3.0, 4.0, 2.0), (-3.0, -4.0, -4.5)):
+        known = {"a": a, "b": b, "c": c, "d": 5.0, "k": 0.0}
+        low, high = (float(end.subs({s: known[str(s)] for s in end.free_symbols})) for end in ends)
+        q = np.linspace(low + 1e-6, high - 1e-6, 100_001)
+        value = a * np.cos(q) + b * np.sin(q) - c
+        assert value[0] < 0 < value[-1], "it falls through both ends, which are roots"
+        assert (np.diff(np.sign(value)) != 0).sum() == 1, "and only the rising one lies between"
+
+
+BOTH_ENDS = ("lower", "upper")
 
 
 def test_open_paths_enclose_nothing_and_closed_ones_feasible_places() -> None:

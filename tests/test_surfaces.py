@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from qbound import load_robot
 from qbound.arms.surface_files import COLOURS, OTHERS, colour_of, glb_bytes, ply_bytes
-from qbound.arms.surface_forms import axis_of
+from qbound.arms.surface_forms import SurfaceForms, axis_of
 from qbound.arms.surfaces import find_surface
 from qbound.boundary.balls import Balls
 from qbound.cli import main
@@ -57,6 +57,39 @@ def least_margins(surface, places) -> np.ndarray:
     q[:, list(surface.held)] = list(surface.held.values())
     q[:, free] = places
     return Balls.of(surface.robot).margins(q).min(axis=1)
+
+
+# --- the same on every processor ------------------------------------------------------------------
+
+
+def one_turn_of_a_ur5() -> tuple[Robot, list[str]]:
+    """Shoulder, elbow and wrist, on whose surface many functions are equal, as in chapter 20."""
+    ur5, turn = load_robot("ur5"), (-np.pi, np.pi)
+    limits = {1: turn, 2: (-3.0, 3.0), 3: turn}
+    joints = tuple(
+        replace(joint, limits=limits.get(j, joint.limits)) for j, joint in enumerate(ur5.joints)
+    )
+    return replace(ur5, joints=joints), [ur5.joints[j].name for j in limits]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_another_processors_rounding_changes_no_triangle(monkeypatch, seed) -> None:
+    """Other kernels add a sum's terms in another order: the values move by some last bits."""
+    robot, names = one_turn_of_a_ur5()
+    here = find_surface(robot, names, resolution=20, caps=True)
+    random, rounded = np.random.default_rng(seed), SurfaceForms._monomials
+
+    def monomials(forms: SurfaceForms, q: np.ndarray) -> np.ndarray:
+        exact = rounded(forms, q)
+        return exact * (1 + 2.0**-52 * random.integers(-1, 2, exact.shape))
+
+    monkeypatch.setattr(SurfaceForms, "_monomials", monomials)
+    there = find_surface(robot, names, resolution=20, caps=True)
+    assert there.triangles.shape == here.triangles.shape
+    assert (there.triangles == here.triangles).all()
+    assert (there.active == here.active).all()
+    assert_allclose(there.vertices, here.vertices, atol=1e-9)
+    assert_allclose(there.volume, here.volume, rtol=1e-9)
 
 
 # --- known shapes --------------------------------------------------------------------------------

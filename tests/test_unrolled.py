@@ -82,7 +82,7 @@ def test_a_component_that_goes_round_is_proved_and_said_to_go_round(name):
     assert answer.verdict == "proved"
     assert check_arb.verify(answer.text) == "proved"
     said = check.check(answer.text)[1]
-    assert [f"goes all the way round '{q}'" in said for q in ("q1", "q2")] == list(component.wraps)
+    assert [f"takes every angle of '{q}'" in said for q in ("q1", "q2")] == list(component.wraps)
     degrees = robot.angle_unit == "deg"
     points = [tuple(map(Fraction, point)) for loop in statement["points"] for point in loop]
     widths = [max(column) - min(column) for column in zip(*points, strict=True)]

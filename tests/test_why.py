@@ -18,7 +18,8 @@ from qbound.arms.why import least_margins, why
 from qbound.cli import main
 from qbound.figures.why import why_picture
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import check_arb
+from qbound.proofs import check_arb, statements
+from qbound.proofs.certify import certify
 from qbound.proofs.connection import connection
 from support import brute_force
 from support.elbow import arm
@@ -341,3 +342,88 @@ def test_the_paper_robot_is_as_its_text(capsys):
     assert main(["why", "minervabot-v2", "0", "0", "20", "30", "--json", "-"]) == 0
     path = np.array(json.loads(capsys.readouterr().out)["path"]["corners"])
     assert is_kept(text, path) > 0
+
+
+# --- more joints than certificates take -----------------------------------------------------------
+
+SEVEN = """
+schema = 1
+name = "seven joints"
+length_unit = "m"
+angle_unit = "deg"
+home = { q1 = 0, q2 = 90, q3 = 0, q4 = 0, q5 = 0, q6 = 0, q7 = 0 }
+tool = "tip"
+point = [
+  { name = "upper arm", frame = "1", at = [0.5, 0, 0], radius = 0.2 },
+  { name = "forearm", frame = "2", at = [0.5, 0, 0], radius = 0.2 },
+  { name = "tip", frame = "7", at = [1, 0, 0] },
+]
+boundary = [{ name = "elbow", type = "pair", points = ["upper arm", "forearm"] }]
+""" + "".join(
+    f"""
+[[joint]]
+name = "q{j}"
+type = "revolute"
+parent = "{j - 1}"
+frame = "{j}"
+origin = [{0 if j == 1 else 1}, 0, 0]
+axis = [0, 0, 1]
+limits = [0, 350]
+"""
+    for j in range(1, 8)
+)
+"""Upper arm and forearm meet at q2 = 180 degrees."""
+
+SEVENTH = "certificates take at most 6 joints; this robot has 7"
+WIDE = ["20deg"] * 5
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "answer", "status"),
+    [
+        (["10deg", "90deg"], ["10deg", "270deg"], "separated", 1),
+        (["10deg", "90deg"], ["10deg", "180deg"], "infeasible", 1),
+        (["10deg", "90deg"], ["60deg", "120deg"], "connected", 0),
+    ],
+    ids=["separated", "infeasible", "connected"],
+)
+def test_seven_joints_have_an_answer_without_a_certificate(
+    tmp_path, capsys, start, goal, answer, status
+):
+    path, proof = tmp_path / "seven.toml", tmp_path / "proof.json"
+    path.write_text(SEVEN)
+    values = [*start, *WIDE, *goal, *WIDE]
+    assert main(["why", str(path), *values, "-o", str(proof)]) == status
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"no certificate: {SEVENTH}" in said
+    assert "not written: of this answer there is no certificate" in said
+    assert not proof.exists()
+    ends = np.radians(
+        [[float(v.removesuffix("deg")) for v in [*end, *WIDE]] for end in (start, goal)]
+    )
+    found = why(path, *ends)
+    assert found.answer == answer
+    assert found.certificate is None
+    assert found.no_certificate == SEVENTH
+    valid(found)
+    if answer == "connected":
+        assert is_kept(SEVEN, found.path) > 0
+
+
+def test_what_a_paving_cannot_decide_of_seven_joints_says_why_no_path_was_searched(tmp_path):
+    path = tmp_path / "seven.toml"
+    path.write_text(SEVEN)
+    found = why(path, np.full(7, 0.2), np.full(7, 0.3))
+    assert found.answer == "undecided"
+    assert SEVENTH in found.tried[-1]
+
+
+def test_certify_tells_the_limit_of_joints_before_the_work(tmp_path, capsys, monkeypatch):
+    path = tmp_path / "seven.toml"
+    path.write_text(SEVEN)
+    monkeypatch.setattr("qbound.cli.certify.statement", lambda *_: pytest.fail("it began to work"))
+    box = ["q1=1deg:2deg", *(f"q{j}=20deg:21deg" for j in range(2, 8))]
+    assert main(["certify", str(path), "--box", *box]) == 2
+    assert SEVENTH in capsys.readouterr().err
+    with pytest.raises(ValueError, match="at most 6 joints"):
+        certify(SEVEN, statements.box(["1"] * 7, ["2"] * 7))

@@ -45,13 +45,13 @@ def test_a_world_alters_print_and_robot_and_leaves_no_trace() -> None:
 
 
 def test_a_world_forgets_what_was_computed_before_and_inside_even_after_an_error() -> None:
-    before = claim("B-4.1.1").verdict
+    before = claim("E-17.4").verdict
     moved = with_points(robot_file(), p13=(9.09, 0.0, 5.25))
     with world(robots={"minervabot-v2": moved})():
-        assert claim("B-4.1.1").verdict != before
+        assert claim("E-17.4").verdict != before
     with pytest.raises(ValueError, match="no claim"), world(robots={"minervabot-v2": moved})():
         claim("B-0")
-    assert claim("B-4.1.1").verdict == before
+    assert claim("E-17.4").verdict == before
 
 
 def test_a_replaced_function_is_seen_where_it_was_imported_by_name() -> None:
@@ -61,3 +61,11 @@ def test_a_replaced_function_is_seen_where_it_was_imported_by_name() -> None:
     with world(replaced={"lizarraga2025.evidence.arms.robot": arms.symmetric})():
         assert theorem_1.robot is arms.symmetric
     assert theorem_1.robot is kept
+
+
+def test_what_was_found_is_told_of_the_world_it_was_found_in() -> None:
+    label = "beta_{2,3,1}"
+    text = paper.TABLE_6[label].replace("pi + ", "")
+    assert "a root of the component" in claim("B-2.3.1").found
+    with world(printed={"TABLE_6": {label: text}})():
+        assert "no root (20.00 cm) of the component" in claim("B-2.3.1").found

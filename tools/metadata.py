@@ -53,7 +53,9 @@ def read(pyproject: str) -> Table:
         if ours[key] and not form.fullmatch(ours[key]):
             raise Wrong(f"pyproject.toml: [tool.qbound] {key} is no {key}: {ours[key]!r}")
     what = project["description"]
-    return project | ours | {"full_title": f"{project['name']}: {what[0].lower()}{what[1:]}"}
+    # A version between releases has no day of its own.
+    own = {"day": "" if ".dev" in project["version"] else str(ours["released"])}
+    return project | ours | own | {"full_title": f"{project['name']}: {what[0].lower()}{what[1:]}"}
 
 
 def known(table: Table) -> Table:
@@ -88,7 +90,7 @@ def citation(about: Table) -> Table:
             "title": about["full_title"],
             "abstract": about["abstract"],
             "version": about["version"],
-            "date-released": about["released"],
+            "date-released": about["day"] and about["released"],
             "doi": about["doi"],
             "license": about["license"],
             "repository-code": about["repository"],
@@ -148,11 +150,11 @@ def zenodo(about: Table) -> Table:
     if about["repository"]:
         home = {"identifier": about["repository"], "scheme": "url", "resource_type": "software"}
         related.append(home | {"relation": "isDerivedFrom"})
-    return {
+    table = {
         "title": about["full_title"],
         "upload_type": "software",
         "version": about["version"],
-        "publication_date": str(about["released"]),
+        "publication_date": about["day"],
         "description": f"<p>{about['abstract']}</p><p>Code: {about['license']}. "
         f"Text and figures: {about['text_license']}.</p>",
         "creators": [{"name": author["name"]} for author in about["authors"]],
@@ -162,6 +164,7 @@ def zenodo(about: Table) -> Table:
         "keywords": about["keywords"],
         "related_identifiers": related,
     }
+    return known(table)
 
 
 # --- codemeta.json and the RO-Crate ---------------------------------------------------------------
@@ -195,7 +198,7 @@ def codemeta(about: Table) -> Table:
             "name": about["name"],
             "description": about["abstract"],
             "version": about["version"],
-            "datePublished": str(about["released"]),
+            "datePublished": about["day"],
             "identifier": doi_url(about["doi"]),
             "license": spdx(about["license"]),
             "codeRepository": about["repository"],
@@ -235,7 +238,9 @@ def crate(about: Table) -> Table:
         "name": about["full_title"],
         "description": about["abstract"],
         "version": about["version"],
-        "datePublished": str(about["released"]),
+        "datePublished": str(
+            about["released"]
+        ),  # RO-Crate asks for a day: that of the last release
         "identifier": doi_url(about["doi"]),
         "url": about["repository"],
         "license": ids([code, text]),

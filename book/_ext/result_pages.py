@@ -74,7 +74,8 @@ def row(entry: dict[str, Any]) -> str:
     return (
         f'<tr id="{anchor}"><th scope="row"><a href="#{anchor}">{name}</a></th>'
         f"<td>{escape(figures.minus_signs(cite.value_text(entry['value'])))}</td><td>{escape(unit)}</td>"
-        f"<td>{error}</td><td>{escape(about)}{citation(entry)}</td></tr>"
+        f"<td>{error}</td><td>{escape(recorded.sentence(entry['id']))} {escape(about)}"
+        f"{citation(entry)}</td></tr>"
     )
 
 

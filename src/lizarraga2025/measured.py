@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
+from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
@@ -37,6 +38,8 @@ class Measured:
     seconds, low, high, processor : float or None
         Median, least and most of the rounds' wall time, median of the processor time; None where
         there was no answer.
+    rounds : tuple of float
+        The wall times.
     answer : mapping
         What the file keeps of the answer.
     why : str
@@ -52,6 +55,7 @@ class Measured:
     low: float | None
     high: float | None
     processor: float | None
+    rounds: tuple[float, ...]
     answer: Mapping[str, Any]
     why: str
 
@@ -145,6 +149,31 @@ class Comparison:
                 pairs += [(each, ours) for each in found[: found.index(ours)]]
         return pairs
 
+    def spread(self, goal: Mapping[str, Any]) -> float:
+        """Return how far the ratio of a goal may be off, by what the rounds of both times say.
+
+        The ratio is the median over rounds that both were asked in. The farthest round counts when
+        the least and the greatest are left out: of seven rounds, these bracket the true median in
+        seven cases of eight. Where one was asked more often than the other, any two rounds are
+        compared. It is 0 where no times are: other answers are the same in every round.
+
+        Examples
+        --------
+        >>> found = side_by_side()
+        >>> goal = next(goal for goal in found.goals if goal["id"] == "streams-compiled-pinocchio")
+        >>> 0 < found.spread(goal) < goal["ratio"]
+        True
+        """
+        if goal["quantity"] != "seconds":
+            return 0.0
+        of = {each.id: each.rounds for each in self.measurements}
+        ours, theirs = (of[name] for name in goal["of"])
+        same = len(ours) == len(theirs)
+        pairs = zip(theirs, ours, strict=True) if same else product(theirs, ours)
+        inner = sorted(their / our for their, our in pairs)[1:-1]
+        ratio = float(goal["ratio"])
+        return max(ratio - inner[0], inner[-1] - ratio)
+
     def unanswered(self) -> list[Measured]:
         """Return the requests without an answer, each with the reason."""
         return [each for each in self.measurements if each.seconds is None]
@@ -197,6 +226,7 @@ def _measured(told: Mapping[str, Any]) -> Measured:
         low=told.get("low"),
         high=told.get("high"),
         processor=told.get("processor"),
+        rounds=tuple(told.get("rounds", ())),
         answer=told.get("answer") or {},
         why=why,
     )

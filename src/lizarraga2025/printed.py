@@ -84,8 +84,8 @@ SELECTION: Final = {
 TABLE_5: Final = {5: ("S_x", "x_{min,1}"), 6: ("S_x", "x_{min,2}"), 7: ("S_z", "z_{min,1}")}
 """``B_i = S r_{0,3}`` less a vector with one limit, where S selects: S and limit, by i."""
 
-CONSTRAINTS: Final = {10: "(q_min <= q) & (q <= q_max)", 11: "r >= d_min"}
-"""Eqs. (10) and (11), with r for the length of the vector between two points."""
+OBSERVERS: Final = {3: "right", 6: "left", 7: "left"}
+"""The equations that mark an observer, and on which side of the symbol."""
 
 THEOREM_1: Final = {
     14: "x**2 + y**2 + z**2",

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import tomllib
 from collections.abc import Iterable
+from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -92,6 +95,45 @@ def distinct(entries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     for entry in entries:
         once.setdefault(entry["id"], entry)
     return list(once.values())
+
+
+@cache
+def sentences() -> dict[str, str]:
+    """Return what results are, by patterns of their ids."""
+    file = resources.files("lizarraga2025") / "sentences.toml"
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+@cache
+def sentence(name: str) -> str:
+    """Return what the result of an id is, in a sentence.
+
+    Raises
+    ------
+    ValueError
+        If nothing is said of it.
+
+    Examples
+    --------
+    >>> sentence("component.2.area")
+    'Area of component 2 by the clearance rule, the largest but that of home first.'
+    """
+    parts = re.fullmatch(_as_expression(pattern_of(name)), name)
+    return sentences()[pattern_of(name)].format(*parts.groups() if parts else ())
+
+
+@cache
+def pattern_of(name: str) -> str:
+    """Return the pattern of ``sentences.toml`` that counts for an id."""
+    fitting = [p for p in sentences() if re.fullmatch(_as_expression(p), name)]
+    if not fitting:
+        raise ValueError(f"{name}: no sentence says what this result is")
+    return max(fitting, key=len)
+
+
+def _as_expression(pattern: str) -> str:
+    """Return the expression of an id with stars, each of which stands for something."""
+    return "(.+)".join(map(re.escape, pattern.split("*")))
 
 
 def claims() -> list[dict[str, Any]]:

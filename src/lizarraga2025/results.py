@@ -9,7 +9,7 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -169,6 +169,36 @@ def write_json(name: str, content: Any, folder: str | Path | None = None) -> Pat
 def _sha256(text: str) -> str:
     """Return the hash of a robot's file, as a certificate states it."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+# --- a result and its earlier self ----------------------------------------------------------------
+
+
+def share_of_error(now: Mapping[str, Any], then: Mapping[str, Any]) -> float:
+    """Return by which part of its stated error a recorded result differs from its earlier self.
+
+    They agree up to 1. The share is infinite where another thing was recorded: another unit,
+    count, text or number of values, or an error that is another one by more than a tenth.
+    """
+    fixed = [{k: v for k, v in one.items() if k not in ("value", "error")} for one in (now, then)]
+    stated = then["error"]
+    is_same = fixed[0] == fixed[1] and _without_floats(now["value"]) == _without_floats(
+        then["value"]
+    )
+    if not is_same or not math.isclose(now["error"], stated, rel_tol=0.1):
+        return math.inf
+    pairs = zip(_floats(now["value"]), _floats(then["value"]), strict=True)
+    apart = max((abs(a - b) for a, b in pairs), default=0.0)
+    if apart == 0:
+        return 0.0
+    return apart / stated if stated else math.inf
+
+
+def _without_floats(value: Any) -> Any:
+    """Return a value with its floats alike: what is left is compared as it is."""
+    if isinstance(value, list):
+        return [_without_floats(item) for item in value]
+    return None if isinstance(value, float) else value
 
 
 # --- numbers and their digits ---------------------------------------------------------------------

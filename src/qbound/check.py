@@ -1,6 +1,6 @@
 """Check a certificate of qbound with nothing but Python's own integers.
 
-    python check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]
+    python -I check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]
 
 A certificate says of a robot that every configuration of a set keeps every boundary (proved), or
 that one of them does not (refuted); or that no path leads from one configuration to another. This
@@ -19,11 +19,19 @@ refused here. Read from top to bottom:
     disconnected  boxes of up to three joints, the others held, that lie in every path
     the answer    a statement that is written from what was verified, and an exit status
 
-Exit status: 0 proved, 1 refuted by a witness that was verified, 2 anything else, 130 interrupted.
+Exit status: 0 proved, 3 refuted by a witness that was verified, 2 anything else, 130 interrupted.
+1 is no answer, because Python itself ends with 1 where a program cannot run.
 The second argument pins the robot: its file, or the SHA-256 of that file's text.
+Python's option -I keeps the folders of other people's modules away.
 """
 
-from __future__ import annotations
+import sys  # part of Python itself: no file stands for it, as one could for `__future__`
+
+if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
+    del sys.path[0]  # this folder, whose json.py, say, would come before Python's own
+if sys.version_info < (3, 11):  # noqa: UP036
+    sys.stdout.write("not proved: check.py needs Python 3.11 or newer\n")
+    sys.exit(2)
 
 import hashlib
 import itertools
@@ -31,7 +39,6 @@ import json
 import math
 import os
 import re
-import sys
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -649,7 +656,7 @@ class Simplex:
         """Return the largest abs(w . d) over the steps d to its corners."""
         return max(abs(_dot(w, step)) for step in self.steps)
 
-    def halves(self, letter: str) -> tuple[Simplex, Simplex]:
+    def halves(self, letter: str) -> "tuple[Simplex, Simplex]":
         """Cut it across an edge: the half with the first end, and the half with the second."""
         edges = [*itertools.combinations(range(len(self.corners)), 2)]
         number = ord(letter) - ord("a")
@@ -661,7 +668,7 @@ class Simplex:
         middle = tuple((x + y) / 2 for x, y in ends)
         return self._with(j, middle), self._with(i, middle)
 
-    def _with(self, i: int, corner: Point) -> Simplex:
+    def _with(self, i: int, corner: Point) -> "Simplex":
         return Simplex((*self.corners[:i], corner, *self.corners[i + 1 :]))
 
 
@@ -697,7 +704,7 @@ class Box:
         """Return the largest abs(w . d) over the steps d to its corners: all terms of one sign."""
         return _dot([abs(x) for x in w], self.steps[0])
 
-    def halves(self, letter: str) -> tuple[Box, Box]:
+    def halves(self, letter: str) -> "tuple[Box, Box]":
         """Cut it at the middle of a joint: the lower half and the upper one."""
         j = ord(letter) - ord("a")
         wide = 0 <= j < len(self.low) and self.low[j] != self.high[j]
@@ -733,7 +740,7 @@ class Statement:
     """Of no path in grammar 5: the joints that move, by their numbers; all others are held."""
 
     @property
-    def held(self) -> Held:
+    def held(self) -> "Held":
         """Return the values of the joints that a path of grammar 5 leaves where they are."""
         return {j: x for j, x in enumerate(self.loops[0][0]) if self.free and j not in self.free}
 
@@ -883,15 +890,15 @@ class Ball:
     def __init__(self, x: int, y: int = 0, r: int = 0) -> None:
         self.x, self.y, self.r = x, y, r
 
-    def __add__(self, other: Ball) -> Ball:
+    def __add__(self, other: "Ball") -> "Ball":
         """Add centres and errors."""
         return Ball(self.x + other.x, self.y + other.y, self.r + other.r)
 
-    def __sub__(self, other: Ball) -> Ball:
+    def __sub__(self, other: "Ball") -> "Ball":
         """Subtract centres; errors add."""
         return Ball(self.x - other.x, self.y - other.y, self.r + other.r)
 
-    def __mul__(self, other: Ball) -> Ball:
+    def __mul__(self, other: "Ball") -> "Ball":
         """Multiply: for |a' - a| <= r and |b' - b| <= s, |a'b' - ab| <= |a| s + r (|b| + s).
 
         abs(x) + abs(y) is at least the absolute value of a centre. The product is in units of
@@ -905,27 +912,27 @@ class Ball:
         rounding = 2 if (x | y) & UNITS_MASK else 0
         return Ball(x >> BITS, y >> BITS, -(-error >> BITS) + rounding)
 
-    def over(self, n: int) -> Ball:
+    def over(self, n: int) -> "Ball":
         """Divide by a whole number of 1 or more."""
         return Ball(self.x // n, self.y // n, self.r // n + 3)
 
     @property
-    def re(self) -> Ball:
+    def re(self) -> "Ball":
         """Return the real part."""
         return Ball(self.x, 0, self.r)
 
     @property
-    def im(self) -> Ball:
+    def im(self) -> "Ball":
         """Return the imaginary part."""
         return Ball(self.y, 0, self.r)
 
     @property
-    def conjugate(self) -> Ball:
+    def conjugate(self) -> "Ball":
         """Return the mirror image."""
         return Ball(self.x, -self.y, self.r)
 
     @property
-    def size(self) -> Ball:
+    def size(self) -> "Ball":
         """Return a number that no absolute value in the ball exceeds."""
         return Ball(math.isqrt(self.x**2 + self.y**2) + 1 + self.r if self else 0)
 
@@ -1712,7 +1719,7 @@ def walk(cell: Cell, tree: str, where: str) -> Iterator[tuple[Cell, bool, int | 
     demand(not todo, f"{where}: the tree ends before its last leaf")
 
 
-def prove(asked: Asked, cell: Cell, tree: str, where: str) -> None:
+def prove(asked: "Asked", cell: Cell, tree: str, where: str) -> None:
     """Verify that on each leaf of a tree all is positive."""
     for leaf, is_leaf, number in walk(cell, tree, where):
         for function in asked(number, where) if is_leaf else ():
@@ -2186,7 +2193,9 @@ def check(text: str | bytes, pin: str | None = None) -> Answer:
         )
     else:
         found = _verified(robot, statement, content, refuted=refuted)
-    lines = [f"robot {robot.name!a}, sha256 {sha256}", found, *described(robot, statement)]
+    pinned = "the robot that was asked for" if pin else "compared with no robot file"
+    heading = f"robot {robot.name!a}, sha256 {sha256}, {pinned}"
+    lines = [heading, found, *described(robot, statement)]
     return Answer(refuted, "\n".join(lines))
 
 
@@ -2231,12 +2240,14 @@ def _check_angles(robot: Robot, statement: Statement) -> None:
 
 def proof_of(robot: Robot, statement: Statement) -> str:
     """Say what was proved of the set."""
-    names = ", ".join(ascii(boundary.name) for boundary in robot.boundaries) or "no boundary"
+    names = ", ".join(ascii(boundary.name) for boundary in robot.boundaries)
     limited = ", ".join(ascii(joint.name) for joint in robot.joints if joint.limits)
     margin = f"{written(statement.margin)} {robot.length_unit}"
-    limits = f", and the limits of {limited}" if limited else ""
-    keeps = f"every configuration of the set keeps {names}, each with a margin of {margin}"
-    return f"proved: {keeps}{limits}"
+    kept = [f"{names}, each with a margin of {margin}"] if names else []
+    kept += [f"the limits of {limited}"] if limited else []
+    if not kept:
+        return "proved: nothing was to be kept; the robot has no boundary in use and no limit"
+    return f"proved: every configuration of the set keeps {', and '.join(kept)}"
 
 
 def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -> str:
@@ -2245,7 +2256,7 @@ def no_path_of(robot: Robot, statement: Statement, blocked: Sequence[Blocked]) -
     unit = robot.unit(j)
     ranges = " nor ".join(
         f"from {written(b.low)} {unit} to {written(b.high)} {unit}, where {b.boundary.name!a} is"
-        " violated whatever the other joints are"
+        " violated whatever the other joints are within their limits"
         for b in blocked
     )
     said = _no_path_keeps(robot, statement)
@@ -2277,23 +2288,51 @@ def refutation(robot: Robot, statement: Statement, name: str, q: Point) -> str:
 
 
 MOST_SHOWN = 50
-"""Configurations that are printed; of larger sets their number and ranges are."""
+"""Configurations that are printed; of larger sets their hash is, and what else names them."""
 
 
 def described(robot: Robot, statement: Statement) -> list[str]:
     """Describe the set by the numbers that were verified."""
     names = ", ".join(f"{joint.name!a} in {robot.unit(j)}" for j, joint in enumerate(robot.joints))
-    lines = [f"set: {statement.kind} in ({names})"]
-    points = [q for loop in statement.loops for q in loop]
     if not statement.cells:
         return [f"configurations: ({names})"]
-    if len(points) <= MOST_SHOWN:
-        lines += [" ".join(map(_point, loop)) for loop in statement.loops]
+    lines = [f"set: {statement.kind} in ({names})"]
+    printed = [" ".join(map(_point, loop)) for loop in statement.loops]
+    if sum(map(len, statement.loops)) <= MOST_SHOWN:
+        sorts = _sorts(statement)
+        lines += [f"{sort}: {said}" for sort, said in zip(sorts, printed, strict=True)]
     else:
-        low, high = (_point(tuple(map(end, zip(*points, strict=True)))) for end in (min, max))
-        lines.append(f"corners: {len(points)}, lists: {len(statement.loops)}, from {low} to {high}")
+        lines += _summary(robot, statement, printed)
     around = [robot.joints[j].name for j in goes_round(robot, statement)]
-    return lines + [f"goes all the way round {name!a}: every angle occurs" for name in around]
+    return lines + [f"takes every angle of {name!a}" for name in around]
+
+
+def _sorts(statement: Statement) -> list[str]:
+    """Return what each list of configurations is: a hole of a polygon goes round clockwise."""
+    if statement.kind != "polygon":
+        return [{"box": "corners", "path": "path"}[statement.kind]] * len(statement.loops)
+    points = [q for loop in statement.loops for q in loop]
+    x, y = (j for j, column in enumerate(zip(*points, strict=True)) if len({*column}) > 1)
+    turns = [
+        sum(p[x] * q[y] - q[x] * p[y] for p, q in zip(loop, [*loop[1:], loop[0]], strict=True))
+        for loop in statement.loops
+    ]
+    return ["outline" if turn > 0 else "hole" for turn in turns]
+
+
+def _summary(robot: Robot, statement: Statement, printed: Sequence[str]) -> Iterator[str]:
+    """Describe a set that is too long to print: ranges, which are not the set, and its hash."""
+    points = [q for loop in statement.loops for q in loop]
+    for j, (joint, column) in enumerate(zip(robot.joints, zip(*points, strict=True), strict=True)):
+        low, high = written(min(column)), written(max(column))
+        yield f"{joint.name!a} is between {low} and {high} {robot.unit(j)} in the set"
+    if statement.kind == "path":
+        for loop in statement.loops:
+            yield f"path from {_point(loop[0])} to {_point(loop[-1])}"
+    yield (
+        f"its {len(points)} configurations, in {len(statement.loops)} list(s), are in the"
+        f" certificate; sha256 of their text {digest(chr(10).join(printed))}"
+    )
 
 
 def _point(q: Point) -> str:
@@ -2340,11 +2379,15 @@ def written(x: Fraction) -> str:
 # --- the command ----------------------------------------------------------------------------------
 
 
+PROVED, REFUTED, NO_ANSWER = 0, 3, 2
+"""Exit statuses; not 1, which a Python that cannot run this file ends with."""
+
+
 def main(arguments: Sequence[str]) -> int:
     """Check a file, print the answer, and return the exit status."""
     try:
         status, said = _answer(arguments)
-        return status if _printed(said) else 2
+        return status if _printed(said) else NO_ANSWER
     except KeyboardInterrupt:
         _printed("not proved: interrupted")
         return 130
@@ -2356,17 +2399,17 @@ def _answer(arguments: Sequence[str]) -> tuple[int, str]:
     try:
         pin = _pin(arguments)
         answer = check(_read_file(arguments[0]), pin)
-        return (1 if answer.refuted else 0), answer.said
+        return (REFUTED if answer.refuted else PROVED), answer.said
     except Refused as error:
         reason = str(error)
     except MemoryError:
         reason = "the file needs more memory than there is"
     except Exception:  # whatever a hostile file sets off
         pass
-    return 2, f"not proved: {reason}"
+    return NO_ANSWER, f"not proved: {reason}"
 
 
-USAGE = "usage: python check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]"
+USAGE = "usage: python -I check.py CERTIFICATE [ROBOT_FILE | --sha256 HASH]"
 
 
 def _pin(arguments: Sequence[str]) -> str | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -128,7 +128,7 @@ def varied(robot: Robot, numbers: Mapping[Path, float]) -> Robot:
     table = dict(robot_table(robot))
     for path, value in numbers.items():
         _set(robot, table, path.split(".") if isinstance(path, str) else list(path), float(value))
-    return parse_robot(table)
+    return replace(parse_robot(table), source=robot.source)
 
 
 def vary(

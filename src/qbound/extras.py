@@ -18,7 +18,6 @@ class Extra(NamedTuple):
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "distributed": Extra("a sweep", "Dask", "cluster"),
-    "flint": Extra("a proof in ball arithmetic", "python-flint", "proofs"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),

@@ -163,3 +163,15 @@ PARALLEL: Final = 1e-9
 """Cosine of the angle of two axes, beside 1, under which a file means them to be parallel.
 
 Quarter turns are written with six digits or more: a cosine beside 1 is then right to 1e-12."""
+
+UNIT: Final = 2.0**-52
+"""Rounding of one operation on doubles; the measure of every error bound."""
+
+ON_ARC: Final = 1e-8
+"""Margin, beside the lengths that go into it, below which a place of an arc is on its boundary.
+
+A place of an arc is a root in doubles: what it leaves is its rounding, 1e-14 of these lengths, and
+where a small distance is kept the square root of that."""
+
+POLISHED: Final = 1e-6
+"""How far, in units of a joint, polishing may move a vertex: a double root is known to 1e-8."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from lizarraga2025 import printed as paper
-from support.worlds import World, robot_file, with_points, world
+from support.worlds import World, world
 
 
 def with_bound(ijk: str, old: str, new: str) -> World:
@@ -13,8 +13,6 @@ def with_bound(ijk: str, old: str, new: str) -> World:
     assert old in text
     return world(printed={"TABLE_6": {label: text.replace(old, new, 1)}})
 
-
-CORRECTED = world(robots={"minervabot-v2": with_points(robot_file(), p13=(9.09, 0.0, 5.25))})
 
 WORLDS: dict[str, World] = {
     "B-1.1.1": with_bound("1.1.1", "+ acos", "- acos"),
@@ -29,8 +27,8 @@ WORLDS: dict[str, World] = {
     "B-3.1.2": with_bound("3.1.2", "- acos", "+ acos"),
     "B-3.3.1": with_bound("3.3.1", "arctan", "atan2"),
     "B-3.3.2": with_bound("3.3.2", "arctan", "atan2"),
-    "B-4.1.1": CORRECTED,
-    "B-4.1.2": CORRECTED,
+    "B-4.1.1": with_bound("4.1.1", "- acos", "+ acos"),
+    "B-4.1.2": with_bound("4.1.2", "- acos", "+ acos"),
     "B-4.3.1": with_bound("4.3.1", "- acos", "+ acos"),
     "B-4.3.2": with_bound("4.3.2", "- acos", "+ acos"),
     "B-5.1.1": with_bound("5.1.1", "- acos", "+ acos"),

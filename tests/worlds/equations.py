@@ -12,6 +12,7 @@ from lizarraga2025.evidence import proofs
 from lizarraga2025.evidence.proofs import General
 from qbound.model.frames import Frame, Frames, apply, transpose
 from support.worlds import World, robot_file, with_boundaries, with_points, world
+from worlds.sentences import arm, with_contacts
 
 
 def with_a_sign(equation: int, old: str, new: str) -> World:
@@ -28,11 +29,10 @@ def with_theorem_2(**sides: str) -> World:
     return world(printed={"THEOREM_2": changed})
 
 
-def with_a_constraint(equation: int, old: str, new: str) -> World:
-    """Return the world that prints eq. (10) or (11) the other way round."""
-    text = paper.CONSTRAINTS[equation]
-    assert old in text
-    return world(printed={"CONSTRAINTS": {equation: text.replace(old, new)}})
+def with_a_number(label: str) -> World:
+    """Return the world that prints a limit which the paper leaves open."""
+    assert label not in paper.offsets_in_cm()
+    return world(printed={"OFFSETS": (*paper.OFFSETS, paper.Offset(label, 0.1, "cm", 1))})
 
 
 def with_component(name: str, old: str, new: str) -> World:
@@ -89,13 +89,13 @@ WORLDS: dict[str, World] = {
     "E-4": world(replaced={"qbound.model.frames.Frames.position": summed}),
     "E-5": world(replaced={"qbound.model.frames.Frames.precedes": is_parent}),
     "E-8": world(printed={"UNIT_VECTOR": paper.UNIT_VECTOR.replace("+ z", "- z")}),
-    "E-9": world(robots={"minervabot-v2-corrected": ROBOT}),
+    "E-9": arm(with_contacts((-60.0, 76.0), (-134.0, 44.0))),  # (-90°, 0°) is shut
     "E-9.1": with_component("beta_{5,1}", "- x_min_1", "+ x_min_1"),
     "E-9.2": world(
         printed={"TABLE_6": {"beta_{1,1,1}": paper.TABLE_6["beta_{1,1,2}"] + " - 2*pi"}}
     ),
-    "E-10": with_a_constraint(10, "q <= q_max", "q >= q_max"),
-    "E-11": with_a_constraint(11, ">=", "<="),
+    "E-10": with_a_number("q_{1,max}"),
+    "E-11": with_a_number("d_{min}"),
     "E-12": world(robots={"minervabot-v2": with_boundaries(ROBOT, B7={"used": False})}),
     "E-13": with_a_sign(19, "- r_0an", "+ r_0an"),
     "E-14": with_a_sign(14, "+ z", "- z"),

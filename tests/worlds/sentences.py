@@ -11,14 +11,12 @@ from unittest.mock import patch
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations import figures_workspace
-from lizarraga2025.evidence import arms, joint_region, proofs
+from lizarraga2025.evidence import arms, proofs
 from qbound import HarmonicForm, load_robot
 from qbound.boundary.functions import position
 from qbound.geometry import polygon
 from qbound.model import frames
 from qbound.model.robot import Body, Polygon, Prismatic, Robot
-from qbound.sampling import Sample
 from support.worlds import (
     World,
     robot_file,
@@ -116,12 +114,6 @@ def slide_that_moves_nothing() -> Robot:
     return replace(of, points=ARM.points, boundaries=ARM.boundaries)
 
 
-def on_the_boundary() -> Sample:
-    """Return configurations drawn from the boundary itself."""
-    q = np.concatenate([arc.points for arc in joint_region.by_windows().loops[0]])
-    return Sample(q, arms.tool_form()(q), np.ones(len(q), dtype=bool))
-
-
 class OtherSign(proofs.General):
     """The chain of Theorem 1 with one sign of eq. (16) changed."""
 
@@ -154,17 +146,6 @@ def held_on_the_other_side() -> Iterator[None]:
         yield
 
 
-@contextmanager
-def linear_places() -> Iterator[None]:
-    """Put the tool where a linear map of the joints does, for the middles of opposite places."""
-
-    def of_a_linear_map(_: Robot, name: str) -> HarmonicForm:
-        return position(sliding_in_place_of_turning(), name)
-
-    with world()(), patch.object(figures_workspace, "position", of_a_linear_map):
-        yield
-
-
 ROTATION, RESTRICT = frames.axis_rotation, HarmonicForm.restrict
 SLIDING, GENERAL = arms.sliding, proofs.general
 
@@ -178,32 +159,41 @@ ONE_ASPECT = arm(with_contacts((-136.0, 76.0), (-50.0, 44.0)))
 LITTLE_OF_THE_OTHER = arm(with_contacts((-136.0, 76.0), (-58.0, 44.0)))
 """The region ends at q2 = -61.5 deg, just beyond the singular line."""
 UNBOUNDED = arm(without_bounds())
+NEVER_SYMMETRIC = world(replaced={f"{EVIDENCE}.arms.symmetric": arms.robot})
+"""The arm whose offsets are their own mirror image has paths that are no mirror images."""
 SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
 SLIDES = arm(sliding_in_place_of_turning())
 POINT_LIKE = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1e-3})
 HARDLY_SCALED = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.99})
 LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
-DRAWN_ON_IT = world(replaced={f"{EVIDENCE}.joint_region.drawn": on_the_boundary})
 SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
 OUT_OF_REACH = world(replaced={f"{EVIDENCE}.arms.sliding": third_joint(B7={"offset": 1000.0})})
 
 WORLDS: dict[str, World] = {
     "S-1": CEILING,
+    "S-1.1": CEILING,
     "S-2": HIGH_LIMIT,
     "S-3": HIGH_LIMIT,
     "S-4": POINT_LIKE,
     "S-5": LINEAR,
-    "S-6": DRAWN_ON_IT,
+    "S-6": CEILING,
+    "S-6.1": HIGH_LIMIT,
     "S-7": UNBOUNDED,
     "S-7.1": world(
         printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}
     ),
     "S-8": CEILING,
+    "S-8.1": CEILING,
     "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
+    "S-9.1": arm(used("B1", "B2", "B3", "B7")),
+    "S-9.2": arm(load_robot("minervabot-v2-corrected")),
     "S-10": HIGH_LIMIT,
     "S-10.1": LITTLE_OF_THE_OTHER,
     "S-11": world(replaced={"qbound.model.frames.axis_rotation": skew_rotation}),
     "S-11.1": world(printed={"THEOREM_1": {15: "r_ab + R_ab @ r_bm + r_an"}}),
+    "S-11.2": world(printed={"OBSERVERS": {6: "right", 7: "right", 25: "right"}}),
+    "S-11.3": world(printed={"THEOREM_1": dict.fromkeys(paper.THEOREM_1, "r_1 + R_1 @ r_2")}),
+    "S-11.4": arm(with_points(ARM, p7=(4.91, 0, 11.5))),
     "S-12": arm(
         replace(
             ARM,
@@ -217,17 +207,17 @@ WORLDS: dict[str, World] = {
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
     "S-16": SIGN_OF_16,
+    "S-16.1": arm(used("B1", "B2", "B3", "B7")),
     "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),
-    "S-20.1": arm(
-        with_boundaries(ARM, B5={"offset": 60.0}, B6={"offset": -60.0}, B7={"used": False})
-    ),
+    "S-20.1": arm(with_boundaries(ARM, B5={"offset": -100.0}, B6={"offset": -100.0})),
     "S-20.2": arm(load_robot("minervabot-v2-corrected")),
     "S-20.3": world(
         printed={"TABLE_6": {"beta_{1,3,1}": paper.TABLE_6["beta_{1,3,1}"].replace("pi +", "")}}
     ),
+    "S-20.4": arm(load_robot("minervabot-v2-corrected")),
     "S-21": SLIDES,
     "S-21.1": world(
         printed={
@@ -240,6 +230,7 @@ WORLDS: dict[str, World] = {
     "S-22": arm(used("B7")),
     "S-23": arm(used("B7")),
     "S-23.1": arm(with_boundaries(ARM, B7={"offset": 60.0})),
+    "S-23.2": arm(used("B7")),
     "S-24": LOW_LIMIT,
     "S-25": HIGH_LIMIT,
     "S-26": HIGH_LIMIT,
@@ -252,12 +243,13 @@ WORLDS: dict[str, World] = {
     "S-32": HIGH_LIMIT,
     "S-33": HARDLY_SCALED,
     "S-34": POINT_LIKE,
-    "S-35": SYMMETRIC,
+    "S-35": POINT_LIKE,
     "S-36": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.3}),
     "S-36.1": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1.0}),
+    "S-36.2": NEVER_SYMMETRIC,
     "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
     "S-38": UNBOUNDED,
-    "S-39": DRAWN_ON_IT,
+    "S-39": CEILING,
     "S-40": UNBOUNDED,
     "S-41": UNBOUNDED,
     "S-42": ONE_ASPECT,
@@ -268,12 +260,13 @@ WORLDS: dict[str, World] = {
     "S-47": OUT_OF_REACH,
     "S-48": held_on_the_other_side,
     "S-49": held_on_the_other_side,
+    "S-49.1": held_on_the_other_side,
     "S-50": CEILING,
     "S-51": world(printed={"EQUATION_29": {"beta_{1,1}": "x_1_7*cos(q1) - x_0_6 - z_1_7*sin(q1)"}}),
     "S-52": HIGH_LIMIT,
     "S-53": HIGH_LIMIT,
     "S-54": POINT_LIKE,
-    "S-55": linear_places,
+    "S-55": NEVER_SYMMETRIC,
     "S-56": SIGN_OF_16,
 }
 

@@ -45,6 +45,7 @@ def moved(**places: tuple[float, float, float]) -> World:
     return world(robots={"minervabot-v2": with_points(robot_file(), **places)})
 
 
+to_the_tool = ("2", "3", "Offset x (joint 2 to the tool)", "x_{2,3}")
 one_elsewhere = {"S_x": ((0, 1, 0), (0, 0, 0), (0, 0, 0))}
 
 WORLDS: dict[str, World] = {
@@ -52,7 +53,7 @@ WORLDS: dict[str, World] = {
     "T-1.1": offset("z_{0,1}", value=22.0),
     "T-1.2": offset("z_{1,2}", value=25.89),
     "T-1.3": offset("x_{1,2}", value=15.5),
-    "T-1.4": offset("x_{2,3}", unit="mm", value=2.5),
+    "T-1.4": world(printed={"TABLE_1": (*paper.TABLE_1[:3], to_the_tool)}),
     "T-2": row_of_table_2(6, "+", "-"),
     "T-2.1": row_of_table_2(1, "[0", "[z_{0,1}"),
     "T-2.2": row_of_table_2(2, r"[0\ 0\ z_{0,1}]", r"[z_{0,1}\ 0\ 0]"),
@@ -71,7 +72,7 @@ WORLDS: dict[str, World] = {
     "T-4.1": moved(p12=(150.0, 0.0, 259.0)),  # ten times as far, so that millimetres reach
     "T-4.2": moved(p13=(9.09, 0.0, 5.25)),
     "T-4.3": component("beta_{4,3}"),
-    "T-5": offset("z_{min,1}", value=113.2),
+    "T-5": world(printed={"SELECTION": one_elsewhere}),
     "T-5.1": offset("z_{min,1}", value=113.2),
     "T-5.2": world(  # a wall in use that one of the two units puts out of reach
         printed={
@@ -92,7 +93,7 @@ WORLDS: dict[str, World] = {
     "T-6.4": bound("2,3", "- acos", "+ acos"),
     "T-6.5": bound("3,1", "- acos", "+ acos"),
     "T-6.6": bound("3,3", "arctan(-x_2_11, z_2_11)", "arctan(x_2_11, -z_2_11) - pi"),
-    "T-6.7": moved(p13=(9.09, 0.0, 5.25)),
+    "T-6.7": bound("4,1", "- acos", "+ acos"),
     "T-6.8": bound("4,3", "- acos", "+ acos"),
     "T-6.9": bound("5,1", "- acos", "+ acos", k=(2,)),
     "T-6.10": bound("6,1", "- acos", "+ acos", k=(2,)),

@@ -9,7 +9,7 @@ from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, counts, from_content
+from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, counts, findings, from_content
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.verdicts import VERDICTS
 
@@ -19,11 +19,19 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "claims",
         help="what holds of the paper, statement by statement",
-        description="Print the ledger's entries: all, some by id, or those of a verdict or a kind.",
-        epilog="example: qbound claims E-34 --recompute",
+        description="Print the ledger's entries: one line each, or whole, with what was computed"
+        " and the test, those chosen by id or verdict.",
+        epilog="examples: qbound claims E-34 --recompute; what does not hold as printed: qbound"
+        " claims --verdict refuted --verdict misprint",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="E-34, B-2.1.2, T-4, F-4.1, S-3, ...")
-    parser.add_argument("--verdict", choices=VERDICTS, metavar="VERDICT", help="; ".join(VERDICTS))
+    parser.add_argument(
+        "--verdict",
+        action="append",
+        choices=VERDICTS,
+        metavar="VERDICT",
+        help=f"{'; '.join(VERDICTS)}; given twice, both",
+    )
     parser.add_argument("--kind", choices=KINDS)
     parser.add_argument("--json", action="store_true", help="as in results/claims.json")
     parser.add_argument("--bibtex", action="store_true", help="how to cite paper, package, entries")
@@ -38,10 +46,17 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the chosen entries; with --recompute, 1 if one comes out otherwise than recorded."""
     ledger = {content["id"]: from_content(content) for content in recorded.claims()}
-    unknown = [name for name in options.ids if name not in ledger]
+    wanted = {name.upper() for name in options.ids}
+    unknown = [name for name in options.ids if name.upper() not in ledger]
     if unknown:
         raise ValueError(f"no entry {unknown[0]!r} in the ledger; `qbound claims` lists all")
-    chosen = [one for one in ledger.values() if _is_chosen(one, options)]
+    chosen = [
+        one
+        for one in ledger.values()
+        if (not wanted or one.id in wanted)
+        and (not options.verdict or one.verdict in options.verdict)
+        and options.kind in (None, one.kind)
+    ]
     if options.recompute:
         chosen = [_again(one.id) for one in chosen]
     if options.json:
@@ -50,7 +65,9 @@ def run(options: argparse.Namespace) -> int:
     elif options.bibtex:
         print("\n\n".join([cite.PAPER, cite.package(), *(cite.entry(one) for one in chosen)]))
     else:
-        _say(chosen, whole=bool(options.ids))
+        _say(chosen, whole=bool(options.ids or options.verdict))
+        if not options.ids:
+            _count(chosen)
     changed = [one.id for one in chosen if one != ledger[one.id]]
     if options.recompute and not options.json and not options.bibtex:
         print(f"computed again: {len(chosen)}, as recorded: {len(chosen) - len(changed)}")
@@ -76,14 +93,6 @@ def _differences(now: Claim, recorded: Claim) -> Iterator[str]:
         yield f"  {key:<10}recorded {before.get(key)!r}\n  {'':<10}now      {after[key]!r}"
 
 
-def _is_chosen(one: Claim, options: argparse.Namespace) -> bool:
-    return (
-        (not options.ids or one.id in options.ids)
-        and (options.verdict in (None, one.verdict))
-        and (options.kind in (None, one.kind))
-    )
-
-
 def _say(chosen: list[Claim], whole: bool) -> None:
     for one in chosen:
         if not whole:
@@ -96,15 +105,13 @@ def _say(chosen: list[Claim], whole: bool) -> None:
         if one.corrected:
             print(f"  corrected {one.corrected}")
         print(f"  evidence  {one.evidence.chapter}, {one.evidence.test}")
-    if not whole:
-        _count(chosen)
 
 
 def _count(chosen: list[Claim]) -> None:
     for verdict, count in counts(chosen).items():
         if count.entries:
             print(f"{verdict}: {_numbers(count.entries, count.findings)}")
-    print(f"together: {_numbers(len(chosen), len({one.finding for one in chosen}))}")
+    print(f"together: {_numbers(len(chosen), len(findings(chosen)))}")
 
 
 def _numbers(entries: int, findings: int) -> str:

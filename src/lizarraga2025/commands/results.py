@@ -8,6 +8,9 @@ from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
+from lizarraga2025.measured import side_by_side
+
+Entry = dict[str, Any]
 
 ABOUT_THE_FILE = ("version", "robots")
 
@@ -17,10 +20,13 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "results",
         help="every number that the book states",
-        description="Print recorded numbers: all, those of a chapter, or those of an id.",
-        epilog="example: qbound results paper.area --bibtex",
+        description="Print recorded numbers, each with what it is: all, those of a chapter, that of"
+        " an id, or those in whose id or description a word occurs.",
+        epilog="examples: qbound results paper.area --bibtex; qbound results centroid",
     )
-    parser.add_argument("ids", nargs="*", metavar="ID", help="vertex.1, region/vertex.1, region/")
+    parser.add_argument(
+        "names", nargs="*", metavar="ID|WORD", help="vertex.1, region/vertex.1, region/, centroid"
+    )
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="as in results/, with the chapter")
     form.add_argument("--bibtex", action="store_true", help="how to cite paper, package, results")
@@ -30,11 +36,10 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the chosen numbers."""
     entries = recorded.results()
-    names = options.ids or [""]
-    lost = [name for name in names if not any(_is_named(entry, name) for entry in entries)]
-    if lost:
-        raise ValueError(f"no result {lost[0]!r}; `qbound results` lists all")
-    chosen = [entry for entry in entries if any(_is_named(entry, name) for name in names)]
+    of_name = {name: _found(entries, name) for name in options.names or [""]}
+    for name in [name for name, found in of_name.items() if not found]:
+        raise ValueError(_where_it_went(name) or f"no result {name!r}; `qbound results` lists all")
+    chosen = [entry for entry in entries if any(entry in found for found in of_name.values())]
     if options.json:
         plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
         print(json.dumps(plain, indent=1, ensure_ascii=False))
@@ -47,21 +52,47 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _line(entry: dict[str, Any]) -> str:
-    """Return id, value, unit, error, and what the number is about."""
+def _line(entry: Entry) -> str:
+    """Return id, value, unit, error, what the number belongs to, and what it is."""
     unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
     error = f" ± {entry['error']:g}" if entry["error"] else ""
     value = f"{cite.value_text(entry['value'])}{error}{unit}"
-    return f"{entry['chapter']}/{entry['id']} = {value}{_about(entry)}"
+    first = f"{entry['chapter']}/{entry['id']} = {value}{_about(entry)}"
+    return f"{first}\n    {recorded.sentence(entry['id'])}"
 
 
-def _is_named(entry: dict[str, Any], name: str) -> bool:
+def _found(entries: list[Entry], name: str) -> list[Entry]:
+    """Return the entries of an id or chapter; where there is none, those in which a word occurs."""
+    named = [entry for entry in entries if _is_named(entry, name)]
+    return named or [entry for entry in entries if _holds(entry, name.casefold())]
+
+
+def _holds(entry: Entry, word: str) -> bool:
+    texts = (entry["id"], entry["reference"], recorded.sentence(entry["id"]))
+    return any(word in text.casefold() for text in texts)
+
+
+def _where_it_went(name: str) -> str | None:
+    """Say where the measurement is that had this id among the results, or None for any other."""
+    measurement, _, what = name.rpartition("/")[2].removeprefix("side.").rpartition(".")
+    try:
+        [found] = [each for each in side_by_side().measurements if each.id == measurement]
+    except (FileNotFoundError, ValueError):
+        return None
+    told = f"; its time is {found.seconds:.3g} s" if what == "time" and found.seconds else ""
+    return (
+        f"{name}: a measurement, which changes with the machine, and no result to cite; it is"
+        f" {measurement!r} in benchmarks/side_by_side.json{told}"
+    )
+
+
+def _is_named(entry: Entry, name: str) -> bool:
     """Tell whether a name is the entry's id, its chapter with a slash, both, or nothing."""
     whole = f"{entry['chapter']}/{entry['id']}"
     return name in ("", entry["id"], whole, f"{entry['chapter']}/")
 
 
-def _about(entry: dict[str, Any]) -> str:
+def _about(entry: Entry) -> str:
     rule = "" if entry["rule"] == "none" else f"{entry['rule']} rule"
     words = [word for word in (entry["reference"], rule) if word]
     return f"  ({', '.join(words)})" if words else ""

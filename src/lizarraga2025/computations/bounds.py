@@ -14,7 +14,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge
 from qbound import HarmonicForm, circle_roots, components, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.forms.angles import TURN, nearest_turn
@@ -124,25 +124,14 @@ def _value(text: str, reading: paper.Reading, of: Robot) -> float:
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})
 def bound_of_a_pair(label: str) -> Outcome:
-    """Judge a bound as a root of its component that keeps its side of home, and as a limit."""
+    """Judge a bound as a root of its component on its side of home, at which a motion stops."""
     found, right = pair_bound(label), pair_bound(label, corrected_digit=True)
     placed = found.value > 0 if _side(label) == "upper" else found.value < 0
     is_root = placed and found.residual < RESIDUAL
-    with_arctan = is_root and found.plain_residual < RESIDUAL
-    met = found.meets or not found.at_contact
-    return strongest(
-        {
-            "a root of its component": judge(
-                holds=with_arctan and met,
-                constrains=found.at_contact,
-                under=is_root and (met or right.meets),
-            ),
-            "a limit at which the points meet": judge(
-                holds=with_arctan and found.meets,
-                under=is_root and right.meets,
-                corrected=not found.at_contact and meets_at_the_other_root(label),
-            ),
-        },
+    return Outcome(
+        judge(
+            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact, under=is_root
+        ),
         f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
 
@@ -158,16 +147,19 @@ def _with_arctan(found: PairBound) -> str:
 
 def _place(label: str, found: PairBound, right: PairBound) -> str:
     """Tell where the bound lies: at the contact, or at the component's other root."""
-    apart = f"a root of the component, where the points are {found.distance:.4f} cm apart"
+    root = "a root" if found.residual < RESIDUAL else f"no root ({found.residual:.2f} cm)"
+    apart = f"{root} of the component, where the points are {found.distance:.4f} cm apart"
     if found.meets:
         return f"{apart}; rounding allows {found.allowed:.4f} cm."
     if found.at_contact:
         return (
-            f"{apart}; rounding allows {found.allowed:.4f} cm. With x_{{2,13}} = 9.09 they are"
+            f"{apart}: of the two roots the one next to the contact, and the component vanishes"
+            f" exactly. Rounding allows {found.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
             f" {right.distance:.4f} cm apart (T-4.2)."
         )
     return (
-        f"{apart}, so that it stops no motion. They meet at the other root, {degrees(found.other)},"
+        f"{apart}, so that it stops no motion: the condition is to ask for a root by eq. (38) and"
+        f" no more. They meet at the other root, {degrees(found.other)},"
         f" up to {found.other_distance:.4f} cm, inside the window"
         f"{_with_the_other_sign(label)}."
     )
@@ -243,7 +235,7 @@ def half_space_bound(label: str, n: int = 7200) -> HalfSpaceBound:
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] > 4})
 def bound_of_a_half_space(label: str) -> Outcome:
-    """Judge a bound as a root wherever eq. (36) gives one, and as an end of what is feasible."""
+    """Judge a bound as a root wherever eq. (36) gives one, at which the wall's limit ends."""
     found, is_upper = half_space_bound(label), _side(label) == "upper"
     is_end = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
     text = (
@@ -255,16 +247,7 @@ def bound_of_a_half_space(label: str) -> Outcome:
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
         text += _copy_of_the_other(label)
     is_root = found.residual < RESIDUAL
-    return strongest(
-        {
-            "a root of its component": judge(holds=is_root, constrains=is_end),
-            "an end of the values at which the wall's limit is kept": judge(
-                holds=is_root and is_end,
-                corrected=not is_end and not is_upper and is_lower_end(label),
-            ),
-        },
-        text,
-    )
+    return Outcome(judge(holds=is_root and is_end, under=is_root), text)
 
 
 def limit_of(label: str) -> str:
@@ -285,8 +268,8 @@ def _copy_of_the_other(label: str) -> str:
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
     end = " With + before cos⁻¹ it is the other root, the lower end." if is_lower_end(label) else ""
     return (
-        " It is the upper bound a turn lower, one pose, and the window leaves no value of q_2 out:"
-        f" at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
+        " It is the upper bound minus one turn, the same pose. So the window excludes no value of"
+        f" q_2: at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
         f" component is {round(value, 9):g} cm.{end}"
     )
 
@@ -331,8 +314,8 @@ def rows_against_the_theorem() -> Outcome:
         judge(holds=are_roots and not both, under=are_roots and bool(a_turn_apart)),
         f"{len(a_turn_apart)} of {len(rows)} rows are eq. (39), with θ by atan2: their two bounds"
         " are one root of the component, that of eq. (38), a full turn apart. Where that root is"
-        f" not the one wanted, in the rows of {_of_the_other_root()}, the sign before cos⁻¹ is the"
-        f" slip (T-6.4), which eq. (37) hands on (E-37). The row of {rest} is not: its bounds"
+        f" not the one at which a motion stops, in the rows of {_of_the_other_root()}, the choice"
+        f" comes from eq. (37) (E-37, T-6.4). The row of {rest} is not: its bounds"
         " are the two roots of its component, between which it is positive. No row is eq. (31),"
         " which is longer than a turn.",
     )

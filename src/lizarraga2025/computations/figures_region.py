@@ -22,8 +22,8 @@ from lizarraga2025.evidence.joint_region import (
     largest_scale,
     least_height,
     scaled,
-    square,
     vertices,
+    within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
@@ -45,13 +45,17 @@ def labels_close_a_triangle() -> Outcome:
     import sympy as sp
 
     frames = symbolic_robot()[0].frames(joint_symbols(robot()))
-    seen = sp.Matrix(frames.rotation("0", "1")) * sp.Matrix(frames.position("1", "2", "1"))
-    path = sp.Matrix(frames.position("0", "1", "0")) + seen
-    closed = sp.simplify(path - sp.Matrix(frames.position("0", "2", "0"))) == sp.zeros(3, 1)
+
+    def seen(a: str, b: str, observer: str) -> sp.Matrix:
+        return sp.Matrix(frames.rotation(observer, a)) * sp.Matrix(frames.position(a, b, a))
+
+    sums = {o: seen("0", "1", o) + seen("1", "2", o) - seen("0", "2", o) for o in "012"}
+    fits = {o: sp.simplify(left) == sp.zeros(3, 1) for o, left in sums.items()}
     return Outcome(
-        judge(holds=closed),
-        "Labels are enough to compute with: r_{0,1} and r_{1,2}, the second turned by"
-        " R_{0,1}, add up to r_{0,2} by identity. The picture itself is drawn anew.",
+        undetermined(fits),
+        "Labels are enough to compute with: r_{0,1} and r_{1,2} add up to r_{0,2} by identity,"
+        f" seen from any of the {sum(fits.values())} frames 0, 1 and 2. Which vectors, observers"
+        f" and colours the picture has, the text does not say. {PICTURE}",
     )
 
 
@@ -109,12 +113,19 @@ def six_curves() -> Outcome:
     named, found = set(paper.FIGURE_4_BOUNDS), _edges()
     same = _components(named) == _components(found) and len(found) == len(named)
     with_arctan = sides_of_the_box("arctan")
+    box = paper_rule.box(robot())
+    sides = np.concatenate([box.lower, box.upper])
+    agree = sum(
+        paper.indices(label)[0] > 4 or bool(np.isclose(_raised(label), sides).any())
+        for label in named
+    )
     return Outcome(
         judge(holds=same and with_arctan <= named, under=same),
         f"With the inverse tangent as atan2 the region has {len(found)} bounding curves, of the"
         f" components that the caption names; {len(named & found)} of the {len(named)} labels agree"
-        " to the last index (F-4.2). With arctan the sides of the box would be"
-        f" {', '.join(_greek(label) for label in sorted(with_arctan))}.",
+        f" to the last index (F-4.2), and {agree} with an arctangent to which 180° is added where a"
+        " < 0, which is as right: only row 6 of Table 6 is then a turn off (T-6.6). With arctan"
+        f" the sides would be {', '.join(_greek(label) for label in sorted(with_arctan))}.",
     )
 
 
@@ -138,6 +149,15 @@ def bound_of_a_pair(label: str, reading: paper.Reading) -> float:
     return float(printed.subs(symbolic_robot()[1]))
 
 
+def _raised(label: str) -> float:
+    """Return a printed bound, rad, by an arctangent to which π is added where a < 0."""
+    i, j, _ = paper.indices(label)
+    component = pair_vector(robot(), pairs()[i - 1])[j - 1]
+    (joint,) = component.joints()
+    behind = component.along(joint, robot().home)[1] < 0
+    return bound_of_a_pair(label, "arctan") + (np.pi if behind else 0.0)
+
+
 def _greek(label: str) -> str:
     return label.replace("beta", "β")
 
@@ -147,9 +167,7 @@ def the_index_of_one_bound() -> Outcome:
     (k,) = {paper.indices(label)[2] for label in paper.FIGURE_4_BOUNDS if "{3,3," in label}
     side = float(paper_rule.box(robot()).upper[1])
     values = {k: bound_of_a_pair(f"beta_{{3,3,{k}}}", "atan2") for k in (1, 2)}
-    raised = {  # a < 0: add pi
-        k: bound_of_a_pair(f"beta_{{3,3,{k}}}", "arctan") + np.pi for k in (1, 2)
-    }
+    raised = {k: _raised(f"beta_{{3,3,{k}}}") for k in (1, 2)}
     fits = {
         "the index is a slip": bool(np.isclose(values[1], side)) and values[2] < 0 < values[1],
         "the row is a slip": bool(np.isclose(raised[2], side)) and 0 < raised[2] < TURN,
@@ -180,24 +198,24 @@ def red_lines_play_no_part() -> Outcome:
         sum(c.area for c in solve(state(robot(), used, ranges, names), robot().home).components)
         for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
     ]
-    by_pairs = square()[((box.lower <= square()) & (square() <= box.upper)).all(axis=-1)]
+    by_pairs = within_the_windows()
     by_rule = by_pairs[paper_rule.feasible(robot(), by_pairs)]
     return strongest(
         {
-            "lines that the authors leave out": judge(holds=closes and not cuts_in),
             "lines that would cut nothing off": judge(
-                holds=not cuts_in and np.ptp(areas) < SMALL, under=not cuts_in
+                holds=closes and not cuts_in and np.ptp(areas) < SMALL, under=closes and not cuts_in
             ),
             "B5 and B6 as sides of a box round the base, whose top is B7": judge(
                 holds=bool(in_base_box(by_pairs).any() and not in_base_box(by_rule).any())
             ),
         },
         f"The six lines named close the region alone, and of the other lines of point pairs"
-        f" {len(cuts_in) or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in"
-        f" force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}"
-        f" ({X_IN_CM}). As sides of one box that the tool must stay out of they would cut nothing"
-        " off, but its top B7 neither, which is cyan: the windows alone keep the tool out of it."
-        " Why they are left out the text does not say.",
+        f" {len(cuts_in) or 'none'} runs through it: of these lines it holds. The walls B5 and B6"
+        f" of Table 5 run through it: with B6 in force {areas[1]:.4f} of {areas[0]:.4f} rad² would"
+        f" be left, with B5 too {areas[2]:.4f} ({X_IN_CM}). One could read them as sides of a box"
+        " that the tool must stay out of. In that case they cut nothing off. Nor would its top, B7,"
+        " which is drawn as a bound: the tool cannot enter the box anyway. Why they are left out"
+        " the text does not say.",
     )
 
 
@@ -276,8 +294,8 @@ def scaling_leaves_a_margin() -> Outcome:
     return Outcome(
         judge(holds=grow and bool((heights > 0).all() and (gaps > 0).all()), under=grow and kept),
         f"A margin in length, and growing, once the scale is below {safe:.6f}: at"
-        f" 0.96 the tool keeps {heights[1]:.4f} cm from its limit and the bodies {gaps[1]:.4f} cm"
-        f" from each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
+        f" 0.96 the tool keeps {heights[1]:.4f} cm from its limit, the rebuilt bodies"
+        f" {gaps[1]:.4f} cm from each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
     )
 
 

@@ -19,14 +19,14 @@ from lizarraga2025.collisions import (
 )
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import corrected, of_slides, robot, rounded, symmetric, tool_form
+from lizarraga2025.evidence.arms import corrected, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     bodies_allow,
     drawn,
     scaled,
 )
-from lizarraga2025.evidence.rounding import SMALL
+from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
@@ -35,13 +35,14 @@ from lizarraga2025.evidence.tool_paths import (
     asymmetry,
     crossings,
     neighbour_sequences,
+    opposite,
     other_posture,
     path_through,
     simple_neighbours,
     simple_sequences,
     spread_of_middles,
 )
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import Outcome, judge, undetermined
 from qbound.boundary.functions import position
 from qbound.forms.angles import TURN
 from qbound.model.robot import Robot
@@ -96,9 +97,9 @@ def tool_path_of_the_six_points() -> Outcome:
     return Outcome(
         judge(holds=crossed > 0),
         f"Of {len(ROUNDS)} walks round the region {crossed} give a path of the tool that crosses"
-        f" itself at each of the scales {', '.join(f'{s:g}' for s in scales)}, among them all that"
-        f" return: {min(counts[AROUND])} crossing. Without return {' and '.join(plain)} do not, in"
-        " either direction.",
+        f" itself at each of the scales {', '.join(f'{s:g}' for s in scales)}. All closed walks do,"
+        f" in {counted(min(counts[AROUND]), 'place')}. Of the open ones only"
+        f" {' and '.join(plain) or 'none'} do not cross, in either direction.",
     )
 
 
@@ -127,13 +128,21 @@ def which_five_points() -> Outcome:
     orders = {"-".join(str(i + 1) for i in order): order for order in simple_sequences()}
     fits = dict.fromkeys(_stated(8, orders), True)
     neighbours = len(simple_neighbours())
+    both_ways = [order for o in orders.values() for order in (o, o[::-1])]
+    pairs = [o for o in both_ways if opposite(o) in both_ways and _end(o) > 0 > _end(opposite(o))]
     return Outcome(
         undetermined(fits),
         f"The text does not name the points. Of 360 orders of five of the six (a walk and its"
         f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself; of"
         f" the {len(neighbour_sequences())} walks through five neighbours, in either direction,"
-        f" {neighbours}. {PICTURE}",
+        f" {neighbours}. Those that end on the right, with an opposite for Figure 9 that ends on"
+        f" the left, are {len(pairs)}, counted in both directions. {PICTURE}",
     )
+
+
+def _end(order: tuple[int, ...]) -> float:
+    """Return where the tool is at the end of a walk, cm to the right of the base."""
+    return float(path_through(order).tool[-1, 0])
 
 
 @computes("F-8.2")
@@ -172,19 +181,17 @@ def a_second_sequence() -> Outcome:
 
 @computes("F-9.1")
 def opposite_paths() -> Outcome:
-    right, left = _shown(8, RIGHT), _shown(9, LEFT)
-    across = np.roll(scaled(), -3, axis=0)  # point 4 for point 1, and so on
-    of_right = [int(np.argmin(np.abs(scaled() - q).sum(-1))) for q in right.q[right.stops]]
-    same_way = np.allclose(across[of_right], left.q[left.stops])
-    ends = [float(path.tool[-1, 0]) for path in (right, left)]
-    both_ways = {order for o in simple_sequences() for order in (o, o[::-1])}
-    opposites = sum(tuple((i + 3) % 6 for i in order) in both_ways for order in both_ways)
+    orders = {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
+    first, second = (_stated(figure, orders).values() for figure in (8, 9))
+    opposites = [o for o in first if opposite(o) in second]
+    ends = [_end(order) for order in (RIGHT, LEFT)]
     return Outcome(
-        judge(holds=bool(same_way) and ends[0] * ends[1] < 0),
-        "The book's 6-1-2-3-4 and 3-4-5-6-1 are opposite: each point is the one across the hexagon,"
-        f" and the tool ends at x = {ends[0]:.4f} and {ends[1]:.4f} cm. The text names no points;"
-        f" of {len(both_ways)} orders, counted in both directions, that do not cross themselves"
-        f" {opposites} have such an opposite.",
+        judge(holds=len(opposites) == len(first) > 0, under=bool(opposites)),
+        f"The text names no points (F-8.1). Of {len(first)} orders for Figure 8, counted in both"
+        f" directions, that do not cross themselves, {len(opposites)} have an opposite that does"
+        " not either: each point is the one across the hexagon. The book chooses such a pair,"
+        f" 6-1-2-3-4 and 3-4-5-6-1, with the tool at x = {ends[0]:.4f} and {ends[1]:.4f} cm at the"
+        " end.",
     )
 
 
@@ -195,7 +202,8 @@ def the_regions_are_not_symmetric() -> Outcome:
     )
     return Outcome(
         judge(holds=one_digit > of_rounding + SMALL, under=printed > of_rounding + SMALL),
-        f"The mirrored right path and the left one are up to {printed:.4f} cm apart with the"
+        f"The mirrored right path of the book's pair and the left one are up to {printed:.4f} cm"
+        " apart with the"
         f" printed x_{{2,13}} = 9.00, {one_digit:.4f} cm with 9.09 (T-4.2). As far apart,"
         f" {of_rounding:.4f} cm, are those of the exactly symmetric arm with its offsets rounded to"
         " hundredths.",
@@ -208,14 +216,13 @@ SCALES: Final = (1.0, SCALE, 0.8)
 @computes("F-10.2")
 def asymmetry_from_scaling() -> Outcome:
     printed, exact = ([asymmetry(arm, s) for s in SCALES] for arm in (robot(), symmetric()))
-    centres = [spreads_of_middles(s)["tool"] for s in SCALES]
-    brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact, centres))
+    brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact))
     return Outcome(
         judge(holds=brought_in),
         f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
         " scaling changes the asymmetry and does not bring it in. On the exactly symmetric arm they"
-        f" are mirror images at scales {', '.join(f'{s:g}' for s in SCALES)}, and point reflections"
-        " at none of them, unscaled neither (F-10.3).",
+        f" are mirror images at scales {', '.join(f'{s:g}' for s in SCALES)}. The caption names two"
+        " causes; the other one, the nonlinearity, is F-10.3.",
     )
 
 
@@ -223,38 +230,26 @@ def asymmetry_from_scaling() -> Outcome:
 def asymmetry_from_nonlinearity() -> Outcome:
     exact, spreads = asymmetry(symmetric(), SCALE), spreads_of_middles(SCALE)
     bends = [_bend(arm) for arm in (robot(), symmetric())]
-    return strongest(
-        {
-            "point reflections, as the two joint paths are": judge(
-                holds=nonlinearity_breaks_point_symmetry()
-            ),
-            "mirror images": judge(holds=exact > SMALL),
-        },
-        "On the exactly symmetric arm the two joint paths are point reflections of each other:"
-        " opposite points have one middle. A linear map keeps that; the middles of the tool's"
-        f" opposite places are {spreads['tool']:.2f} cm apart. Mirror images its paths are,"
-        f" although they bend away from their chords by up to {bends[1]:.2f} cm, those of the"
-        f" printed arm by {bends[0]:.2f} cm.",
+    return Outcome(
+        judge(holds=exact > SMALL),
+        f"The exactly symmetric arm is as nonlinear: its paths bend away from their chords by up to"
+        f" {bends[1]:.2f} cm, those of the printed arm by {bends[0]:.2f} cm. Yet its two paths are"
+        " mirror images. What the nonlinearity does break is another symmetry, which nobody looks"
+        " for in an overlay of a right and a left region: its joint paths are point reflections of"
+        f" each other, with the middles of opposite points {spreads['joints']:.2g} rad apart, and"
+        f" the middles of the tool's opposite places are {spreads['tool']:.2f} cm apart.",
     )
-
-
-def nonlinearity_breaks_point_symmetry() -> bool:
-    """Tell whether joint paths are point reflections, and the tool's by a linear map alone."""
-    spreads = spreads_of_middles(SCALE)
-    return max(spreads["joints"], spreads["linear"]) < SMALL < spreads["tool"]
 
 
 def spreads_of_middles(factor: float) -> dict[str, float]:
     """Return how far the middles of opposite points of the symmetric arm are apart, rad and cm.
 
-    Of its joint values, of the tool's places, and of the places that a linear map gives: two slides
-    in place of the joints.
+    Of its joint values, and of the tool's places.
     """
     q = scaled(factor, symmetric())
     return {
-        "joints": spread_of_middles(q),
+        "joints": round(spread_of_middles(q), 9),
         "tool": spread_of_middles(position(symmetric(), symmetric().tool)(q)),
-        "linear": spread_of_middles(position(of_slides(), of_slides().tool)(q)),
     }
 
 
@@ -272,9 +267,9 @@ TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
     "the tool's limit alone, eq. (12)": keeps_geometric,
     "clearances, eqs. (11) and (12)": keeps_clear,
     "windows of Table 6": paper_rule.feasible,
-    "signs of all components, eq. (9)": keeps_components_positive,
+    "signs of the components in use, eq. (9)": keeps_components_positive,
     "signs of the third components, eq. (9)": keeps_third_components_positive,
-    "whole bodies and the tool's limit": lambda _, q: bodies_allow(q),
+    "rebuilt bodies and the tool's limit": lambda _, q: bodies_allow(q),
 }
 """What can make a point red: the test for a configuration that stays blue, by name."""
 
@@ -324,20 +319,6 @@ def both_colours_at_one_place() -> Outcome:
         judge(holds=bool(same) and bool(_mixing())),
         "Every place has two postures. Of the free configurations of the draw the second posture"
         f" collides for {'; '.join(parts) or 'none'}.",
-    )
-
-
-@computes("F-11.3")
-def lateral_shapes() -> Outcome:
-    places = drawn().tool[drawn().free]
-    low = places[places[:, 2] < robot().joints[0].origin[2]]
-    sides = [int((low[:, 0] > 0).sum()), int((low[:, 0] < 0).sum())]
-    inner = float(np.abs(low[:, 0]).min(initial=np.inf))
-    return Outcome(
-        judge(holds=min(sides) > 100 and inner > robot().point("6").at[0]),
-        f"Below joint 1 the free places fall apart into two lobes, {sides[0]} places of the draw on"
-        f" the right and {sides[1]} on the left, and none of them within {inner:.1f} cm of the"
-        " middle.",
     )
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -18,8 +20,6 @@ from lizarraga2025.evidence.joint_region import (
     by_clearances,
     by_windows,
     depth_below_edges,
-    distance_of_the_draw,
-    drawn,
     gap_of_base_and_link_2,
     largest_scale,
     least_gap_in_home_region,
@@ -39,7 +39,6 @@ from lizarraga2025.evidence.tool_paths import (
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import components, find_region
-from qbound.boundary.functions import pair_vector
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace, Pair
 from qbound.symbols import joint_symbols
@@ -65,6 +64,7 @@ def intersections_give_a_continuous_boundary() -> Outcome:
 
 
 @computes("S-3")
+@computes("S-6.1")
 def scaled_region_gives_a_trajectory() -> Outcome:
     safe = largest_scale().scale
     below = [least_height(s) for s in (safe - 1e-6, 0.96, 0.95, 0.5)]
@@ -98,20 +98,6 @@ def nonlinear_workspace() -> Outcome:
         judge(holds=bend > 1),
         "On the straight joint path from point 1 to point 2 the tool is up to"
         f" {bend:.2f} cm from where a linear map with the same ends would put it.",
-    )
-
-
-@computes("S-6")
-def numerical_methods_and_a_boundary() -> Outcome:
-    closed = effort.contour_is_closed(200)
-    return strongest(
-        {
-            "the random draws that the paper evaluates": judge(holds=distance_of_the_draw() > 0),
-            "every numerical method": judge(holds=not closed),
-        },
-        f"None of {len(drawn().q)} random configurations lies on the boundary, so they draw no"
-        " boundary curve. A contour of the same functions on a grid of 200 by 200 is one closed"
-        f" curve, and the area in it is off by {100 * effort.contour_error(200):.2g} %.",
     )
 
 
@@ -151,6 +137,7 @@ def theorems_that_bound_q() -> Outcome:
     )
 
 
+@computes("S-1.1")
 @computes("S-8")
 @computes("S-50")
 def boundary_of_the_workspace() -> Outcome:
@@ -162,17 +149,16 @@ def boundary_of_the_workspace() -> Outcome:
         bool(np.isclose(areas["enclosed"] + more, areas["union"], rtol=1e-6))
         for more in (0.0, areas["twice"])
     )
-    return strongest(
-        {
-            "the workspace in joint space": judge(holds=len(region.loops) == 1 and same),
-            "the workspace in the plane of the tool": judge(holds=whole, under=rest),
-        },
-        f"In joint space the boundary is {counted(len(region.loops), 'closed curve')} through"
+    in_joint_space = len(region.loops) == 1 and same
+    return Outcome(
+        judge(holds=in_joint_space and whole, under=in_joint_space and rest),
+        "It holds in joint space. There the boundary is"
+        f" {counted(len(region.loops), 'closed curve')} through"
         f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
         " complete decomposition finds them. Its image in the plane of the tool encloses"
         f" {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are reached; the rest,"
-        " reached in both postures, ends outside at the image of the singular line, which has to be"
-        " added.",
+        " reached in both postures, ends outside at the image of the singular line. For the"
+        " geometric workspace this line has to be added.",
     )
 
 
@@ -209,7 +195,8 @@ def safety_margin() -> Outcome:
     return Outcome(
         judge(holds=least_height(0.99) > 0, under=min(*heights, *apart) > 0),
         f"From scale {largest_scale().scale:.6f} down there is a margin. Least height of the tool"
-        f" above its limit and least gap of the links' bodies along the outline, by scale: {text}.",
+        " above its limit and least gap of the rebuilt bodies of the links along the outline, by"
+        f" scale: {text}.",
     )
 
 
@@ -245,6 +232,7 @@ def orthonormal_directions() -> Outcome:
     )
 
 
+@computes("E-3.1")
 @computes("S-11.1")
 def one_observer() -> Outcome:
     ends = ("a+n", "b+m")
@@ -255,6 +243,50 @@ def one_observer() -> Outcome:
         "Where no matrix stands, as in eq. (19), it holds. A vector behind a matrix is seen from"
         " its own first index: seen from a instead, eq. (15) fails. Once the matrix has turned it,"
         " all terms of an equation are seen from one frame: a in eq. (15), the base in eq. (25).",
+    )
+
+
+@computes("S-11.2")
+def convention_is_applied_throughout() -> Outcome:
+    later = [number for number in paper.OBSERVERS if number > SECTION_2]
+    sides = sorted(set(paper.OBSERVERS.values()))
+    labels = [name for text in paper.EQUATION_29.values() for name in re.findall(r"[xz]_\w+", text)]
+    two = all(re.fullmatch(r"[xz]_(\d+|min)_\d+", name) for name in labels)
+    return Outcome(
+        judge(holds=bool(later) and len(sides) == 1, under=two),
+        f"It holds of the two indices of a vector, for its start and its end: all {len(labels)}"
+        " lengths in eq. (29) have them. The observer, the third part of a label, is marked in"
+        f" eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the {' and on the '.join(sides)}"
+        f" of the symbol, and in {len(later) or 'no'} equation after Section 2.",
+    )
+
+
+SECTION_2: Final = 8
+"""The last equation of Section 2."""
+
+
+@computes("S-11.3")
+def letters_as_subscripts() -> Outcome:
+    names = {n for text in paper.THEOREM_1.values() for n in re.findall(r"[rR]_(\w+)", text)}
+    letters = sum(any(c.isalpha() for c in name) for name in names)
+    return Outcome(
+        judge(holds=letters > 0),
+        f"{letters} of {len(names)} labels of Theorem 1 have letters; those of the robot have"
+        " numbers.",
+    )
+
+
+@computes("S-11.4")
+def components_of_a_vector() -> Outcome:
+    lengths = [o for o in paper.OFFSETS if o.table in (3, 4)]
+    same = 0
+    for one in lengths:
+        axis, _, point = re.findall(r"[xz]|\d+", one.label)
+        same += bool(robot().point(point).at["xyz".index(axis)] == one.value)
+    return Outcome(
+        judge(holds=same == len(lengths)),
+        f"{same} of the {len(lengths)} lengths of Tables 3 and 4 are the components, of those"
+        " names, of the points' vectors.",
     )
 
 
@@ -273,14 +305,16 @@ def adjacent_links_suffice() -> Outcome:
     )
 
 
+@computes("S-9.1")
 @computes("S-13")
+@computes("S-16.1")
 def distance_of_points_and_of_links() -> Outcome:
     others = by_clearances().components[1:]
     overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
     apart = least_gap_in_home_region() > 0
     return Outcome(
         judge(holds=apart and not others, under=apart),
-        "In the region of the home pose it does: no bodies overlap in it. In the"
+        "In the region of the home pose it does: no rebuilt bodies overlap in it. In the"
         f" {len(others)} other regions that the clearances allow they do, at the centroids by"
         f" {min(overlaps):.2f} to {max(overlaps):.2f} cm. No path from home leads there (S-23).",
     )
@@ -295,24 +329,26 @@ def without_homogeneous_matrices() -> Outcome:
     block = sp.Matrix(sp.BlockMatrix([[turn, step], [sp.zeros(1, 3), sp.ones(1, 1)]]))
     same = sp.expand((block * sp.Matrix([*point, 1]))[:3, :] - (turn * point + step))
     products = {"R and r": len(turn), "the 4 by 4 matrix": len(block)}
-    joints = {len(pair_vector(robot(), pair).joints()) for pair in pairs()}
-    equal = same == sp.zeros(3, 1)
+    joints = {b.name: len(components(robot(), b).joints()) for b in robot().boundaries}
+    of_pairs = max(joints[pair.name] for pair in pairs())
+    far = [name for name, number in joints.items() if number > 1]
+    fewer = same == sp.zeros(3, 1) and len(turn) < len(block)
     vary = sum(not entry.is_number for entry in block[:3, :3])
     return strongest(
         {
             "against the full 4 by 4 matrix from the base": judge(
-                holds=equal and len(turn) < len(block) and joints == {1},
-                under=equal and len(turn) < len(block),
+                holds=fewer and not far, under=fewer and of_pairs == 1
             ),
             "against a 4 by 4 matrix whose constant row is not computed": judge(
                 holds=len(turn) < vary
             ),
         },
-        "Eq. (16) needs no 4 by 4 matrix and none from the base: with consecutive links each pair"
-        f" of the robot depends on {max(joints)} of {len(robot().joints)} joints, and a point costs"
-        f" {products['R and r']} products instead of {products['the 4 by 4 matrix']}. R and r hold"
-        " the twelve entries of the homogeneous matrix that vary: who leaves out its constant row"
-        " takes as many products.",
+        "For the pairs of points eq. (16) needs no 4 by 4 matrix and none from the base: with"
+        f" consecutive links each depends on {of_pairs} of {len(robot().joints)} joints, and a"
+        f" point costs {products['R and r']} products instead of {products['the 4 by 4 matrix']}."
+        f" {', '.join(far)} do not relate consecutive systems: they use r_{{0,3}} through"
+        " R_{0,2}, from the base, over both joints. If its constant row is skipped, the 4 by 4"
+        " matrix needs as many products.",
     )
 
 
@@ -341,7 +377,7 @@ def necessary_for_a_collision() -> Outcome:
     return strongest(
         {
             "the conditions for the chosen points to meet": judge(holds=seen and turned),
-            "the conditions for whole links to meet": judge(
+            "the conditions for whole links, with rebuilt bodies, to meet": judge(
                 holds=deep <= 0, under=least_gap_in_home_region() > 0
             ),
         },

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cache
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,17 +34,18 @@ from lizarraga2025.evidence.joint_region import (
     largest_scale,
     least_height,
     square,
+    within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import circle_roots, clearance, pair_vector
+from qbound import circle_roots, clearance, find_region, pair_vector
 from qbound.boundary.functions import closest_approach
 from qbound.geometry import polygon
 from qbound.geometry.polylines import self_crossings
 from qbound.measures import bodies, scaling
 from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.region import paper_rule, solve
+from qbound.region import Region, paper_rule, solve
 from qbound.region.problem import Problem, state
 from qbound.symbols import joint_symbols
 
@@ -140,10 +145,11 @@ def limits_are_respected() -> Outcome:
     kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
     q = square()
     inside = int(in_base_box(q[paper_rule.feasible(robot(), q)]).sum())
+    anyway = in_base_box(within_the_windows()).any()
     return strongest(
         {
             "three sides of one box round the base that the tool stays out of": judge(
-                holds=inside == 0
+                holds=inside == 0, constrains=bool(anyway)
             ),
             "three half-spaces, of which the caption of Figure 4 names one": judge(
                 holds=all(kept), under=areas[0] > 0
@@ -151,9 +157,10 @@ def limits_are_respected() -> Outcome:
         },
         "The selected region respects B7, the one that its caption names. B5 and B6 of the same"
         f" table are drawn in red and, as half-spaces, cut it: with B6 in force {areas[1]:.4f} of"
-        f" {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}. As the sides of a box"
-        f" from -15 to 15 cm whose top is B7 they ask for less: of {len(q) ** 2} configurations on"
-        f" a grid {inside or 'none'} in the region has the tool in it ({X_IN_CM}).",
+        f" {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f} ({X_IN_CM}). As the sides"
+        " of a box from -15 to 15 cm whose top is B7 they are kept, but nothing could violate that:"
+        f" of {len(q) ** 2} configurations on a grid {inside or 'none'} in the region has the tool"
+        f" in it, and by the windows of the pairs alone {'some have' if anyway else 'none has'}.",
     )
 
 
@@ -164,7 +171,9 @@ def _limited(walls: tuple[HalfSpace, ...]) -> Problem:
     return state(robot(), walls, ranges, [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")])
 
 
+@computes("S-9.2")
 @computes("S-20.2")
+@computes("S-20.4")
 def the_complete_workspace() -> Outcome:
     free = {name: _free_by_bodies_and_by_rule(arm) for name, arm in _robots().items()}
     same = {name: np.array_equal(*both) for name, both in free.items()}
@@ -172,7 +181,7 @@ def the_complete_workspace() -> Outcome:
     angle = {name: _angle_to_contact(arm) for name, arm in _robots().items()}
     return Outcome(
         judge(holds=same["printed"], under=same["corrected"] and same["symmetric"]),
-        f"Of {whole.size} configurations on a grid a check of the whole bodies frees"
+        f"Of {whole.size} configurations on a grid a check of the rebuilt bodies frees"
         f" {np.count_nonzero(whole)}. The windows and the tool's limit leave out"
         f" {np.count_nonzero(whole & ~rule)} of them, for one side stops {angle['printed']:.4f}°"
         f" early, and free {np.count_nonzero(rule & ~whole) or 'none'} of the others. With"
@@ -257,32 +266,58 @@ def _bound(label: str, q1: Floats) -> Floats:
 def several_regions() -> Outcome:
     from skimage.measure import label
 
-    points = by_clearances().components
+    points, near = by_clearances().components, by_small_clearances().components
     whole = int(label(bodies_allow(square(180)), connectivity=1).max())  # type: ignore[no-untyped-call]
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return strongest(
         {
-            "regions of the boundary functions": judge(holds=len(points) > 1),
+            "regions of the boundary functions": judge(
+                holds=min(len(points), len(near)) > 1, under=len(points) > 1
+            ),
             "regions of the whole links": judge(holds=whole > 1),
         },
-        f"By the clearances of the points there are {len(points)} ({areas} rad²). By the bodies of"
-        f" the links there is {whole}, on a grid of 180 by 180: in the others the bodies overlap.",
+        f"By the clearances of the points there are {len(points)} ({areas} rad²), with the d_min ="
+        f" {robot().required_distance(pairs()[0]):g} cm of the robot file, as the text prints none"
+        f" (E-11); with {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the"
+        f" rebuilt bodies of the links there is {whole}, on a grid of 180 by 180: in the others the"
+        " bodies overlap.",
     )
+
+
+SMALLEST: Final = 1e-4
+"""A distance of points, cm, that the printed offsets let no pair come to."""
+
+
+@cache
+def by_small_clearances() -> Region:
+    """Return the regions with a d_min that makes no wall of any pair."""
+    boundaries = (replace(b, clearance=SMALLEST) if b in pairs() else b for b in robot().boundaries)
+    return find_region(replace(robot(), boundaries=tuple(boundaries)))
 
 
 @computes("S-23")
+@computes("S-23.2")
 def other_regions_are_out_of_reach() -> Outcome:
     with_home = [c.contains_home for c in by_clearances().components]
+    near = len(by_small_clearances().components)
     loops = by_clearances().components[0].loops
     names = sorted({arc.boundary for loop in loops for arc in loop})
-    others = len(with_home) - 1
     return Outcome(
-        judge(holds=others > 0 and with_home == [True, *([False] * others)]),
+        judge(
+            holds=near == len(with_home) and _is_home_alone(with_home),
+            under=_is_home_alone(with_home),
+        ),
         "The regions are the connected pieces of what the clearances leave, with the d_min ="
         f" {robot().required_distance(pairs()[0]):g} cm of the robot file, as the text prints none;"
         f" {sum(with_home)} of {len(with_home)} contains home. It is bounded by {', '.join(names)},"
-        " so every way out of it crosses one. With d_min = 0 the pairs make no wall (E-11).",
+        f" so every way out of it crosses one. With {SMALLEST:g} cm the pairs make no wall, and"
+        f" there is {counted(near, 'region')} (S-22).",
     )
+
+
+def _is_home_alone(with_home: list[bool]) -> bool:
+    """Tell whether there are other regions than the first, which alone contains home."""
+    return with_home == [True, *([False] * (len(with_home) - 1))] and len(with_home) > 1
 
 
 @computes("S-23.1")
@@ -370,7 +405,8 @@ def contact_on_the_boundary() -> Outcome:
                 holds=worst["printed"] < 1e-6, under=worst["symmetric"] < 1e-6
             ),
         },
-        f"On {sum(contacts)} of the {len(contacts)} sides of the box of windows two bodies touch,"
+        f"On {sum(contacts)} of the {len(contacts)} sides of the box of windows two of the rebuilt"
+        " bodies touch,"
         " within the rounding of the printed offsets; for the unrounded shape on all. As printed,"
         f" one side stops {worst['printed']:.4f}° before the contact, with one digit corrected none"
         f" by more than {worst['corrected']:.4f}°.",

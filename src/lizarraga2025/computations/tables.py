@@ -21,9 +21,7 @@ from lizarraga2025.computations.bounds import (
     HalfSpaceBound,
     PairBound,
     half_space_bound,
-    is_lower_end,
     limit_of,
-    meets_at_the_other_root,
     pair_bound,
 )
 from lizarraga2025.computations.registry import computes, computes_each
@@ -49,7 +47,6 @@ from lizarraga2025.verdicts import (
     Outcome,
     Verdict,
     judge,
-    strongest,
     undetermined,
 )
 from qbound import HarmonicForm, circle_roots, clearance, components, pair_vector
@@ -99,14 +96,33 @@ def offsets() -> Outcome:
     )
 
 
-@computes_each({f"T-1.{number}": row[3] for number, row in enumerate(paper.TABLE_1, start=1)})
+@computes_each({f"T-1.{number}": row[3] for number, row in enumerate(paper.TABLE_1[:3], start=1)})
 def offset(label: str) -> Outcome:
-    _, values = symbolic_robot()
-    in_file = {str(symbol): value for symbol, value in values.items()}
+    return Outcome(judge(holds=_is_in_the_file(label)), _in_the_file(label))
+
+
+def _is_in_the_file(label: str) -> bool:
+    """Tell whether the robot file has a printed offset, and the tool's place depends on it."""
+    in_file = {str(symbol): value for symbol, value in symbolic_robot()[1].items()}
+    return in_file[label] == paper.offsets_in_cm()[label] and bool(_tool_uses()[label])
+
+
+def _in_the_file(label: str) -> str:
+    in_file = {str(symbol): value for symbol, value in symbolic_robot()[1].items()}
+    factor = _tool_uses()[label].replace("*", " ")
+    return f"{in_file[label]} cm in the robot file; its factor in the tool's place is {factor}."
+
+
+@computes("T-1.4")
+def offset_of_the_tool() -> Outcome:
+    _, _, words, label = paper.TABLE_1[3]
+    named = [int(number) for number in re.findall(r"joint (\d)", words)]
+    number = len(robot().joints)
+    exist = max(named) <= number
     return Outcome(
-        judge(holds=in_file[label] == paper.offsets_in_cm()[label] and bool(_tool_uses()[label])),
-        f"{in_file[label]} cm in the robot file; the tool's place has it with the factor"
-        f" {_tool_uses()[label].replace('*', ' ')}.",
+        judge(holds=exist and _is_in_the_file(label), corrected=_is_in_the_file(label)),
+        f"The row names joint {max(named)}; the robot has {number} joints, q_1 and q_2, and frame 3"
+        f" is that of the end effector, which Table 2 turns by no joint. {_in_the_file(label)}",
     )
 
 
@@ -300,35 +316,26 @@ def table_5() -> Outcome:
 @computes("T-5.1")
 def unit_of_the_floor() -> Outcome:
     height = {unit: paper.offsets_in_cm(mm_means=unit)["z_{min,1}"] for unit in ("mm", "cm")}
-    points = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
+    named = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
+    around = {unit: _corners_by_the_component(h) for unit, h in height.items()}
     return Outcome(
-        judge(holds=points["mm"] == 6, corrected=points["cm"] == 6),
-        f"At {height['cm']} cm the six bounds that Figure 4 names meet in {points['cm']} points. At"
-        f" {height['mm']:.3f} cm {_end_of_the_floor(height['mm'])}",
+        undetermined({unit: number == 6 for unit, number in around.items()}),
+        f"At {height['cm']} cm and at {height['mm']:.3f} cm the component β_{{7,3}} and the four"
+        f" sides that Figure 4 names close a region round home, with {around['cm']} and"
+        f" {around['mm']} corners. By the bounds as they stand in Table 6, without a turn added,"
+        f" they meet in {named['cm']} points and in {named['mm'] or 'none'}: in mm one corner lies"
+        " on β_{7,3,2} plus a turn, which a picture can show (F-4.2). The unit of all other lengths"
+        " speaks for cm, as in T-5.2, and the robot file takes cm.",
     )
 
 
-def _end_of_the_floor(height: float) -> str:
-    """Tell where β_{7,3,1} ends, and how often its component meets the box, with a lower floor."""
+def _corners_by_the_component(height: float) -> int:
+    """Count the corners of the box of windows cut by β_{7,3}, with the floor at a height, cm."""
     arm, box = _with_floor(height), paper_rule.box(robot())
     form = clearance(arm, arm.boundary("B7"))
     crossings = [q for joint in (0, 1) for q in _on_the_sides(form, box, joint)]
     corners = np.array(list(product(*zip(box.lower, box.upper, strict=True))))
-    kept = int((form(corners) > 0).sum())
-    z_01, z_12, x_12, x_23 = (
-        paper.offsets_in_cm()[label] for label in ("z_{0,1}", "z_{1,2}", "x_{1,2}", "x_{2,3}")
-    )
-    # Its inverse sine ends where the argument is 1, and q_1 + q_2 is 90°.
-    end = circle_roots(z_12, -x_12, x_23 - z_01 + height).q[1]
-    (on_top,) = (q for q in crossings if q[1] == box.upper[1])
-    bound = "β_{7,3,2} a turn on, not on" if form.gradient(on_top)[1] > 0 else "β_{7,3,1},"
-    return (
-        f"β_{{7,3,1}} ends at ({np.degrees(end):.2f}°, {90 - np.degrees(end):.2f}°), before the"
-        f" upper side of the box at {np.degrees(box.upper[1]):.2f}°. The component β_{{7,3}} as a"
-        f" whole meets the sides in {len(crossings)} points there too, and with {kept} corners of"
-        f" the box these are {len(crossings) + kept}; but the one on the upper side, at q_1 ="
-        f" {np.degrees(on_top[0]):.2f}°, lies on {bound} a bound of Table 6."
-    )
+    return len(crossings) + int((form(corners) > 0).sum())
 
 
 def _on_the_sides(form: HarmonicForm, box: paper_rule.Box, joint: int) -> list[Floats]:
@@ -422,11 +429,6 @@ def table_6() -> Outcome:
 ROWS = {f"T-6.{row}": paper.indices(name) for row, name in enumerate(paper.EQUATION_29, start=1)}
 """The indices i and j of each row of Table 6."""
 
-SURROUNDS: Final = "bounds between which the region lies"
-SEPARATES: Final = "a range that ends where a collision begins"
-RESPECTED: Final = "the range in which the wall is respected"
-"""The fair readings of a row, of a pair and of a wall, as words that complete "read as"."""
-
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] < 5})
 def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
@@ -436,29 +438,21 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
     as_printed = are_roots and _surrounds(ij[0], lower.plain, upper.plain)
     with_atan2 = _surrounds(ij[0], lower.value, upper.value)
     at_contact = upper.at_contact and lower.at_contact
-    met = upper.distance <= upper.allowed
-    right_digit = all(pair_bound(label, corrected_digit=True).meets for label in labels)
-    readings = {
-        SURROUNDS: judge(
-            holds=as_printed and (met or not at_contact),
-            constrains=at_contact,
-            under=with_atan2 and right_digit,
-        ),
-        SEPARATES: judge(
-            holds=as_printed and at_contact and met,
-            under=with_atan2 and right_digit,
-            corrected=not at_contact and all(map(meets_at_the_other_root, labels)),
-        ),
-    }
     text = f"From {degrees(lower.value)} to {degrees(upper.value)}, a full turn. "
     text += _ends_of_a_window(upper, lower)
     if not are_roots:
         text += f" These are the values with atan2; arctan gives {degrees(lower.plain)} and"
         text += f" {degrees(upper.plain)}, which are no roots."
-    if ij == (3, 3):
+    if ij == (3, 3):  # the row with a < 0 that arctan + π moves by a turn against atan2
         shifted = [degrees(bound.plain + np.pi) for bound in (lower, upper)]
         text += f" With arctan + π where a < 0 it is {shifted[0]} to {shifted[1]}, without home."
-    return strongest(readings, text)
+    return Outcome(
+        judge(
+            holds=as_printed and at_contact,
+            under=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
+        ),
+        text,
+    )
 
 
 def _surrounds(pair: int, low: float, high: float) -> bool:
@@ -474,12 +468,14 @@ def _ends_of_a_window(upper: PairBound, lower: PairBound) -> str:
         inside = next(q for q in copies if lower.value < q < upper.value)
         return (
             "The region lies in between, but no end cuts anything off: both are the root at which"
-            f" the points are {upper.distance:.2f} cm apart; they meet at {degrees(inside)}."
+            f" the points are {upper.distance:.2f} cm apart; they come closest at"
+            f" {degrees(inside)}. The condition is to ask for roots by eq. (38) and no more."
         )
-    text = "The region lies in between, and each end is the root at which the points meet"
+    text = "The region lies in between, and each end is the root next to the contact, where the"
+    text += f" points are {upper.distance:.4f} cm apart"
     if upper.distance <= upper.allowed:
-        return f"{text}."
-    return f"{text}, here to within {upper.distance:.2f} cm, for a digit is off (T-4.2)."
+        return f"{text}, within the rounding."
+    return f"{text}, for a digit is off (T-4.2)."
 
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] > 4})
@@ -492,26 +488,18 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
     q2 = lower.q[:, 1] + (np.arange(200)[:, None] + 0.5) / 200 * length
     values = form(np.stack([np.broadcast_to(upper.q[:, 0], q2.shape), q2], -1))
     negative = float((values < 0).mean())
-    readings = {
-        SURROUNDS: judge(
-            holds=are_roots and _region_is_between(lower, upper),
-            constrains=bool(length.max() < TURN - SMALL),
-        ),
-        RESPECTED: judge(
-            holds=are_roots and not negative,
-            corrected=bool((upper.slope <= 0).all()) and is_lower_end(f"beta_{{{i},{j},2}}"),
-        ),
-    }
+    are_bounds = are_roots and _region_is_between(lower, upper)
     text = limit_of(f"beta_{{{i},{j},2}}")
     text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1. There it"
     if np.ptp(length) < SMALL:
-        text += " is a full turn long, one root twice: the region lies in it, and so does any pose,"
-        text += f" a turn on or back. The component is negative in {100 * negative:.0f} % of it."
+        text += " is a full turn long, one root twice: the region lies in it, and so does any pose"
+        text += f" plus or minus a turn. The component is negative in {100 * negative:.0f} % of it."
+        text += " The condition is to ask for roots, by the recipe of rows 1 to 8, and no more."
     else:
         text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
         text += f" {np.degrees(length.max()):.0f}°; the region lies in it, and the component is"
         text += f" negative in {100 * negative:.0f} % of it."
-    return strongest(readings, text)
+    return Outcome(judge(holds=are_bounds and not negative, under=are_bounds), text)
 
 
 def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:

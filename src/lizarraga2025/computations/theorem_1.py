@@ -214,34 +214,6 @@ def rotation_taken_out() -> Outcome:
     )
 
 
-@computes("E-3.1")
-def no_observer_named() -> Outcome:
-    lefts = {15: ENDS, **{number: step[0] for number, step in STEPS.items()}, 25: ENDS}
-    seen = {
-        number: [o for o in ("0", "a", "b") if is_identity(number, left, o)]
-        for number, left in lefts.items()
-    }
-    one_frame = {
-        number: any(is_identity(number, left, o, o) for o in ("0", "a", "b"))
-        for number, left in lefts.items()
-    }
-    from_base = ", ".join(f"({number})" for number, names in seen.items() if names == ["0"])
-    from_a = ", ".join(f"({number})" for number, names in seen.items() if names == ["a"])
-    return strongest(
-        {
-            "the terms of an equation, once turned, are seen from one frame": judge(
-                holds=all(seen.values())
-            ),
-            "every vector of an equation is seen from one frame before it is turned": judge(
-                holds=all(one_frame.values())
-            ),
-        },
-        "In eqs. (15) and (19) to (25) the terms have one observer, with which each is an identity:"
-        f" frame a in {from_a}, the base in {from_base}. A vector under a rotation matrix is seen"
-        " from the frame that the matrix transforms.",
-    )
-
-
 def _between(g: General) -> Any:
     return g.chain.position(*ENDS, "0")
 

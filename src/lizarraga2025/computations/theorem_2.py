@@ -144,9 +144,41 @@ def bounds_as_printed() -> Outcome:
         _judge(printed),
         f"It is {plain(printed.length)} long, a full turn or more: with arctan or atan2, every"
         " solution has a copy in it, full turns away, for some k, and so has every other angle."
+        f" With atan2 both of its ends are roots too, and {_between(printed)} more copies of these"
+        " two roots lie strictly between, so for a fixed k it bounds nothing that they do not bound"
+        " closer (E-39)."
         f" Smallest case: cos q = 0 has the interval from {low} to {high}. Without the -2π of the"
         f" second line, and with {ATAN2}, it is {plain(arc.length)} long and exactly the set where"
         f" a cos q + b sin q ≥ c{_proved()}. {_one_sign_off()}",
+    )
+
+
+def _between(printed: Interval) -> int:
+    """Count the copies of the roots at the two ends that lie strictly between, for cos q = 0."""
+    ends = (printed.lower, printed.upper)
+    apart = {end: printed.copies(end, smallest(), inside=True) for end in ends}
+    is_one_root = printed.copies(printed.upper, smallest()) - apart[printed.upper] == 2
+    return apart[printed.upper] if is_one_root else sum(apart.values())
+
+
+def _as_a_motion(printed: Interval) -> Verdict:
+    """Judge that a joint stays between the ends, for a fixed k, while it keeps off their roots.
+
+    The ends have to be roots, and no other copy of them lies between.
+    """
+    import sympy as sp
+
+    theta, alpha = symbols()
+
+    def are_roots(turned: sympy.Expr) -> bool:
+        """Tell whether both ends solve the equation if θ is off by some angle."""
+        ends = (end.subs(theta, turned) for end in (printed.lower, printed.upper))
+        return all(sp.expand_trig(sp.cos(end) - sp.cos(alpha)) == 0 for end in ends)
+
+    alone = _between(printed) == 0
+    return judge(
+        holds=alone and are_roots(sp.Integer(0)) and are_roots(sp.pi),
+        under=alone and are_roots(sp.Integer(0)),
     )
 
 
@@ -289,8 +321,8 @@ def inverse_cosine() -> Outcome:
         },
         "These are the solutions at which a cos q + b sin q falls. Those at which it rises have the"
         f" other sign, for the cosine is even: cos q = 0 has q = {plain(q)} too, which would need"
-        f" k = {needed}. One sign of a converted text decides: the + of eq. (38) and of Table 6"
-        " speaks for + and a choice of root, so the step is taken to hold for that choice.",
+        f" k = {needed}. All hangs on one sign of a converted text. Eq. (38) and Table 6 have the"
+        " same +. We therefore read it as a deliberate choice of one root.",
     )
 
 
@@ -325,14 +357,19 @@ def one_root() -> Outcome:
 def interval_between_roots() -> Outcome:
     theta, alpha = symbols()
     printed, at = interval(39), smallest()
-    between = [printed.copies(theta + sign * alpha, at, inside=True) for sign in (1, -1)]
-    return Outcome(
-        _judge(printed),
-        f"It is {plain(printed.length)} long: every solution has a copy in it, full turns away, for"
-        " some k, and so has every other angle. Its ends are two copies of the falling root, with"
-        f" {between[0]} more between them, so of a motion with q counted on the real line it says"
-        f" more: one that keeps off that root stays inside. {between[1]} copy of the rising root"
-        " lies between, and there the sign of a cos q + b sin q - c changes.",
+    rising = printed.copies(theta - alpha, at, inside=True)
+    return strongest(
+        {
+            "k fixed: a joint that moves continuously and never reaches the roots at the ends": (
+                _as_a_motion(printed)
+            ),
+            "for every solution some k": _judge(printed),
+        },
+        f"It is {plain(printed.length)} long. With {ATAN2} its ends are two copies of the falling"
+        f" root, and {_between(printed) or 'no other'} copy of it lies between. A joint that moves"
+        f" continuously and never reaches that root therefore stays inside. {rising} copy of the"
+        " rising root lies between, and there the sign of a cos q + b sin q - c changes. With k"
+        " free, every solution has a copy in it, full turns away, and so has every other angle.",
     )
 
 
@@ -381,7 +418,7 @@ def theorem_as_printed() -> Outcome:
         f" one out. For cos q ≥ 0 the lengths are: {lengths}; the cosine is positive on"
         f" {positive}°. The restated theorem has {len(theorem_2())} steps,"
         f" {sum(theorem_2().values())} of them identities checked by computer algebra."
-        f" {_one_sign_off()}",
+        f" With atan2 both ends are roots (E-31). {_one_sign_off()}",
     )
 
 

@@ -57,7 +57,7 @@ def largest_scale(centre: str = "area") -> SafeScale:
     """Return the largest safe scale of the polygon about either centroid."""
     p = vertices()
     about = polygon.centroid(p) if centre == "area" else p.mean(axis=0)
-    return scaling.largest_safe_scale(p, about, [floor()])
+    return scaling.largest_safe_scale(p, about, floor()[None])
 
 
 def least_height(factor: float) -> float:
@@ -123,6 +123,12 @@ def square(n: int = 360) -> Floats:
     """Return the middles of an n by n grid of one turn of both joints, rad, shape (n, n, 2)."""
     middles = (np.arange(n) + 0.5) * (2 * np.pi / n) - np.pi
     return np.stack(np.meshgrid(middles, middles, indexing="ij"), axis=-1)
+
+
+def within_the_windows() -> Floats:
+    """Return the configurations of `square` that the windows of the point pairs leave, rad."""
+    box, q = paper_rule.box(robot()), square()
+    return np.asarray(q[((box.lower <= q) & (q <= box.upper)).all(axis=-1)])
 
 
 @cache

@@ -40,11 +40,6 @@ class Sides:
     rest: float
 
     @property
-    def agree(self) -> bool:
-        """Whether the pieces are the window, up to the rounding of the print."""
-        return self.apart <= self.allowed and self.rest <= self.allowed
-
-    @property
     def apart(self) -> float:
         """The larger difference of two ends."""
         return max(abs(x - y) for x, y in zip(self.ends, self.window, strict=True))

@@ -37,6 +37,11 @@ PLANE = [0, 2]
 """x and z of a place."""
 
 
+def opposite(order: Sequence[int]) -> tuple[int, ...]:
+    """Return the sequence through the points across the hexagon: point 4 for point 1, and so on."""
+    return tuple((i + 3) % 6 for i in order)
+
+
 def path_through(
     order: Sequence[int], factor: float | None = None, of: Robot | None = None
 ) -> Traversal:

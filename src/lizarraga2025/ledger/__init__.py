@@ -2,5 +2,6 @@
 
 `entries` reads what each says (the files in ``statements``), `claims` joins this with what its
 function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `errata` what
-an erratum would say; `cite` tells how to cite it, in the signs of `latex`.
+an erratum would say; `cite` tells how to cite it, in the signs of `latex`, with the `state` of the
+repository.
 """

@@ -11,7 +11,8 @@ from typing import Any, Final
 
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.latex import escaped
-from lizarraga2025.recorded import file_stem
+from lizarraga2025.ledger.state import state
+from lizarraga2025.recorded import file_stem, sentence
 from qbound import __version__
 
 YEAR: Final = 2026
@@ -48,13 +49,23 @@ TITLE = "qbound: feasible joint and geometric workspaces of robots through bound
 
 
 def package() -> str:
-    """Return the BibTeX entry of this version of the package."""
-    return f"""@software{{qbound,
-  author  = {{{{qbound maintainers}}}},
-  title   = {{{TITLE}}},
-  version = {{{__version__}}},
-  year    = {{{YEAR}}}
-}}"""
+    """Return the BibTeX entry of this state of the package; `swhid` is of biblatex-software."""
+    fields = {
+        "author": "{qbound maintainers}",
+        "title": TITLE,
+        "version": __version__,
+        "year": str(YEAR),
+    }
+    if (here := state()) is not None:
+        fields["note"] = here.text[0].upper() + here.text[1:]
+        fields |= {"swhid": here.swhid} if here.swhid else {}
+    lines = ",\n".join(f"  {name:<7} = {{{value}}}" for name, value in fields.items())
+    return f"@software{{qbound,\n{lines}\n}}"
+
+
+def _version(number: str = __version__) -> str:
+    """Return what a citation calls this package: its version, and the commit where it is known."""
+    return f"qbound {number}" + ("" if (here := state()) is None else f", {here.text}")
 
 
 def entry(claim: Claim) -> str:
@@ -62,23 +73,24 @@ def entry(claim: Claim) -> str:
     return f"""@misc{{qbound-{claim.id},
   author       = {{{{qbound maintainers}}}},
   title        = {{{{What holds, entry {claim.id}: {escaped(claim.where)}}}}},
-  howpublished = {{qbound {__version__}, {escaped(page())}\\#{claim.anchor}}},
+  howpublished = {{{_version()}, {escaped(page())}\\#{claim.anchor}}},
   year         = {{{YEAR}}},
   note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""
 
 
 def result(recorded: Mapping[str, Any]) -> str:
-    """Return the BibTeX entry of a recorded result: value, error, robots, version, place."""
+    """Return the BibTeX entry of a recorded result: what it is, value, error, robots, state."""
     robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in recorded["robots"].items())
     unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
     error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
     about = [recorded["reference"], RULES[recorded["rule"]], f"Robots: {robots}" if robots else ""]
-    words = [f"{value_text(recorded['value'])}{unit}{error}", *filter(None, about)]
+    value = f"{value_text(recorded['value'])}{unit}{error}"
+    words = [sentence(recorded["id"]).removesuffix("."), value, *filter(None, about)]
     return f"""@misc{{qbound-{anchor(recorded["id"])},
   author       = {{{{qbound maintainers}}}},
   title        = {{{{Result {escaped(recorded["id"])}}}}},
-  howpublished = {{qbound {recorded["version"]}, results.html\\#{anchor(recorded["id"])}}},
+  howpublished = {{{_version(recorded["version"])}, results.html\\#{anchor(recorded["id"])}}},
   year         = {{{YEAR}}},
   note         = {{{escaped(". ".join(words))}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""

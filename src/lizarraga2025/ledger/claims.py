@@ -14,7 +14,7 @@ from lizarraga2025.ledger.entries import Entry, Evidence, entries
 from lizarraga2025.results import write_json
 from lizarraga2025.verdicts import VERDICTS, Verdict
 
-SCHEMA: Final = "qbound/claims/2"
+SCHEMA: Final = "qbound/claims/3"
 KEYS: Final = (
     "id",
     "kind",
@@ -63,7 +63,7 @@ def from_content(content: Mapping[str, Any]) -> Claim:
 
 @dataclass(frozen=True)
 class Count:
-    """How many entries have a verdict, and on how many findings they rest."""
+    """How many entries have a verdict, and on how many findings they rest (`findings`)."""
 
     entries: int
     findings: int
@@ -74,10 +74,15 @@ def counts(ledger: Iterable[Claim]) -> dict[Verdict, Count]:
 
     A finding that entries with different verdicts share counts once for each of these verdicts.
     """
-    by_verdict: dict[Verdict, list[str]] = {verdict: [] for verdict in VERDICTS}
+    by_verdict: dict[Verdict, list[Claim]] = {verdict: [] for verdict in VERDICTS}
     for one in ledger:
-        by_verdict[one.verdict].append(one.finding)
-    return {v: Count(len(named), len(set(named))) for v, named in by_verdict.items()}
+        by_verdict[one.verdict].append(one)
+    return {v: Count(len(named), len(findings(named))) for v, named in by_verdict.items()}
+
+
+def findings(ledger: Iterable[Claim]) -> set[str]:
+    """Return the findings on which entries rest; what is given is none."""
+    return {one.finding for one in ledger if one.kind != "given"}
 
 
 def identifiers() -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from typing import Any, Final, Literal, get_args
 
-Kind = Literal["equation", "bound", "table", "figure", "sentence"]
+Kind = Literal["equation", "bound", "table", "figure", "sentence", "given"]
 
 KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
 FILES: Final = ("equations", "bounds", "tables", "figures", "sentences")
@@ -38,7 +38,8 @@ class Entry:
     id : str
         ``E-34``, ``B-2.1.2`` (the bound ``beta_{2,1,2}``), ``T-4.2`` (a row), ``F-4``, ``S-12``.
     kind : str
-        One of `KINDS`.
+        One of `KINDS`. What is ``given``, a definition or a number of the robot, is no finding:
+        only broken mathematics could violate it.
     where : str
         Its place in the paper, such as "eq. (34), proof of Theorem 2".
     says : str

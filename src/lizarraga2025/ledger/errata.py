@@ -23,8 +23,8 @@ def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
     """Return what a second printing would change: the entries of each part, by the one that leads.
 
     They are misprints, refuted statements, statements that say nothing where another would, and
-    conditions that ``errata.toml`` would put into print. A part is a finding; a row of
-    Table 6 that changes is a part of its own, with its bounds.
+    conditions that a `change` would put into print. A part is a finding; a row of Table 6 that
+    changes is a part of its own, with its bounds.
     """
     parts: dict[str, list[Claim]] = {}
     for one in ledger:
@@ -38,12 +38,12 @@ def _is_erratum(one: Claim) -> bool:
         return True
     if one.verdict == "true but says nothing":
         return bool(one.corrected)
-    return one.verdict == "confirmed with a condition" and one.finding in _typed()
+    return one.verdict == "confirmed with a condition" and change(one.finding) is not None
 
 
 def _part(one: Claim) -> str:
     rows = {_row(label) for label in paper.TABLE_6 if one.id in (_bound(label), _row(label))}
-    return rows.pop() if rows and one.verdict == "misprint" else one.finding
+    return rows.pop() if rows and _of_table_6(one.finding) else one.finding
 
 
 def _leader(part: str, entries: Sequence[Claim]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from lizarraga2025.ledger import cite, errata
-from lizarraga2025.ledger.claims import Claim
+from lizarraga2025.ledger.claims import Claim, findings
 from lizarraga2025.ledger.entries import KINDS
 from lizarraga2025.recorded import file_stem
 from lizarraga2025.verdicts import VERDICTS
@@ -30,7 +30,7 @@ def ledger_table(ledger: Sequence[Claim]) -> str:
     return (
         f'<div class="ledger">\n{_controls()}\n<table class="ledger-table">\n'
         f"<caption>The ledger: {len(ledger)} statements of the paper,"
-        f" {len(by_finding)} findings.</caption>\n"
+        f" {len(findings(ledger))} findings.</caption>\n"
         f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
     )
 

@@ -57,7 +57,7 @@ class Witnesses:
         gaps = pair.gaps(places)
         at, form = np.unravel_index(gaps.argmin(), gaps.shape)
         nearest, farthest = places[at], places[gaps.min(axis=1).argmax()]
-        found = cls(nearest, int(form), float(gaps[at, form]))
+        found = cls(nearest, int(form), pair.gap(nearest, int(form)))
         return replace(
             found,
             touching=nearest if _touches(pair, nearest) else None,

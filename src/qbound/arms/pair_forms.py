@@ -7,6 +7,7 @@ change is left out; what rounding leaves of it stays in the constant, as a ball.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -79,10 +80,22 @@ class PairForms:
     def gaps(self, q: Floats) -> Floats:
         """Return the distances between the balls' surfaces, shape (N, n) to (N, m).
 
-        Negative by the depth where balls overlap; length.
+        Negative by the depth where balls overlap; length. To search with: see `gap`.
         """
         d = self.distances
         return np.asarray(np.sqrt(np.maximum(self.values(q) + d * d, 0)) - d)
+
+    def gap(self, q: Floats, k: int) -> float:
+        """Return the distance between the surfaces of two balls at one configuration; length.
+
+        It is right to the last digits. In floats (`gaps`) that of two balls with one middle is off
+        by the square root of rounding, because the terms of the squared distance cancel.
+        """
+        with precision(BITS):
+            place = np.array([ball(x) for x in q.tolist()], dtype=object)
+            d = ball(self.distances[k])
+            squared = float(np.ravel(balls(self.forms[[k]](place)))[0] + d * d)
+        return math.sqrt(max(squared, 0.0)) - float(self.distances[k])
 
     def exact(self, q: Floats) -> list[arb]:
         """Enclose the value of every form at one configuration, which counts as it is written."""

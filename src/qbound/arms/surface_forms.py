@@ -30,6 +30,10 @@ Ints = NDArray[np.intp]
 ON_FORM: Final = 1e-12
 """Value of a form, relative to its size, at which a place is on it: Newton ends in rounding."""
 
+TIED: Final = 1e-9
+"""Difference below which the order of functions decides: rounding would, and does so anew on each
+kind of processor."""
+
 BLOCK: Final = 4096
 """Places of which all functions are looked at at a time."""
 
@@ -79,11 +83,14 @@ class SurfaceForms:
         return np.column_stack([values, *columns])
 
     def least(self, q: Floats) -> tuple[Ints, Floats]:
-        """Return the function of the least value by its size at each place, and that value."""
+        """Return the function of the least value by its size at each place, and that value.
+
+        Of functions that are equal there but for rounding it is the first.
+        """
         which, least = np.empty(len(q), dtype=np.intp), np.empty(len(q))
         for start in range(0, len(q), BLOCK):
             values = self.relative(q[start : start + BLOCK])
-            which[start : start + BLOCK] = values.argmin(axis=1)
+            which[start : start + BLOCK] = first_least(values, ON_FORM)
             least[start : start + BLOCK] = values.min(axis=1)
         return which, least
 
@@ -187,6 +194,16 @@ class SurfaceForms:
     def _monomials(self, q: Floats) -> Floats:
         a, b, c = (basis(kind, q[:, j]) for j, kind in enumerate(self.forms.kinds))
         return np.asarray(np.einsum("ni,nj,nk->nijk", a, b, c).reshape(len(q), 27))
+
+
+def first_least(values: Floats, tied: float) -> Ints:
+    """Return the first column of each row that is no further above the least than `tied`."""
+    return np.asarray((values <= values.min(axis=1, keepdims=True) + tied).argmax(axis=1))
+
+
+def settled(values: Floats) -> Floats:
+    """Return values with 0 in place of what may be rounding alone, whose sign means nothing."""
+    return np.where(np.abs(values) <= ON_FORM, 0.0, values)
 
 
 @dataclass(frozen=True)

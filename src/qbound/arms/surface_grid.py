@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arms.surface_forms import SurfaceForms
+from qbound.arms.surface_forms import SurfaceForms, settled
 
 Floats = NDArray[np.float64]
 
@@ -51,4 +51,4 @@ def grid_values(forms: SurfaceForms, grid: list[Floats]) -> tuple[SurfaceForms, 
             q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
             found = forms.relative(q.reshape(-1, 3), np.flatnonzero(which)).min(axis=1)
             values[part] = found.reshape(q.shape[:3])
-    return forms, values
+    return forms, settled(values)

@@ -15,7 +15,7 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arms.surface_forms import BLOCK, ON_FORM, SurfaceForms
+from qbound.arms.surface_forms import BLOCK, ON_FORM, TIED, SurfaceForms
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -212,8 +212,8 @@ def _onto_some(
 ) -> tuple[Floats, Ints, Bools]:
     """Put places onto those of some functions where nothing is violated.
 
-    The nearest such place counts, and one on the first function before one on others: it is what
-    lies between them.
+    The nearest such place counts, of equally near ones the first, and one on the first function
+    before one on others: it is what lies between them.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def _onto_some(
             wanted = known[here][:, chosen]
             moved, found = forms.onto(start[here], wanted, held[here], step)
             away = np.linalg.norm((moved - start[here]) / step, axis=1) + FAR * (0 not in chosen)
-            better = found & (away < best[here])
+            better = found & (away < best[here] - TIED)
             better[better] = forms.least(moved[better])[1] >= -VIOLATED
             at = here[better]
             best[at], place[at], sets[at, :size] = away[better], moved[better], wanted[better]

@@ -18,7 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arms.links import link_pair
-from qbound.arms.surface_forms import BLOCK, Axis, SurfaceForms, axis_of, surface_forms
+from qbound.arms.surface_forms import (
+    BLOCK,
+    TIED,
+    Axis,
+    SurfaceForms,
+    axis_of,
+    first_least,
+    settled,
+    surface_forms,
+)
 from qbound.arms.surface_grid import grid_values
 from qbound.arms.surface_mesh import Mesh, refined
 from qbound.extras import require
@@ -276,11 +285,11 @@ def _first_roots(forms: SurfaceForms, within: Floats, beyond: Floats) -> tuple[F
     part, which = np.empty(len(within)), np.empty(len(within), dtype=np.intp)
     for start in range(0, len(within), BLOCK):
         rows = slice(start, start + BLOCK)
-        a, b = forms.relative(within[rows]), forms.relative(beyond[rows])
-        falls = b < 0
-        root = np.divide(np.maximum(a, 0), np.maximum(a, 0) - b, out=np.ones_like(a), where=falls)
-        root = np.where(falls, root, 2.0)
-        which[rows] = root.argmin(axis=1)
+        a, b = (settled(forms.relative(ends[rows])) for ends in (within, beyond))
+        a = np.maximum(a, 0)
+        root = np.divide(a, a - b, out=np.ones_like(a), where=b < 0)
+        root = np.where(b <= 0, root, 2.0)
+        which[rows] = first_least(root, TIED)
         part[rows] = np.minimum(root.min(axis=1), 1.0)
     return within + part[:, None] * (beyond - within), which
 

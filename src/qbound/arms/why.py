@@ -7,7 +7,6 @@ held, prove that there is none. What none of these decides is not decided.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
@@ -23,18 +22,18 @@ from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
-from qbound.model.robot import Parallelogram, Robot
-from qbound.model.robotfile import parse_robot, robot_text
+from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, certify
+from qbound.proofs.certify import Certificate, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
 from qbound.proofs.paving import Paving
-from qbound.proofs.proved_region import Unproved, prove_region, proved_component
-from qbound.proofs.verdict import Verdict
+from qbound.proofs.proved_region import prove_region, proved_component
+from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Region, find_region, violated
 
 Floats = NDArray[np.float64]
@@ -121,6 +120,11 @@ class Why:
     tried: tuple[str, ...] = field(default=())
 
     @property
+    def no_certificate(self) -> str:
+        """Why no answer about this robot has a certificate, in a sentence; empty where one can."""
+        return no_certificate(self.robot)
+
+    @property
     def differing(self) -> list[int]:
         """Joints in which the two ends differ, by index."""
         return differing(self.ends)
@@ -160,8 +164,8 @@ def why(
     Notes
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
-    and a paving that separates with one of "no path". An arm with a parallelogram has none, since
-    certificates do not know it: paths of it are found by pavings alone.
+    and a paving that separates with one of "no path". An arm that certificates cannot hold has none
+    (`Why.no_certificate` says why): its paths are found by pavings alone.
 
     Examples
     --------
@@ -182,7 +186,7 @@ def why(
     ('separated', None, 'proved')
     """
     text, _ = robot_text(source)
-    robot = parse_robot(tomllib.loads(text))
+    robot = load_robot(source)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
@@ -270,16 +274,6 @@ def differing(ends: Floats) -> list[int]:
     return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
 
 
-def _certifiable(robot: Robot) -> bool:
-    """Tell whether certificates know every type of joint of a robot."""
-    return not any(isinstance(joint, Parallelogram) for joint in robot.joints)
-
-
-def _of_bodies(robot: Robot) -> bool:
-    """Tell whether a boundary is about bodies."""
-    return any(bounds_bodies(boundary) for boundary in robot.used)
-
-
 # --- an end that violates something ---------------------------------------------------------------
 
 
@@ -288,7 +282,7 @@ def _infeasible(
 ) -> Why:
     """Certify the worst of what is violated."""
     refuted = None
-    if _certifiable(robot):
+    if not no_certificate(robot):
         point = statements.points_of(robot, ends)[bad[0][0]]
         certificate = certify(text, statements.box(point, point))
         refuted = certificate if certificate.verdict is Verdict.REFUTED else None
@@ -303,7 +297,7 @@ def _separated(asked: _Asked) -> Why | str:
     if parted is None:
         return _said_of_separations(asked.robot)
     proved = None
-    if _certifiable(asked.robot):
+    if not no_certificate(asked.robot):
         ranges = [_widest(block) for block in parted.blocks]
         certificate = certify_no_path(asked.text, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
@@ -312,6 +306,11 @@ def _separated(asked: _Asked) -> Why | str:
 
 def _widest(block: Block) -> BlockedRange:
     return max(block.ranges, key=lambda each: each.high - each.low)
+
+
+def _of_bodies(robot: Robot) -> bool:
+    """Tell whether a boundary is about bodies."""
+    return any(bounds_bodies(boundary) for boundary in robot.used)
 
 
 def _said_of_separations(robot: Robot) -> str:
@@ -324,10 +323,9 @@ def _said_of_separations(robot: Robot) -> str:
 
 def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
-    if not _certifiable(asked.robot):
-        return (
-            "no path was searched for: certificates know no parallelogram, and would not prove it"
-        )
+    if no_certificate(asked.robot):
+        reason = no_certificate(asked.robot)
+        return f"no path was searched for, because none could be proved: {reason}"
     if asked.seems_separated:
         return ""
     start, goal = asked.ends
@@ -341,7 +339,7 @@ def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
-    if not _certifiable(asked.robot):
+    if no_certificate(asked.robot):
         if held is None:
             return None
         least = float(least_margins(asked.robot, path)[1].min())
@@ -418,7 +416,7 @@ def _by_region(asked: _Asked) -> Why | str:
 
 def _for_file(asked: _Asked) -> Certificate | None:
     """Return a certificate that two ends are separated, where a paving of few cells gives one."""
-    if not _certifiable(asked.robot) or _of_bodies(asked.robot):
+    if no_certificate(asked.robot) or _of_bodies(asked.robot):
         return None
     start, goal = asked.ends[:, asked.moving]
     found = connection(asked.problem, start, goal, FEW_CELLS)
@@ -460,7 +458,7 @@ def _paved(asked: _Asked) -> Why | str:
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
-    if not _certifiable(asked.robot) or _of_bodies(asked.robot):
+    if no_certificate(asked.robot) or _of_bodies(asked.robot):
         return None
     certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None

@@ -23,7 +23,7 @@ from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, ref
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 
 Floats = NDArray[np.float64]
-Found = tuple[str, Features]
+Found = tuple[str, Features, tuple[int, int]]
 
 
 def body_contacts(
@@ -83,10 +83,12 @@ def _of_pair(
 ) -> Iterator[Found]:
     """Yield the features of the parts of two bodies, seen from the one nearer to the base."""
     swapped = robot.depth(bodies[0].frame) > robot.depth(bodies[1].frame)
-    near, far = (_cores(robot, body) for body in (bodies[::-1] if swapped else bodies))
+    ordered = bodies[::-1] if swapped else bodies
+    near, far = (_cores(robot, body) for body in ordered)
+    depths = robot.depth(ordered[0].frame), robot.depth(ordered[1].frame)
     for (one, radius), (other, other_radius) in product(near, far):
         keep = radius + other_radius + boundary.clearance
-        yield boundary.name, features(one, other, moved, keep, swapped=swapped)
+        yield boundary.name, features(one, other, moved, keep, swapped=swapped), depths
 
 
 def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Found]:
@@ -96,7 +98,7 @@ def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Fo
     level = wall.offset - off * float(wall.normal @ robot.plane.normal)
     for core, radius in _cores(robot, body):
         for one in heights(core, moved, normal, level + radius):
-            yield wall.name, one
+            yield wall.name, one, (0, robot.depth(body.frame))
 
 
 def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:
@@ -104,6 +106,6 @@ def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:
     parts = flat_parts(robot, body)
     called = [f"part {i}, " if len(parts) > 1 else "" for i in range(len(parts))]
     return [
-        (Core.of(corners, name), radius)
+        (Core.of(corners, name, body.name), radius)
         for (corners, radius), name in zip(parts, called, strict=True)
     ]

@@ -13,18 +13,22 @@ each in the first degree.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.errors import Sizes, coefficient_errors
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Tables = tuple[Floats, Floats, Floats, Floats]
+"""Forms, sides, and the errors of both."""
 
 SIDES = 4
 """Most side conditions of one feature: two ends of an edge and two neighbours of a corner."""
@@ -59,13 +63,15 @@ class Pose(NamedTuple):
     """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
 
     A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared``
-    ``|at|^2``, which a product of tables would not show to be of first degree.
+    ``|at|^2``, which a product of tables would not show to be of first degree. ``sizes`` is what
+    the lengths of its coefficients are rounded beside.
     """
 
     turn: Floats  # (2, 2, 3, 3)
     at: Floats  # (2, 3, 3)
     back: Floats  # (2, 3, 3)
     squared: Floats  # (3, 3)
+    sizes: Sizes
 
 
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -73,7 +79,13 @@ QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 def pose(moves: Sequence[Move]) -> Pose:
     """Return the pose that some joints, one after the other, give the last one's frame."""
-    found = Pose(_constant(np.eye(2)), *(_constant(np.zeros(n)) for n in (2, 2, ())))
+    held = [move for move in moves if move.free is None]
+    lengths = [np.hypot(*move.origin) for move in moves]
+    lengths += [abs(move.value) * np.hypot(*move.along) for move in held]
+    slides = frozenset(move.free for move in moves if move.free is not None and not move.turn)
+    sizes = Sizes(float(sum(lengths)), slides, len(moves))
+    at, back, squared = (_constant(np.zeros(n)) for n in (2, 2, ()))
+    found = Pose(_constant(np.eye(2)), at, back, squared, sizes)
     for move in moves:
         found = _shifted(found, move.origin)
         if move.free is None:
@@ -107,6 +119,7 @@ def _shifted(now: Pose, by: Floats) -> Pose:
         now.at + np.einsum("abij,b->aij", now.turn, by),
         now.back + _constant(by),
         now.squared + 2 * np.tensordot(by, now.back, axes=1) + _constant(by @ by),
+        now.sizes,
     )
 
 
@@ -136,10 +149,19 @@ def _slid(now: Pose, move: Move, joint: int) -> Pose:
         now.at + _times(ahead, joint, 1),
         now.back + _times(_constant(move.along), joint, 1),
         now.squared + _times(product, joint, 1) + _times(length, joint, 2),
+        now.sizes,
     )
 
 
 # --- features -------------------------------------------------------------------------------------
+
+
+def anticlockwise(corners: NDArray[Any]) -> list[int]:
+    """Return the numbers of the corners of a core, shape (m, 2), in the order of its corners."""
+    numbers = list(range(len(corners)))
+    x, y = (corners - corners[0]).T
+    clockwise = len(corners) > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
+    return numbers[::-1] if clockwise else numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,36 +174,62 @@ class Core:
         Anticlockwise; one is a point, two a segment, which has an edge on either side.
     corner_names, edge_names : tuple of str
         The edge of a corner's number begins there.
+    body : str
+        Whose part it is.
     """
 
     corners: Floats
     corner_names: tuple[str, ...]
     edge_names: tuple[str, ...]
+    body: str = ""
 
     @classmethod
-    def of(cls, corners: Floats, part: str = "") -> Core:
+    def of(cls, corners: Floats, part: str = "", body: str = "") -> Core:
         """Make it of corners either way round; they keep their numbers, and so do the edges."""
-        m = len(corners)
-        x, y = (corners - corners[0]).T
-        clockwise = m > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
-        order = list(range(m))[::-1] if clockwise else list(range(m))
+        m, order = len(corners), anticlockwise(corners)
+        clockwise = order[0] > order[-1]
         edges = [(k - 1) % m for k in order] if clockwise else order
         return cls(
             corners[order],
             tuple(f"{part}corner {k}" for k in order),
             tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
+            body,
         )
 
+    @cached_property
     def edges(self) -> tuple[Floats, Floats]:
-        """Return the directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
+        """The directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
         ahead = np.roll(self.corners, -1, axis=0) - self.corners
         lengths = np.hypot(*ahead.T)
         count = len(self.edge_names)
         return ahead[:count] / lengths[:count, None], lengths[:count]
 
+    @cached_property
+    def disc(self) -> tuple[Floats, float]:
+        """The middle, shape (2,), and the radius of a disc about it."""
+        middle = (self.corners.min(axis=0) + self.corners.max(axis=0)) / 2
+        return middle, float(np.hypot(*(self.corners - middle).T).max())
+
+    @cached_property
+    def size(self) -> float:
+        """The largest coordinate of a corner."""
+        return float(np.abs(self.corners).max())
+
+    @cached_property
+    def doubts(self) -> Floats:
+        """How far the direction of each edge may be off, (e,): a short one far out most."""
+        return ROUNDING * (0.5 + self.size / self.edges[1])
+
+    @cached_property
+    def doubts_about(self) -> Floats:
+        """The larger one of the doubts of each corner's edges, shape (m,)."""
+        doubts = self.doubts
+        return np.maximum(doubts, np.roll(doubts, 1)) if len(doubts) else np.zeros(1)
+
+    @cached_property
     def steps(self) -> Floats:
-        """Return the directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
-        along, _ = self.edges()
+        """The directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
+        along, _ = self.edges
         if not len(along):
             return np.zeros((len(self.corners), 0, 2))
         return np.stack([along, -np.roll(along, 1, axis=0)], axis=1)
@@ -206,6 +254,20 @@ class Features:
         of corners.
     names : tuple of str
         What touches, the first body's first: "corner 2 on edge 3".
+    sizes : Sizes
+        The lengths that go into them.
+    relative : ndarray, shape (f,)
+        Error of each form's coefficients beside these lengths (`errors.coefficient_errors`).
+    side_relative : ndarray, shape (f, 4)
+        The same of the side conditions; 0 of those missing.
+    curves : tuple
+        One a feature; features with the same one have the same form.
+    keys : tuple of tuple
+        One a side condition: the event at which it vanishes on the form, see `_handovers`.
+    ends : tuple of tuple
+        The pair of corners, or the two pairs that an edge and a corner end at.
+    discs : ndarray, shape (3, 3), optional
+        A form: where it is positive discs about both cores are apart, and so are the cores.
     """
 
     forms: Floats
@@ -214,6 +276,13 @@ class Features:
     touching: Bools
     clause: Ints
     names: tuple[str, ...]
+    sizes: Sizes
+    relative: Floats
+    side_relative: Floats
+    curves: tuple[Hashable, ...]
+    keys: tuple[tuple[Hashable, ...], ...]
+    ends: tuple[tuple[Hashable, ...], ...]
+    discs: Floats | None = None
 
 
 def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool) -> Features:
@@ -231,27 +300,106 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
     ahead = moved.at + np.einsum("abij,kb->kaij", moved.turn, other.corners)
     back = np.einsum("baij,kb->kaij", moved.turn, one.corners) - moved.back
     there, here = moved.turn, np.swapaxes(moved.turn, 0, 1)
-    found = [_edges(one, other, ahead, there, keep), _edges(other, one, back, here, keep)]
+    sizes = moved.sizes.further(one.size + other.size + keep)
+    found = [
+        _edges(one, other, ahead, there, keep, sizes),
+        _edges(other, one, back, here, keep, sizes),
+    ]
     names = [(a, b) for a in one.edge_names for b in other.corner_names]
     names += [(b, a) for a in other.edge_names for b in one.corner_names]
     (e, k), (j, i) = ((len(x.edge_names), len(y.corners)) for x, y in ((one, other), (other, one)))
     clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
     of_edges = len(names)
     if keep > 0 or max(i, k) < 3:
-        found.append(_corners(one, other, ahead, back, moved, keep))
+        found.append(_corners(one, other, ahead, back, moved, keep, sizes))
         names += [(a, b) for a in one.corner_names for b in other.corner_names]
         clause = np.concatenate([clause, e + j + np.arange(i * k)])
     corners = np.arange(len(names)) >= of_edges
     # What is kept at no distance from a point forbids nothing, unless it has an inside.
     forbids = keep > 0 or i + k > 3
+    forms, sides, relative, side_relative = map(np.concatenate, zip(*found, strict=True))
     return Features(
-        forms=np.concatenate([forms for forms, _ in found]),
-        sides=np.concatenate([sides for _, sides in found]),
+        forms=forms,
+        sides=sides,
         corners=corners,
         touching=(~corners | (keep > 0)) & forbids,
         clause=clause,
         names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
+        sizes=sizes,
+        relative=relative,
+        side_relative=side_relative,
+        **_handovers(one, other, keep, len(names)),
+        discs=_discs(one, other, moved, keep),
     )
+
+
+def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
+    """Return the squared distance of the middles of two cores, less that at which discs meet."""
+    (p, one_reach), (u, other_reach) = one.disc, other.disc
+    ahead = moved.at + np.einsum("abij,b->aij", moved.turn, u)
+    squared = moved.squared - 2 * np.einsum("a,aij->ij", p, ahead)
+    squared = squared + 2 * np.einsum("a,aij->ij", u, moved.back)
+    squared[0, 0] += p @ p + u @ u - (one_reach + other_reach + keep) ** 2
+    return squared
+
+
+def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any]:
+    """Name the curves of features, and the events at which a contact goes over to another feature.
+
+    A contact of an edge and a corner goes over to one of two corners where the corner leaves the
+    edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
+    vanish there with a side condition of each, so the event has one name. Corners are named by
+    their bodies and places, because parts of one outline share some. Corners of two bodies are
+    not, even at one place: doubles do not tell that they are exactly there.
+    """
+    p, u = ([(core.body, *corner) for corner in core.corners.tolist()] for core in (one, other))
+    curves: list[Hashable] = []
+    keys: list[tuple[Hashable, ...]] = []
+    ends: list[tuple[Hashable, ...]] = []
+
+    def end(side: int, edge: Hashable, a: Hashable, b: Hashable) -> Hashable:
+        """Name the event at which corner b of the other core leaves an edge at its end a."""
+        if not keep:
+            return ("end", None, a, b) if side == 0 else ("end", None, b, a)
+        return ("end", side, edge, a, b)
+
+    def edges_of(places: list[Any], core: Core) -> list[tuple[Any, Any]]:
+        n = len(places)
+        return [(places[k], places[(k + 1) % n]) for k in range(len(core.edge_names))]
+
+    def around(edges: list[tuple[Any, Any]], k: int) -> list[tuple[Any, Any]]:
+        return [edges[k], edges[k - 1]] if edges else []
+
+    mine, theirs = edges_of(p, one), edges_of(u, other)
+    for side, (own, near, far) in enumerate(((mine, theirs, u), (theirs, mine, p))):
+        for a, b in own:
+            edge = frozenset((a, b))
+            for k, corner in enumerate(far):
+                curves.append(("edge", side, a, b, corner, keep))
+                pairs = [(x, corner) if side == 0 else (corner, x) for x in (a, b)]
+                ends.append(tuple((*pair, keep) for pair in pairs))
+                parallel = (
+                    frozenset(((side, edge), (1 - side, frozenset(f)))) for f in around(near, k)
+                )
+                keys.append(
+                    (
+                        end(side, edge, a, corner),
+                        end(side, edge, b, corner),
+                        *(("parallel", f, keep) for f in parallel),
+                    )
+                )
+    if len(curves) < count:
+        for i, a in enumerate(p):
+            for k, b in enumerate(u):
+                curves.append(("corners", a, b, keep))
+                ends.append(((a, b, keep), (a, b, keep)))
+                keys.append(
+                    (
+                        *(end(0, frozenset(f), a, b) for f in around(mine, i)),
+                        *(end(1, frozenset(f), b, a) for f in around(theirs, k)),
+                    )
+                )
+    return {"curves": tuple(curves), "keys": tuple(keys), "ends": tuple(ends)}
 
 
 def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[Features]:
@@ -259,19 +407,23 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
     seen = moved.at + np.einsum("abij,kb->kaij", moved.turn, core.corners)
     forms = np.einsum("a,kaij->kij", normal, seen)
     forms[..., 0, 0] -= level
-    forms = _settled(forms, max(float(np.abs(seen).max()), abs(level)))
-    for form, name in zip(forms, core.corner_names, strict=True):
+    sizes = moved.sizes.further(core.size + abs(level))
+    errors = np.full(1, sizes.relative(1)), np.zeros((1, SIDES))
+    places = core.corners.tolist()
+    for form, name, corner in zip(forms, core.corner_names, places, strict=True):
         free = np.zeros((1, SIDES, 3, 3))
         free[..., 0, 0] = 1.0
         no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
-        yield Features(form[None], free, no, ~no, clause, (name,))
+        curve = "height", core.body, *corner, *normal.tolist(), level
+        own = ((curve,), ((),), ((),))
+        yield Features(form[None], free, no, ~no, clause, (name,), sizes, *errors, *own)
 
 
 def _edges(
-    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float
-) -> tuple[Floats, Floats]:
+    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float, sizes: Sizes
+) -> Tables:
     """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
-    along, lengths = mine.edges()
+    along, lengths = mine.edges
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
     starts = mine.corners[: len(along)]
     height = np.einsum("ea,kaij->ekij", normal, seen)
@@ -280,34 +432,44 @@ def _edges(
     beside[..., 0, 0] -= (along * starts).sum(axis=1)[:, None]
     rest = -beside
     rest[..., 0, 0] += lengths[:, None]
-    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps())
-    sides = np.concatenate([beside[:, :, None], rest[:, :, None], rims], axis=2)
-    size = max(float(np.abs(seen).max()), float(np.abs(mine.corners).max()))
-    sides[:, :, :2] = _settled(sides[:, :, :2], size)
-    return _settled(height.reshape(-1, 3, 3), size), _padded(_settled(sides, 1.0))
+    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps)
+    sides = np.concatenate([np.stack([beside, rest], axis=2), rims], axis=2)
+    relative = np.zeros((*height.shape[:2], SIDES))
+    relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
+    both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
+    relative[:, :, 2 : sides.shape[2]] = both[:, :, None]
+    return (
+        height.reshape(-1, 3, 3),
+        _padded(sides),
+        relative[:, :, 0].ravel(),
+        relative.reshape(-1, SIDES),
+    )
 
 
 def _corners(
-    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float
-) -> tuple[Floats, Floats]:
+    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float, sizes: Sizes
+) -> Tables:
     """Forms and sides of each corner of one core with each of the other."""
     p, u = one.corners, other.corners
     squared = moved.squared - 2 * np.einsum("pa,kaij->pkij", p, ahead)
     squared = squared + 2 * np.einsum("ka,aij->kij", u, moved.back)
     squared[..., 0, 0] += (p**2).sum(axis=1)[:, None] + (u**2).sum(axis=1) - keep**2
-    mine, theirs = one.steps(), other.steps()
+    mine, theirs = one.steps, other.steps
     behind = -np.einsum("pna,kaij->pknij", mine, ahead)
     behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
     beyond = -np.einsum("kna,paij->pknij", theirs, back)
     beyond[..., 0, 0] += np.einsum("kna,ka->kn", theirs, u)
-    size = max(float(np.abs(x).max()) for x in (ahead, back, p, u))
-    sides = _settled(np.concatenate([behind, beyond], axis=2), size)
-    return _settled(squared.reshape(-1, 3, 3), size**2), _padded(sides)
-
-
-def _settled(table: Floats, size: float) -> Floats:
-    """Take for zero what rounding leaves where terms of this size cancel."""
-    return np.where(np.abs(table) > ROUNDING * size, table, 0.0)
+    sides = np.concatenate([behind, beyond], axis=2)
+    relative = np.zeros((*squared.shape[:2], SIDES))
+    own, all_sides = behind.shape[2], sides.shape[2]
+    relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
+    relative[:, :, own:all_sides] = (other.doubts_about + sizes.relative(1))[:, None]
+    return (
+        squared.reshape(-1, 3, 3),
+        _padded(sides),
+        np.full(p.shape[0] * u.shape[0], sizes.relative(2)),
+        relative.reshape(-1, SIDES),
+    )
 
 
 def _padded(sides: Floats) -> Floats:
@@ -328,7 +490,7 @@ class Contacts:
 
     Attributes
     ----------
-    forms, sides, corners, clause, names
+    forms, sides, corners, clause, names, relative, side_relative
         As in `Features`; clauses and pairs are numbered through, ascending.
     pair : ndarray of int, shape (f,)
         Which pair of convex parts.
@@ -336,6 +498,21 @@ class Contacts:
         Whether it can bound what the pair forbids; else it only parts.
     boundaries : tuple of str
         The boundary of each pair of parts.
+    curves : ndarray of int, shape (f,)
+        Features with one number have one form.
+    keys : ndarray of int, shape (f, 4)
+        Events at which a side condition vanishes on the form: those with one number are one event
+        where they are at one place. Even: an end of an edge; odd: two edges that are parallel; -1
+        for a condition that is none.
+    ends : ndarray of int, shape (f, 2)
+        Pairs of corners, numbered: that of two corners twice, those at both ends of an edge; -1 for
+        a half-space.
+    discs : ndarray, shape (pairs, 3, 3)
+        Where a form is positive, discs about both parts are apart; of a half-space it is -1.
+    lengths : ndarray, shape (f,)
+        Sum of the lengths that go into each feature.
+    slides : frozenset of int
+        Which of the two free joints slide.
     """
 
     forms: Floats
@@ -346,6 +523,37 @@ class Contacts:
     pair: Ints
     touching: Bools
     boundaries: tuple[str, ...]
+    relative: Floats
+    side_relative: Floats
+    lengths: Floats
+    slides: frozenset[int]
+    curves: Ints
+    keys: Ints
+    ends: Ints
+    discs: Floats
+
+    @cached_property
+    def sharp(self) -> Bools:
+        """Whether nothing is kept between the cores of a feature's pair, shape (f,)."""
+        rounded = np.zeros(self.pairs, dtype=np.bool_)
+        rounded[self.pair[self.corners & self.touching]] = True
+        return np.asarray(~rounded[self.pair])
+
+    @cached_property
+    def errors(self) -> Floats:
+        """How far each coefficient of a form may be from the exact one, shape (f, 3, 3).
+
+        The exact form is taken times the positive number that makes it as large.
+        """
+        return coefficient_errors(1 + self.corners, self.lengths, self.relative, self.slides)
+
+    @cached_property
+    def side_errors(self) -> Floats:
+        """The same of the side conditions, shape (f, 4, 3, 3); 0 of those missing."""
+        degree = np.ones((len(self.corners), SIDES), dtype=np.int64)
+        degree[~self.corners, 2:] = 0  # a product of two directions
+        lengths = self.lengths[:, None]
+        return coefficient_errors(degree, lengths, self.side_relative, self.slides)
 
     @property
     def pairs(self) -> int:
@@ -365,15 +573,43 @@ class Contacts:
             (np.cumsum(kept) - 1)[self.pair[rows]],
             self.touching[rows],
             tuple(name for name in self.boundaries if name not in dropped),
+            self.relative[rows],
+            self.side_relative[rows],
+            self.lengths[rows],
+            self.slides,
+            self.curves[rows],
+            self.keys[rows],
+            self.ends[rows],
+            self.discs[kept],
         )
 
 
-def gathered(found: Sequence[tuple[str, Features]]) -> Contacts:
-    """Gather the features of pairs of parts, each with its boundary."""
+def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts:
+    """Gather the features of pairs of parts, each with its boundary and the depths of its frames."""
     if not found:
         return NO_CONTACTS
+    frames = [depths for _, _, depths in found]
+    found = [item[:2] for item in found]
     clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows in found)])
-    return Contacts(
+    numbers: dict[Hashable, int] = {}
+    curves = [
+        numbers.setdefault((at, curve), len(numbers))
+        for at, (_, rows) in zip(frames, found, strict=True)
+        for curve in rows.curves
+    ]
+    keys = np.full((len(curves), SIDES), -1)
+    ends = np.full((len(curves), 2), -1)
+    names: dict[Hashable, int] = {}
+    k = 0
+    for at, (_, rows) in zip(frames, found, strict=True):
+        for own, pairs in zip(rows.keys, rows.ends, strict=True):
+            for side, key in enumerate(own):
+                number = names.setdefault((at, key), len(names))
+                keys[k, side] = 2 * number + (key[0] == "parallel")
+            for end, name in enumerate(pairs):
+                ends[k, end] = numbers.setdefault((at, name), len(numbers))
+            k += 1
+    made = Contacts(
         np.concatenate([rows.forms for _, rows in found]),
         np.concatenate([rows.sides for _, rows in found]),
         np.concatenate([rows.corners for _, rows in found]),
@@ -382,8 +618,23 @@ def gathered(found: Sequence[tuple[str, Features]]) -> Contacts:
         np.concatenate([np.full(len(rows.forms), k) for k, (_, rows) in enumerate(found)]),
         np.concatenate([rows.touching for _, rows in found]),
         tuple(boundary for boundary, _ in found),
+        np.concatenate([rows.relative for _, rows in found]),
+        np.concatenate([rows.side_relative for _, rows in found]),
+        np.concatenate([np.full(len(rows.forms), rows.sizes.length) for _, rows in found]),
+        frozenset().union(*(rows.sizes.slides for _, rows in found)),
+        np.array(curves),
+        keys,
+        ends,
+        np.array([_NEVER if rows.discs is None else rows.discs for _, rows in found]),
     )
+    # What terms that cancel leave is rounding.
+    forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)
+    sides = np.where(np.abs(made.sides) > made.side_errors, made.sides, 0.0)
+    return replace(made, forms=forms, sides=sides)
 
+
+_NEVER = np.zeros((3, 3))
+_NEVER[0, 0] = -1.0
 
 NO_CONTACTS = Contacts(
     np.zeros((0, 3, 3)),
@@ -394,5 +645,13 @@ NO_CONTACTS = Contacts(
     np.zeros(0, dtype=np.int64),
     np.zeros(0, dtype=np.bool_),
     (),
+    np.zeros(0),
+    np.zeros((0, SIDES)),
+    np.zeros(0),
+    frozenset(),
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, SIDES), dtype=np.int64),
+    np.zeros((0, 2), dtype=np.int64),
+    np.zeros((0, 3, 3)),
 )
 """Of a robot without bodies that keep apart."""

@@ -17,7 +17,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.functions import clearance
+from qbound.boundary.functions import clearance, term_size
 from qbound.boundary.lengths import Denominator, denominators, lengths
 from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
 from qbound.boundary.parts import bounds_bodies
@@ -298,6 +298,7 @@ def compiled(
     ranges: Sequence[Range],
     limits: Sequence[tuple[str, str]],
     spans: Sequence[Range] | None = None,
+    terms: Sequence[float] = (),
 ) -> Evaluator:
     r"""Compile forms and the limits of their joints.
 
@@ -314,6 +315,9 @@ def compiled(
         Names of both ends of each range.
     spans : sequence of (low, high) or None, optional
         Where the values of each joint will lie, mostly; default: the ranges.
+    terms : sequence of float, optional
+        Size of what each of the first forms was summed of (`term_size`), if its coefficients do not
+        show it: what cancels leaves its rounding.
     """
     bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
     monomials, place = occurring(forms.coefficients, forms.kinds, [j for j, *_ in bounded])
@@ -325,6 +329,8 @@ def compiled(
     for k, (j, low, high) in enumerate(bounded):
         q, at = 1 + monomials.factors.index((j, VALUE)), len(names) + 2 * k
         table[at : at + 2, [0, q]] = [[-low, 1], [high, -1]]
+    sizes = np.zeros(len(table))
+    sizes[: len(terms)] = terms
     reach = [1.0 if ends is None else max(map(abs, ends)) for ends in ranges]
     return Evaluator(
         names=(*names, *(name for j, *_ in bounded for name in limits[j])),
@@ -332,7 +338,7 @@ def compiled(
         monomials=monomials,
         reach=reaches(forms.kinds, spans or ranges),
         distance=np.array([*distances, *[None] * 2 * len(bounded)], dtype=float),
-        rounding=ROUNDING * np.abs(table) @ monomials.sizes(reach),
+        rounding=ROUNDING * np.maximum(np.abs(table) @ monomials.sizes(reach), sizes),
     )
 
 
@@ -382,6 +388,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
         [joint.limits if limits else None for joint in robot.joints],
         [limit_names(joint.name) for joint in robot.joints],
         [joint.limits for joint in robot.joints],
+        [term_size(robot, boundary) for boundary in formed],
     )
     if len(formed) == len(robot.used):
         return forms

@@ -150,6 +150,32 @@ def margin_of(robot: Robot, boundary: Boundary, value: ArrayLike) -> Array:
     return np.asarray(np.sqrt(np.maximum(value + d_min**2, 0.0)) - d_min)
 
 
+def term_size(robot: Robot, boundary: Boundary) -> float:
+    """Bound the terms that a boundary's clearance form is the sum of: rounding is a part of them.
+
+    Terms may cancel, and then the form's coefficients say nothing of it: 0.3^2 - (0.1 + 0.2)^2 is
+    not 0 in floats. A length; of a pair, whose form is a squared distance, a length squared.
+
+    Raises
+    ------
+    ValueError
+        If the boundary is about bodies.
+    """
+    if isinstance(boundary, Pair):
+        _, near, far = _near_far(robot, boundary)
+        observer, rest = near.frame, float(np.linalg.norm(near.at))
+    elif isinstance(boundary, HalfSpace) and boundary.body is None:
+        far, observer = robot.point(boundary.point), robot.base
+        rest = abs(boundary.offset) + far.radius
+    else:
+        raise ValueError(_of_bodies(boundary))
+    steps = [joint for _, joint in _steps(robot, far, observer)]
+    links = sum(float(np.linalg.norm(joint.origin)) + joint.farthest for joint in steps)
+    size = links + float(np.linalg.norm(far.at)) + rest
+    d_min = robot.least_distance(boundary)
+    return size if d_min is None else size**2 + d_min**2
+
+
 def moving_joints(robot: Robot, boundary: Boundary) -> tuple[int, ...]:
     """Return the joints that change a boundary's clearance; none: it holds everywhere or nowhere.
 

@@ -65,6 +65,8 @@ STOPPED, NO_READER = 130, 141
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0 done or proved, 1 infeasible or refuted, 2 bad input, 3 undecided.
 
+    Only `check` says 3 for refuted, and 2 for anything else, as `check.py` does alone.
+
     Without arguments it is the command of this process, which does nothing else (`_process`).
     """
     with plain_terminal():

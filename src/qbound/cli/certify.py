@@ -20,7 +20,14 @@ from qbound.cli.values import box, held
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
-from qbound.proofs.certify import Bracket, Certificate, bracket_scale, certify, certify_region
+from qbound.proofs.certify import (
+    Bracket,
+    Certificate,
+    bracket_scale,
+    certify,
+    certify_region,
+    no_certificate,
+)
 from qbound.proofs.points import as_decimal, read_points
 from qbound.proofs.reports import certificate_lines, folded
 
@@ -35,6 +42,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "certify",
         help="prove that every configuration of a set is safe",
+        description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
+        "Certificates take robots of at most 6 joints, none of them a parallelogram.",
         epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
         "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
@@ -72,6 +81,8 @@ def run(options: argparse.Namespace) -> int:
         _check_folder(options.with_checker)
     text, _ = robot_text(options.robot)
     robot = parse_robot(tomllib.loads(text))
+    if no_certificate(robot):
+        raise ValueError(no_certificate(robot))
     margin = as_decimal("--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
@@ -166,7 +177,7 @@ def _how_to_check(options: argparse.Namespace, answer: Certificate) -> Iterator[
     """Say how to run the checker that was put beside the certificate."""
     if options.with_checker is not None and answer.text:
         certificate, checker = (shlex.quote(str(path)) for path in _beside(options))
-        yield f"to check it with Python alone: python {checker} {certificate}"
+        yield f"to check it with Python alone: python -I {checker} {certificate}"
 
 
 def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:

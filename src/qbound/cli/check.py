@@ -1,4 +1,4 @@
-"""``qbound check``: check a certificate, as ``python check.py`` does."""
+"""``qbound check``: check a certificate, as ``python -I check.py`` does."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "check",
         help="check a certificate in exact arithmetic",
-        epilog="exit status: 0 proved, 1 refuted, 2 neither\n"
+        epilog="exit status: 0 proved, 3 refuted, 2 anything else\n"
         "example: qbound check cert.json minervabot-v2",
     )
     parser.add_argument("certificate")
@@ -29,7 +29,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Check; 0 proved, 1 refuted, 2 neither."""
+    """Check; 0 proved, 3 refuted, 2 anything else, as `check.py`: 1 is no answer."""
     if options.robot is not None and options.sha256 is not None:
         raise ValueError("a robot and --sha256: give one of them")
     if "" in (options.robot, options.sha256):
@@ -43,15 +43,15 @@ def run(options: argparse.Namespace) -> int:
         answer = check.check(data, pin)
     except ValueError as error:
         say(*folded(f"not proved: {error}"))
-        return 2
+        return check.NO_ANSWER
     second = _second_answer(data) if options.arb else None
     first = "refuted" if answer.refuted else "proved"
     if second not in (None, first):
         differ = f"the two checkers differ; check.py: {first}; python-flint: {second}"
         say(*folded(f"not proved: {differ}"))
-        return 2
+        return check.NO_ANSWER
     say(*folded(answer.said), *([] if second is None else [f"python-flint: {second}"]))
-    return 1 if answer.refuted else 0
+    return check.REFUTED if answer.refuted else check.PROVED
 
 
 def _second_answer(data: bytes) -> str:

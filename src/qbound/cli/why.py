@@ -28,7 +28,8 @@ def add_to(commands: Any) -> None:
         description="Can the arm get from START to GOAL? First: does either violate a boundary?\n"
         "Then: can one joint not pass a range, whatever the others do? Then a path is searched\n"
         "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
-        "others held, a paving is made.",
+        "others held, a paving is made. Of more than 6 joints, or a parallelogram, the answer\n"
+        "has no certificate.",
         epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
         "example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
@@ -77,6 +78,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
     """Say what the certificate is, or that there is none."""
+    if found.certificate is None and found.no_certificate:
+        yield f"no certificate: {found.no_certificate}"
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:

@@ -330,11 +330,11 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
     if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
         return None
     vertices = np.array([vertex.q for vertex in home.vertices])
-    forms = [region.problem.forms[i] for i in range(len(region.problem.names))]
-    names = (*region.problem.names, *region.problem.contacts.boundaries)
+    problem = region.problem
+    names = (*problem.names, *problem.contacts.boundaries)
     try:
         centre = polygon.centroid(vertices)
-        largest = largest_safe_scale(vertices, centre, forms, contacts=region.problem.contacts)
+        largest = largest_safe_scale(vertices, centre, problem.forms, contacts=problem.contacts)
     except (ValueError, ArithmeticError):  # its centroid is not safe, or an edge lies in a wall
         return None
     return {

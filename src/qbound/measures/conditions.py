@@ -8,14 +8,13 @@ this only compares, it turns lower bounds of the forms into proofs, and safe ste
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
-from qbound.forms.factors import Kind
 from qbound.forms.harmonic import HarmonicForm
 
 Floats = NDArray[np.float64]
@@ -39,6 +38,17 @@ class Conditions:
     clauses: Ints
     starts: Ints
 
+    @cached_property
+    def clause_of(self) -> Ints:
+        """The clause of each row, shape (rows,)."""
+        sizes = np.diff(np.append(self.clauses, len(self.forms.coefficients)))
+        return np.repeat(np.arange(len(self.clauses)), sizes)
+
+    @cached_property
+    def condition_of(self) -> Ints:
+        """The condition of each row, shape (rows,)."""
+        return np.searchsorted(self.starts, self.clause_of, side="right") - 1
+
     def __len__(self) -> int:
         """Return the number of conditions: of forms, then of pairs of parts."""
         return len(self.starts)
@@ -60,27 +70,33 @@ class Conditions:
         together = np.maximum.reduceat(least, self.starts, axis=1)
         condition = together.argmin(axis=1)
         value = together[np.arange(len(values)), condition, None]
-        sizes = np.diff(np.append(self.clauses, values.shape[1]))
-        clause = np.repeat(np.arange(len(self.clauses)), sizes)
-        of = np.searchsorted(self.starts, clause, side="right") - 1
-        decides = (values == value) & (least[:, clause] == value) & (of == condition[:, None])
+        decides = (values == value) & (least[:, self.clause_of] == value)
+        decides &= self.condition_of == condition[:, None]
         return condition, decides.argmax(axis=1)
 
 
-def conditions(
-    forms: Sequence[HarmonicForm], contacts: Contacts = NO_CONTACTS, kinds: Sequence[Kind] = ()
-) -> Conditions:
+def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditions:
     """Gather conditions: one a form, in their order, then one for each pair of convex parts.
 
     Parameters
     ----------
-    forms : sequence of HarmonicForm of two joints
+    forms : HarmonicForm, shape (m,)
+        Of two joints, as `Problem.forms` has them. A stack of none still says what the joints are,
+        which the tables of the contacts do not.
     contacts : Contacts, optional
-        Features of bodies that are to keep apart.
-    kinds : sequence of two kinds of joints, optional
-        Wanted where there is no form; default two turns.
+        Features of bodies that are to keep apart, of the same two joints.
+
+    Raises
+    ------
+    ValueError
+        If the forms are no stack, or not of two joints.
     """
-    own = np.array([form.coefficients for form in forms], dtype=float).reshape(-1, 3, 3)
+    if len(forms.kinds) != 2 or len(forms.shape) != 1:
+        raise ValueError(
+            f"wanted a stack of forms of two joints, such as Problem.forms; found the shape"
+            f" {forms.shape} and {len(forms.kinds)} joints"
+        )
+    own = forms.coefficients
     m, features = len(own), len(contacts.forms)
     # Of edges no side conditions are needed; of corners a constant 1 stands where there is none.
     silent = (contacts.sides.reshape(-1, SIDES, 9) == np.eye(9)[0]).all(axis=-1)
@@ -92,6 +108,5 @@ def conditions(
     clause = np.concatenate([np.arange(m), m + contacts.clause])[of[order]]
     condition = np.concatenate([np.arange(m), m + contacts.pair])[of[order]]
     first = np.flatnonzero(np.diff(clause, prepend=-1))
-    found = forms[0].kinds if forms else (tuple(kinds) or ("revolute", "revolute"))
     starts = np.flatnonzero(np.diff(condition[first], prepend=-1))
-    return Conditions(HarmonicForm(rows[order], found), first, starts)
+    return Conditions(HarmonicForm(rows[order], forms.kinds), first, starts)

@@ -25,6 +25,15 @@ Floats = NDArray[np.float64]
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""
 
+HALVINGS = 48
+"""Times that a piece of an arc is halved: at a place without a slope bounds never hold."""
+
+FLAT = 1e-12
+"""Part of a squared distance by which a place that is nearer may be missed: it is rounding."""
+
+THINNEST = 2.0**-30
+"""Part of a length that is taken across it where an arc is straight: more than rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Moments:
@@ -85,7 +94,9 @@ def along(arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
     -------
     q, dq : ndarray, shape (k - 1, m, 2)
         Where the normal of the chord at the fraction meets the arc, rad or length, and the
-        derivative of that point by the fraction. A fold is as smooth as any other place.
+        derivative of that point by the fraction. A fold is as smooth as any other place. Of a
+        joint that turns and one that slides the normal is that in the arc's own extent, because
+        rad and a length have no common measure.
     """
     ends = arc.points[:-1], arc.points[1:]
     pieces = len(ends[0])
@@ -100,7 +111,8 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
     form = arc.form
     if form is None:  # a limit is straight
         return q, np.broadcast_to(chord, q.shape)
-    normal = chord[..., ::-1] * np.array([-1.0, 1.0])
+    one, other = _extent(arc)
+    normal = chord[..., ::-1] * np.array([-one / other, other / one])
     for _ in range(3):
         value, gradient = _value_and_gradient(form, q)
         rise = _quotient(value, _dot(gradient, normal))
@@ -108,6 +120,17 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
     _, gradient = _value_and_gradient(form, q)
     turn = _quotient(_dot(gradient, chord), _dot(gradient, normal))
     return q, chord - turn[..., None] * normal
+
+
+def _extent(arc: Arc) -> Floats:
+    """Return a length or an angle for each joint to measure an arc in, shape (2,), above zero.
+
+    Joints of one kind have one measure; else it is how far the arc reaches along each.
+    """
+    if arc.form is None or len(set(arc.form.kinds)) == 1:
+        return np.ones(2)
+    extent = np.ptp(arc.points, axis=0)
+    return np.asarray(np.maximum(extent, THINNEST * (extent.max() or 1.0)))
 
 
 def _value_and_gradient(form: HarmonicForm, q: Floats) -> tuple[Floats, Floats]:
@@ -276,19 +299,100 @@ def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> It
 
 
 def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
-    """Return the nearest of the arc's points, and where the distance stops falling between two."""
+    """Return the nearest of the arc's points, and every place that may be nearer between two.
+
+    Pieces between two points are halved until the distance has at most one turning point on each,
+    as its second derivative shows, or none that is below the limit or the nearest one found.
+    """
     gaps = np.hypot(*(w * (arc.points - q)).T)
-    reach = np.hypot(*(w * np.diff(arc.points, axis=0)).T)
-    nearest = arc.points[[gaps.argmin()]]
-    near = np.minimum(gaps[:-1], gaps[1:]) - 2 * reach <= min(limit, float(gaps.min()))
-    start, end = arc.points[:-1][near], arc.points[1:][near]
+    found, best = [arc.points[[gaps.argmin()]]], min(limit, float(gaps.min()))
+    start, end = arc.points[:-1], arc.points[1:]
+    third = None if arc.form is None else _third_derivatives(arc.form, arc.points)
+    for _ in range(HALVINGS):
+        ends = np.stack([np.hypot(*(w * (p - q)).T) for p in (start, end)]).min(axis=0)
+        near = ends - 2 * np.hypot(*(w * (end - start)).T) <= best
+        start, end, ends = start[near], end[near], ends[near]
+        if not len(start):
+            break
+        if third is None:  # along a straight limit the squared distance is convex
+            return np.concatenate([*found, _turning_points(arc, start, end, q, w)])
+        low, high = _second_derivative(arc, third, start, end, q, w)
+        least = np.square(ends) / 2 - np.maximum(np.abs(low), np.abs(high)) / 8
+        far = least >= best * best / 2 * (1 - FLAT)
+        falls = (low > 0) & ~far
+        found += [_turning_points(arc, start[falls], end[falls], q, w)]
+        doubtful = ~(falls | far | (high < 0))
+        start, end = start[doubtful], end[doubtful]
+        middle = _over_chords(arc, start, end, np.full((len(start), 1), 0.5))[0][:, 0]
+        found += [middle]
+        best = min(best, np.hypot(*(w * (middle - q)).T).min(initial=np.inf))
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+    return np.concatenate(found)
+
+
+def _turning_points(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
+    """Return where the distance stops falling over chords with one turning point at most."""
     if not len(start):
-        return nearest
+        return start
     slope = _slope(arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
     falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
     if not falls.any():
-        return nearest
-    return np.concatenate([nearest, _flat(arc, start[falls], end[falls], slope[falls], q, w)])
+        return start[:0]
+    return _flat(arc, start[falls], end[falls], slope[falls], q, w)
+
+
+def _third_derivatives(form: HarmonicForm, points: Floats) -> Floats:
+    """Bound the third derivatives near some points, shape (2, 2, 2)."""
+    reach = np.abs(points).max(axis=0) + np.abs(np.diff(points, axis=0)).max(axis=0)
+    return np.asarray(form.derivatives.derivatives.derivatives.size(reach))
+
+
+def _second_derivative(
+    arc: Arc, third: Floats, start: Floats, end: Floats, q: Floats, w: Floats
+) -> tuple[Floats, Floats]:
+    """Bound the second derivative of half the squared distance from q along an arc of a form.
+
+    Over each chord, shape (n, 2), the curve is ``start + u chord + r(u) rise``: `rise` is along the
+    joint that the form depends on more, and so long that ``|r| <= 1`` is expected. It is sure where
+    the bound ``|r''| <= 8`` follows from the form's derivatives on all of that. The second
+    derivative is then ``|chord + r' rise|^2 + r'' (p - q) . rise``, in the weighted metric. Where
+    nothing is sure the bounds are infinite.
+    """
+    form, extent = arc.form, _extent(arc)
+    assert form is not None
+    chord, middle, rows = end - start, (start + end) / 2, np.arange(len(start))
+    slope, hessian = form.gradient(middle), form.derivatives.gradient(middle)
+
+    def applied(matrix: Floats, x: Floats, y: Floats) -> Floats:
+        return np.asarray(np.einsum("nij,ni,nj->n", matrix, x, y))
+
+    with np.errstate(all="ignore"):  # what divides by zero is not sure
+        joint = (np.abs(slope) * extent).argmax(axis=1)
+        sagitta = np.abs(applied(hessian, chord, chord) / slope[rows, joint]) / 8
+        length = np.hypot(*(chord / extent).T) * extent[joint]
+        rise = np.zeros_like(chord)
+        rise[rows, joint] = 4 * sagitta + THINNEST * length
+        along, up = np.abs(chord), np.abs(rise)
+        away = along / 2 + up
+        change = np.einsum("ijk,nk->nij", third, away)
+        most = np.abs(hessian) + change
+        value, error = _dot(slope, rise), applied(most, away, up)
+        least_slope, most_slope = np.abs(value) - error, np.abs(value) + error
+        steep = (np.abs(_dot(slope, chord)) + applied(most, away, along)) / least_slope
+        bend = -np.sign(value) * applied(hessian, chord, chord)
+        error = applied(change, along, along)
+        error += 2 * steep * applied(most, along, up) + steep**2 * applied(most, up, up)
+        r_low = np.minimum((bend - error) / least_slope, (bend - error) / most_slope)
+        r_high = np.maximum((bend + error) / least_slope, (bend + error) / most_slope)
+        sure = (least_slope > 0) & (np.maximum(-r_low, r_high) <= 8)
+        metric = w * w
+        cc, cr, rr = (_dot(metric * a, b) for a, b in ((chord, chord), (chord, rise), (rise, rise)))
+        turn = np.clip(-cr / rr, -steep, steep)
+        gap, error = _dot(metric * (middle - q), rise), np.abs(cr) / 2 + rr
+        products = [r * (gap + sign * error) for r in (r_low, r_high) for sign in (-1, 1)]
+        low = cc + 2 * turn * cr + turn**2 * rr + np.min(products, axis=0)
+        high = cc + 2 * steep * np.abs(cr) + steep**2 * rr + np.max(products, axis=0)
+    return np.where(sure, low, -np.inf), np.where(sure, high, np.inf)
 
 
 def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Floats) -> Floats:

@@ -7,7 +7,6 @@ bodies all forms of one of the tests that part them (`conditions`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +62,7 @@ class SafeScale:
 def largest_safe_scale(
     vertices: ArrayLike,
     centre: ArrayLike,
-    forms: Sequence[HarmonicForm],
+    forms: HarmonicForm,
     *,
     highest: float = 1.0,
     contacts: Contacts = NO_CONTACTS,
@@ -78,7 +77,9 @@ def largest_safe_scale(
         rad or length; convex or not.
     centre : array_like, shape (2,)
         Every form must be positive there.
-    forms : sequence of HarmonicForm of two joints
+    forms : HarmonicForm, shape (m,)
+        Of two joints, such as `Problem.forms`; of bodies alone a stack of none, which says whether
+        the joints turn or slide.
     highest : float
         Scales above it are not searched.
     contacts : Contacts, optional
@@ -87,7 +88,7 @@ def largest_safe_scale(
     Raises
     ------
     ValueError
-        If a form is not positive at the centre, or a number is not finite.
+        If a form is not positive at the centre, a number is not finite, or the forms are no stack.
     ArithmeticError
         If subdivision comes to no end: a form touches zero along a line inside the polygon.
 
@@ -99,20 +100,19 @@ def largest_safe_scale(
 
     Examples
     --------
-    >>> from qbound import clearance, find_region, load_robot
+    >>> from qbound import find_region, load_robot
     >>> from qbound.geometry import polygon
-    >>> robot = load_robot("minervabot-v2")
-    >>> used = robot.used
-    >>> forms = [clearance(robot, boundary) for boundary in used]
-    >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> problem = region.problem
+    >>> vertices = [vertex.q for vertex in region.home.vertices]
     >>> centre = polygon.centroid(vertices)
-    >>> found = largest_safe_scale(vertices, centre, forms)
-    >>> round(found.scale, 6), used[found.form].name
+    >>> found = largest_safe_scale(vertices, centre, problem.forms)
+    >>> round(found.scale, 6), problem.names[found.form]
     (0.965049, 'B7')
 
     Where nothing binds below the `highest` scale, that is the answer and the form is -1:
 
-    >>> found = largest_safe_scale(vertices, centre, forms, highest=0.5)
+    >>> found = largest_safe_scale(vertices, centre, problem.forms, highest=0.5)
     >>> found.scale, found.form
     (0.5, -1)
     """
@@ -134,7 +134,7 @@ def largest_safe_scale(
 
 
 def first_exit(
-    forms: Sequence[HarmonicForm],
+    forms: HarmonicForm,
     centre: ArrayLike,
     rays: ArrayLike,
     highest: float = 1.0,
@@ -233,9 +233,7 @@ def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, 
 # --- all forms at once ----------------------------------------------------------------------------
 
 
-def _checked(
-    forms: Sequence[HarmonicForm], contacts: Contacts, points: Floats, centre: Floats
-) -> Conditions:
+def _checked(forms: HarmonicForm, contacts: Contacts, points: Floats, centre: Floats) -> Conditions:
     """Gather the conditions, if all is finite in the box around some points."""
     asked = conditions(forms, contacts)
     _refuse_infinite(asked.forms, np.vstack([points, centre]))
@@ -275,16 +273,36 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
         looked_at += len(now)
         if looked_at > MOST_TRIANGLES:
             raise ArithmeticError("subdivision comes to no end: a form is zero along a line")
-        values = asked.together(asked.forms(now)).min(axis=-1, initial=np.inf)
-        if values.min() < 0:
-            return np.asarray(now[np.unravel_index(values.argmin(), values.shape)])
+        values = asked.forms(now)
+        least = asked.together(values).min(axis=-1, initial=np.inf)
+        if least.min() < 0:
+            return np.asarray(now[np.unravel_index(least.argmin(), least.shape)])
         bounds = second_order(asked.forms, now)
         doubtful = ~(asked.together(bounds) > 0).all(axis=1)
-        now, bounds = now[doubtful], bounds[doubtful]
-        if len(now):
-            _, row = asked.worst(bounds)
-            cells = np.concatenate([halved(now, worst_edges(asked.forms, now, row)), cells])
+        if doubtful.any():
+            now = now[doubtful]
+            chosen = _cuts(asked, now, values[doubtful], bounds[doubtful])
+            cells = np.concatenate([halved(now, chosen), cells])
     return None
+
+
+def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> NDArray[np.intp]:
+    """Return the edge at which to halve each simplex that no bound shows to be safe.
+
+    Where a clause holds at all corners its bound fails for bending: the edge along which its form
+    bends most. Where none does, clauses take turns, and cutting along what bends would come to no
+    end: the edge along which a form of the condition changes most.
+    """
+    lowest = values.min(axis=1)
+    holds = np.minimum.reduceat(lowest, asked.clauses, axis=1)[:, asked.clause_of] > 0
+    condition, row = asked.worst(np.where(holds, bounds, -np.inf))
+    chosen = worst_edges(asked.forms, cells, row)
+    own = asked.condition_of == condition[:, None]
+    turns = ~(own & holds).any(axis=1)
+    i, j = np.triu_indices(cells.shape[1], 1)
+    changes = np.abs(values[turns][:, i] - values[turns][:, j])
+    chosen[turns] = np.where(own[turns, None], changes, 0).max(axis=2, initial=0).argmax(axis=1)
+    return chosen
 
 
 # --- the scale that touches -----------------------------------------------------------------------

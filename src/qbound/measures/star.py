@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
-from qbound.measures.conditions import Conditions, conditions
+from qbound.measures.conditions import conditions
 from qbound.measures.scaling import first_exit, violation
 from qbound.region import Component, Problem
 from qbound.region.arcs import Arc
@@ -81,7 +81,7 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
     g = np.asarray(centre, dtype=float)
     if any(component.wraps):
         raise ValueError("a component that goes round a joint has no centre to scale it about")
-    asked = _conditions(problem)
+    asked = conditions(problem.forms, problem.contacts)
     if not (asked.together(asked.forms(g)) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
     arcs = [arc for loop in component.loops for arc in loop]
@@ -98,21 +98,13 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
     return ExactScale(scale, g + scale * (q - g), arcs[best], names[form], hidden)
 
 
-def _conditions(problem: Problem) -> Conditions:
-    return conditions(_forms(problem), problem.contacts)
-
-
-def _forms(problem: Problem) -> list[HarmonicForm]:
-    return [problem.forms[i] for i in range(len(problem.names))]
-
-
 def _least(problem: Problem, arc: Arc, g: Floats) -> tuple[float, float, int]:
     """Least scale at which a ray to the arc is stopped, the arc's parameter there, and the form."""
-    forms, low, high = _forms(problem), 0.0, 1.0
+    low, high = 0.0, 1.0
     n = (PLACES - 1) * len(arc.pieces.roots) + 1
     for _ in range(ROUNDS):
         s = np.linspace(low, high, n)
-        scales, stopped = first_exit(forms, g, arc.at(s) - g, contacts=problem.contacts)
+        scales, stopped = first_exit(problem.forms, g, arc.at(s) - g, contacts=problem.contacts)
         i = int(scales.argmin())
         low, high, n = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 17
         if scales[i] >= 1 - PROVED_SCALE or high - low < 1e-12:
@@ -166,7 +158,7 @@ def _within(problem: Problem, ring: Floats) -> bool:
             limits[0] - SAME_PLACE <= values.min() and values.max() <= limits[1] + SAME_PLACE
         ):
             return False
-    found = _conditions(problem)
+    found = conditions(problem.forms, problem.contacts)
     coefficients = found.forms.coefficients
     slack = ON_BOUNDARY * np.abs(coefficients).max(axis=(1, 2), initial=0.0)
     lifted = replace(found, forms=found.forms + slack)

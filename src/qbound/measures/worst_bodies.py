@@ -78,7 +78,7 @@ class _Bound:
         asked = boundary.with_extra_clearance(more)
         contacts = body_contacts(robot, {}, [asked])
         self.more = more
-        self.conditions = conditions((), contacts, robot.kinds)
+        self.conditions = conditions(HarmonicForm(np.zeros((0, 3, 3)), robot.kinds), contacts)
         self.clauses = self.conditions.clauses
         self.squared = _squared(robot, asked, contacts, self.conditions.forms)
         of_corners = np.maximum.reduceat(self.squared, self.clauses) > 0

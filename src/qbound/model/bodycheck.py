@@ -99,12 +99,16 @@ def off_plane(
     """Yield each body that lies off the plane of the first one, and say how far."""
     height = plane.height(bodies[0].frame, bodies[0].shape.places)[0]
     rounding = ZERO_AMPLITUDE * _size(plane, bodies)
+    cure = "bodies share one plane: change the third number, or the frame's origin"
+    if plane.chosen:
+        two = "two numbers, or " if np.abs(plane.normal).max() > 1 - ZERO_AMPLITUDE else ""
+        cure = "all joints slide along one line, and of the planes that hold it"
+        cure += f" {plane.name} was taken: give places {two}three in one plane parallel to it"
     for body in bodies:
         off = np.abs(plane.height(body.frame, body.shape.places) - height)
         if off.max() > rounding:
             place = shown(body.shape.places[np.argmax(off)].tolist())
             far = f"{place} lies {off.max():.6g} {unit} off the plane of body"
-            cure = "bodies share one plane: change the third number, or the frame's origin"
             yield body, f"{far} {shown(bodies[0].name)}; {cure}"
 
 

@@ -42,12 +42,24 @@ class PlaneOfMotion:
         second or back; 0 for a joint that slides.
     frames : Frames
         At all joint values 0.
+    chosen : bool
+        Whether the joints leave it open, because all slide along one line.
     """
 
     across: Array
     normal: Array
     senses: tuple[int, ...]
     frames: Frames
+    chosen: bool = False
+
+    @property
+    def name(self) -> str:
+        """The plane in words: by the axes of the base that span it, or by its normal."""
+        k = int(np.argmax(np.abs(self.normal)))
+        if abs(self.normal[k]) < 1 - ZERO_AMPLITUDE:
+            return f"the plane at right angles to {self.normal.round(6).tolist()}"
+        one, other = ("xyz"[i] for i in COORDINATES[k])
+        return f"the plane of {one} and {other}"
 
     def flat(self, frame: str, corners: ArrayLike) -> Array:
         """Return places of a frame, shape (m, 3), in the plane's axes, shape (m, 2).
@@ -134,7 +146,9 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
     across = _across(normal)
     over = cross(*across)
     senses = [round(float(a @ over)) * j.turns for a, j in zip(axes, robot.joints, strict=True)]
-    return PlaneOfMotion(across, normal, tuple(senses), frames)
+    along = [np.linalg.norm(cross(axes[0], axis)) <= ZERO_AMPLITUDE for axis in axes]
+    chosen = all(along) and not any(joint.turns for joint in robot.joints)
+    return PlaneOfMotion(across, normal, tuple(senses), frames, chosen)
 
 
 def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:

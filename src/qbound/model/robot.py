@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 from typing import Any, TypeVar
@@ -67,6 +67,9 @@ class Robot:
     >>> from dataclasses import replace
     >>> replace(robot, tool="elbow").tool
     'elbow'
+
+    What it was read from, the text of a file or its content, is kept in `source`: exact numbers
+    are looked up there (`qbound.model.exact`).
     """
 
     name: str
@@ -82,6 +85,7 @@ class Robot:
     collisions: bool = False
     clearance: float = 0.0
     allowed: tuple[frozenset[str], ...] = ()
+    source: str | Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         """Fit a line: name, joints with their kinds, number of boundaries."""

@@ -114,7 +114,7 @@ def load_robot(
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
         raise RobotFileError(f"{label}: not TOML: {error}") from None
-    return _robot(table, f"{label}: ")
+    return _robot(table, f"{label}: ", text)
 
 
 def is_urdf(source: str | Path) -> bool:
@@ -207,7 +207,8 @@ def packaged_robots() -> tuple[str, ...]:
 
 def parse_robot(table: Table) -> Robot:
     """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit."""
-    return _robot(_plain(table), "")
+    table = _plain(table)
+    return _robot(table, "", table)
 
 
 def _plain(table: Table) -> Table:
@@ -219,7 +220,7 @@ def _plain(table: Table) -> Table:
     return plain
 
 
-def _robot(table: Table, label: str) -> Robot:
+def _robot(table: Table, label: str, source: str | Table) -> Robot:
     try:
         file = read_table(table)
     except RobotFileError as error:
@@ -227,7 +228,7 @@ def _robot(table: Table, label: str) -> Robot:
     except RecursionError:
         raise RobotFileError(f"{label}tables in tables without end") from None
     try:
-        check_bodies(robot := _built(file), table)
+        check_bodies(robot := _built(file, source), table)
     except RobotFileError as error:
         raise RobotFileError(f"{label}{error}") from None
     for i, boundary in enumerate(robot.boundaries):
@@ -265,7 +266,7 @@ def _read(path: str | Path, encoding: str) -> str:
 # --- from a table to a robot, and back -----------------------------------------------------------
 
 
-def _built(file: RobotFile) -> Robot:
+def _built(file: RobotFile, source: str | Table | None = None) -> Robot:
     angle = ANGLE[file.angle_unit]
     joints = tuple(row.joint(angle) for row in file.joint)
     robot = Robot(
@@ -280,6 +281,7 @@ def _built(file: RobotFile) -> Robot:
         collisions=file.collisions == "all",
         clearance=file.clearance,
         allowed=tuple(frozenset(pair) for pair in file.allowed),
+        source=source,
     )
     rows: list[BodyRow | ObstacleRow] = [*file.body, *file.obstacle]
     frames = [*(row.frame for row in file.body), *(robot.base for _ in file.obstacle)]

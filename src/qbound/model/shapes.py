@@ -89,6 +89,11 @@ class Shape(ABC):
         """Convex parts that together are exactly the shape."""
 
     @property
+    def loops(self) -> tuple[tuple[int, ...], ...]:
+        """Which places are the corners of each part."""
+        return (tuple(range(len(self.places))),)
+
+    @property
     def fault(self) -> str | None:
         """What is wrong with the shape itself; None: nothing."""
         return None
@@ -146,7 +151,12 @@ class Polygon(Shape):
         ValueError
             If it crosses itself or has no area (`fault` says so without raising).
         """
-        return tuple(Part(self.corners[list(loop)]) for loop in convex_parts(self._flat))
+        return tuple(Part(self.corners[list(loop)]) for loop in self.loops)
+
+    @cached_property
+    def loops(self) -> tuple[tuple[int, ...], ...]:
+        """The corners of each convex part by their numbers; errors as `parts`."""
+        return convex_parts(self._flat)
 
     @property
     def fault(self) -> str | None:

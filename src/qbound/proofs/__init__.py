@@ -6,6 +6,8 @@
 - boundaries: `crossings` (where two curves meet, none left out), `runs` (pieces between them),
   `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
   `exact_windows` (the paper's rule, Table 6);
+- components, with bodies or without: `stars` (cells on which what is free is connected) and
+  `structure` (how many components, of how many loops);
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
   `columns` (pavings of which one joint is solved for), `sectors` (of that joint, over cells),
   `trigonometry` (cosines and sines of arrays, with a proved error),

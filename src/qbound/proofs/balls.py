@@ -1,7 +1,7 @@
 """Balls: intervals of numbers, with outward rounding.
 
-The balls are Arb's, through python-flint (extra ``proofs``); a `HarmonicForm` takes them as it
-takes floats. Precision is global to the process: it is set within a ``with`` only, by `precision`.
+The balls are Arb's, through python-flint; a `HarmonicForm` takes them as it takes floats. Precision
+is global to the process: it is set within a ``with`` only, by `precision`.
 """
 
 from __future__ import annotations
@@ -13,27 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.extras import require
-
 if TYPE_CHECKING:
     import flint
 
     arb = flint.arb
 else:
-    arb = Any  # an extra, which may be missing: here it is for annotations alone
+    arb = Any  # for annotations alone: python-flint loads where it is called
 
 Array = NDArray[Any]
 
 
 def precision(bits: int) -> AbstractContextManager[None]:
-    """Return python-flint's context in which balls have `bits` bits.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If python-flint is missing.
-    """
-    require("flint")
+    """Return python-flint's context in which balls have `bits` bits."""
     from flint import ctx
 
     context: AbstractContextManager[None] = ctx.workprec(bits)

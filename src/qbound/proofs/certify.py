@@ -22,7 +22,7 @@ from qbound.export.formats import json_text
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import halved
-from qbound.model.robot import BodyPair, Boundary, Robot
+from qbound.model.robot import BodyPair, Boundary, Parallelogram, Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.boxes import search_box
 from qbound.proofs.cells import Cell, cells_of
@@ -101,6 +101,25 @@ class Certificate:
         return sum(search.leaves for search in self.searches.values())
 
 
+def no_certificate(robot: Robot) -> str:
+    """Say why no certificate can hold a robot; empty where one can."""
+    count = len(robot.joints)
+    if count > check.MAX_JOINTS:
+        return f"certificates take at most {check.MAX_JOINTS} joints; this robot has {count}"
+    if any(isinstance(joint, Parallelogram) for joint in robot.joints):
+        return "certificates know no parallelogram"
+    return ""
+
+
+def _certifiable(text: str) -> Robot:
+    """Read a robot, and refuse it before any work if no certificate can hold it."""
+    robot = parse_robot(tomllib.loads(text))
+    reason = no_certificate(robot)
+    if reason:
+        raise ValueError(reason)
+    return robot
+
+
 def certify(
     text: str,
     statement: Statement,
@@ -150,7 +169,7 @@ def certify(
     >>> answer.verdict.value, answer.witness is not None
     ('refuted', True)
     """
-    robot = parse_robot(tomllib.loads(text))
+    robot = _certifiable(text)
     exact = read_robot(text)
     cells = cells_of(read_statement(statement, exact), GRAMMAR)
     parts = parts_of(robot, exact)
@@ -188,7 +207,7 @@ def certify_region(
     too few points, and says nothing of the component: it is drawn again through more, and what is
     left in the end is undecided.
     """
-    robot = parse_robot(tomllib.loads(text))
+    robot = _certifiable(text)
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
             statement = inner_polygon(robot, inset, per_arc, margin, held)
@@ -429,7 +448,7 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
     highest : float
         Scales above it are not tried.
     """
-    robot = parse_robot(tomllib.loads(text))
+    robot = _certifiable(text)
     corners, parts = home_vertices(robot), parts_of(robot, read_robot(text))
     low, high, tries = 0.0, 0.0, highest
     while low < highest and (not low or not high or high - low > width) and tries > width:

@@ -17,7 +17,6 @@ from functools import cached_property, partial
 from itertools import product
 from typing import Any
 
-from qbound.extras import require
 from qbound.proofs.cells import Box, Cell, Simplex, cells_of
 from qbound.proofs.check_disconnected import check_disconnected
 from qbound.proofs.flat_balls import Core, Features, FlatArm, cores_of
@@ -90,7 +89,6 @@ def verify(text: str | bytes) -> Verdict:
     Traceback (most recent call last):
     ValueError: the hash is not of this robot
     """
-    require("flint")
     from flint import ctx
 
     with ctx.workprec(BITS):

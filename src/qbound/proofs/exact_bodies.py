@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import SIDES
 from qbound.boundary.functions import position, squared_distance
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.forms.harmonic import HarmonicForm
@@ -47,11 +48,19 @@ class ExactSeparation:
         Coefficients (dtype object) are rationals or balls.
     starts : ndarray of int, shape (features,)
         First form of each feature; it separates where all of its forms are positive.
+    contacts : HarmonicForm, shape (c, 5)
+        Each way in which the parts can touch: they do so where the first form vanishes and the
+        other four are not negative. The first one grows as they part.
+    inner : ndarray of bool, shape (c,)
+        Contacts of an edge along which a body was cut, where nothing keeps a distance: there the
+        part beyond is hit as well, or the place is a corner of the body.
     """
 
     name: str
     forms: HarmonicForm
     starts: NDArray[np.intp]
+    contacts: HarmonicForm
+    inner: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,18 +71,33 @@ class Core:
     ----------
     corners, steps, normals : tuple of ndarray, shape (3,)
         Steps lead from a corner to the next; normals point outwards and are as long as the steps.
+    inner : tuple of bool
+        Whether the body was cut along an edge.
     """
 
     frame: str
     corners: tuple[Array, ...]
     steps: tuple[Array, ...]
     normals: tuple[Array, ...]
+    inner: tuple[bool, ...]
 
     def around(self, i: int) -> list[Array]:
         """Return the steps from a corner to its neighbours."""
         if len(self.corners) < 3:
             return [self.steps[i]] if self.steps else []
         return [self.steps[i], -self.steps[i - 1]]
+
+    def is_straight(self, i: int) -> bool:
+        """Tell whether both edges at a corner are in line: what touches it touches them as well.
+
+        Its neighbours do not tell on which side of it the core lies, so it is no contact itself.
+        """
+        return len(self.corners) > 2 and bool(self.normals[i] @ self.steps[i - 1] == 0)
+
+    def beside(self, i: int) -> list[int]:
+        """Return the numbers of a corner's neighbours."""
+        count = len(self.corners)
+        return sorted({(i + 1) % count, (i - 1) % count} - {i})
 
 
 def exact_separations(
@@ -104,17 +128,23 @@ def exact_separations(
             cores[body.name] = list(_cores(body, flat[body.frame]))
     found = []
     for boundary in about:
-        for forms, starts in _of(boundary, robot, cores):
-            stack = HarmonicForm(np.array(forms), robot.kinds)
-            stack = stack.restrict(held) if held else stack
-            found.append(ExactSeparation(boundary.name, stack, np.array(starts)))
+        for tests, contacts, inner in _of(boundary, robot, cores):
+            flat_tests = np.array([form for test in tests for form in test])
+            stacks = [HarmonicForm(np.array(x), robot.kinds) for x in (flat_tests, contacts)]
+            stacks = [stack.restrict(held) for stack in stacks] if held else stacks
+            starts = np.cumsum([0, *map(len, tests)])[:-1]
+            found.append(ExactSeparation(boundary.name, stacks[0], starts, stacks[1], inner))
     return tuple(found)
+
+
+Tests = list[list[Array]]
+"""Of each feature the forms that are to be positive."""
 
 
 def _of(
     boundary: Boundary, robot: Robot, cores: Mapping[str, Sequence[Core]]
-) -> Iterator[tuple[list[Array], list[int]]]:
-    """Yield the forms of each pair of parts, and where each feature begins."""
+) -> Iterator[tuple[Tests, list[Array], NDArray[np.bool_]]]:
+    """Yield the tests of each pair of parts, and its contacts with what `inner` says of them."""
     if isinstance(boundary, HalfSpace):
         yield _heights(robot, boundary, cores[str(boundary.body)])
     elif isinstance(boundary, BodyPair):
@@ -168,6 +198,7 @@ def _cores(body: Body, flat: int) -> Iterator[Core]:
     corners = [tuple(_fraction(place[k]) for k in seen) for place in places]
     cut = _cut(corners, body.name) if len(places) > 2 else [list(range(len(places)))]
     sense = 1 if len(places) < 3 or parts.turns_left(corners) else -1
+    edges = {edge for part in cut if len(part) > 2 for edge in _around(part)}
     for part in cut:
         own = [places[k] for k in part]
         count = len(own) if len(own) > 1 else 0
@@ -177,7 +208,13 @@ def _cores(body: Body, flat: int) -> Iterator[Core]:
             normal = step * 0
             normal[seen[0]], normal[seen[1]] = sense * step[seen[1]], -sense * step[seen[0]]
             normals.append(normal)
-        yield Core(body.frame, tuple(own), tuple(steps), tuple(normals))
+        inner = [(after, before) in edges for before, after in _around(part)]
+        yield Core(body.frame, tuple(own), tuple(steps), tuple(normals), tuple(inner))
+
+
+def _around(part: Sequence[int]) -> list[tuple[int, int]]:
+    """Return the edges of a part, by the numbers of their ends."""
+    return list(zip(part, [*part[1:], part[0]], strict=True))
 
 
 def _cut(corners: Sequence[tuple[Fraction, ...]], name: str) -> Sequence[Sequence[int]]:
@@ -225,13 +262,11 @@ def _plus(form: Array, constant: Any) -> Array:
     return form
 
 
-def _features(robot: Robot, near: Core, far: Core, keep: Any) -> tuple[list[Array], list[int]]:
-    """Return the forms of all features of two cores, and where each feature begins."""
+def _features(
+    robot: Robot, near: Core, far: Core, keep: Any
+) -> tuple[Tests, list[Array], NDArray[np.bool_]]:
+    """Return the tests of all features of two cores, and their contacts."""
     corners = [_seen(robot, near.frame, far.frame, at) for at in far.corners]
-    groups: list[list[Array]] = []
-    for start, normal in zip(near.corners, near.normals, strict=False):
-        level = normal @ start + keep * _length(normal)
-        groups.append([_plus(_dot(normal, corner.place), -level) for corner in corners])
 
     def across(d: Array, k: int) -> tuple[Array, Array]:
         """Return a direction of the far frame seen from here, and its product with corner k."""
@@ -239,25 +274,55 @@ def _features(robot: Robot, near: Core, far: Core, keep: Any) -> tuple[list[Arra
         here = corners[k]
         return end.place - here.place, _plus(end.squared - here.squared, -(d @ d)) / 2
 
-    for k, normal in enumerate(far.normals):
-        seen, on = across(normal, k)
-        level = keep * _length(normal)
-        groups.append([_plus(_dot(u, seen) - on, -level) for u in near.corners])
+    def above(core: Core, k: int) -> Iterator[list[Array]]:
+        """Yield the products of the other core's corners with an edge's normal, and its step."""
+        for d in (core.normals[k], core.steps[k]):
+            if core is near:
+                yield [_plus(_dot(d, c.place), -(d @ near.corners[k])) for c in corners]
+            else:
+                seen, on = across(d, k)
+                yield [_dot(u, seen) - on for u in near.corners]
+
+    tests: Tests = []
+    contacts, inner = [], []
+    apart = bool(ball(keep) > 0)
+    for core, other in ((near, far), (far, near)):
+        for k, (normal, step) in enumerate(zip(core.normals, core.steps, strict=True)):
+            heights, along = above(core, k)
+            tests.append([_plus(height, -keep * _length(normal)) for height in heights])
+            for i, (height, place) in enumerate(zip(tests[-1], along, strict=True)):
+                if other.is_straight(i):
+                    continue
+                rims = [heights[j] - heights[i] for j in other.beside(i)]
+                contacts.append(_contact(height, [place, _plus(-place, step @ step), *rims]))
+                inner.append(core.inner[k] and not apart)
     ahead = [[across(step, k) for step in far.around(k)] for k in range(len(corners))]
     for (i, p), (k, corner) in product(enumerate(near.corners), enumerate(corners)):
         square = _plus(corner.squared - 2 * _dot(p, corner.place), p @ p - keep * keep)
         behind = [_plus(-_dot(step, corner.place), step @ p) for step in near.around(i)]
         beyond = [on - _dot(p, seen) for seen, on in ahead[k]]
-        groups.append([square, *behind, *beyond])
-    starts = np.cumsum([0, *map(len, groups)])[:-1]
-    return [form for group in groups for form in group], starts.tolist()
+        tests.append([square, *behind, *beyond])
+        if apart and not near.is_straight(i) and not far.is_straight(k):
+            contacts.append(_contact(square, [*behind, *beyond]))
+            inner.append(False)
+    return tests, contacts, np.array(inner)
 
 
-def _heights(robot: Robot, wall: HalfSpace, cores: Sequence[Core]) -> tuple[list[Array], list[int]]:
+def _contact(form: Array, sides: Sequence[Array]) -> Array:
+    """Return a form and four that are not to be negative, 1 where there are fewer."""
+    free = [_plus(form * 0, 1)] * (SIDES - len(sides))
+    return np.array([form, *sides, *free])
+
+
+def _heights(
+    robot: Robot, wall: HalfSpace, cores: Sequence[Core]
+) -> tuple[Tests, list[Array], NDArray[np.bool_]]:
     """Return the heights of all corners of a body above a half-space: one feature."""
     level = wall.offset + _radius(robot.body(str(wall.body)))
     places = [_seen(robot, robot.base, c.frame, at) for c in cores for at in c.corners]
-    return [_plus(_dot(wall.normal, seen.place), -level) for seen in places], [0]
+    heights = [_plus(_dot(wall.normal, seen.place), -level) for seen in places]
+    contacts = [_contact(height, []) for height in heights]
+    return [heights], contacts, np.zeros(len(contacts), dtype=np.bool_)
 
 
 def _length(vector: Array) -> Any:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from qbound.boundary.functions import pair_vector
 from qbound.model.robot import HalfSpace, Robot
-from qbound.proofs.balls import arb, ball, balls, pi, precision, turns
-from qbound.proofs.crossings import line_roots
+from qbound.proofs.balls import arb, ball, precision, turns
 from qbound.proofs.exact import BITS, ExactProblem, exact_state
 from qbound.region import paper_rule
-from qbound.region.paper_rule import Window
+from qbound.region.exact import window_end
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
@@ -38,7 +34,7 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
 def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
     """Return the highest lower end and the lowest upper end of a joint's windows and limits."""
     own = [window for window in paper_rule.windows(robot) if window.joint == joint]
-    upper = [_upper(exact, window) for window in own]
+    upper = [window_end(exact, window) for window in own]
     lower = [end - turns(1) for end in upper]
     home = ball(exact.home[joint])
     on_turn = all(x < home < y for x, y in zip(lower, upper, strict=True))
@@ -48,14 +44,3 @@ def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
     if any(x > low for x in lower) or any(x < high for x in upper) or not on_turn:
         raise ValueError(f"joint {joint + 1}: rounding hides which window binds, or on which turn")
     return low, high
-
-
-def _upper(exact: Robot, window: Window) -> arb:
-    """Return the root theta + alpha of a window's component, on the window's turn (eq. 39)."""
-    pair: Any = exact.boundary(window.boundary)
-    component = pair_vector(exact, pair)[window.component - 1]
-    c = balls(component.along(window.joint, [ball(0)] * len(exact.joints)))
-    roots = line_roots(exact.kinds[window.joint], c)
-    if not roots:
-        raise ValueError(f"{window.boundary}: it is not proved that this component reaches zero")
-    return roots[-1] + turns(round((window.upper - float(roots[-1])) / float(2 * pi())))

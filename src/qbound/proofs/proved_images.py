@@ -86,8 +86,10 @@ def proved_images(
     Unproved
         As `prove_region`.
     ValueError
-        If a part goes round the first joint.
+        If a part goes round the first joint, or bodies are to keep apart.
     """
+    if exact.bodies:
+        raise ValueError("areas of images are proved of boundaries of points alone, not of bodies")
     found, floats = [], balls(determinant.coefficients).astype(float)
     for side in (1, -1):
         one = _with(exact, side * determinant.coefficients)

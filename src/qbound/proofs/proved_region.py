@@ -8,6 +8,9 @@ boundary holds a crossing, or a fold, or goes round a joint and so meets a line 
 all of these are listed, proved complete, and found on the runs.
 
 The area of a loop is the integral of q1 dq2 along its runs, by Arb's rigorous integration.
+
+Bodies have too many curves for that. Of a region with bodies the components are proved, and how
+many loops each has, by `structure`; vertices and areas are not.
 """
 
 from __future__ import annotations
@@ -37,7 +40,8 @@ from qbound.proofs.crossings import (
 )
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
-from qbound.proofs.verdict import Verdict
+from qbound.proofs.structure import prove_structure
+from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 
@@ -57,10 +61,6 @@ LINE = 0.14159
 """Value of a joint that turns round, at which what goes round it is looked for: any would do."""
 
 
-class Unproved(ValueError):
-    """Something about a region could not be proved; the message says what."""
-
-
 @dataclass(frozen=True, eq=False)
 class ProvedComponent:
     """A component whose boundary is proved.
@@ -68,12 +68,13 @@ class ProvedComponent:
     Attributes
     ----------
     area : arb or None
-        None where the component goes round both joints along a band.
+        None where the component goes round both joints along a band, or where there are bodies.
     vertices : tuple of Crossing
-        In the order of the loops.
+        In the order of the loops; none where there are bodies.
     contains_home : bool
+        As it was proposed.
     loops : tuple of tuple of Run
-        The boundary, the component on its left.
+        The boundary, the component on its left; none where there are bodies.
     """
 
     area: arb | None
@@ -90,9 +91,9 @@ class ProvedRegion:
     ----------
     components : tuple of ProvedComponent
     crossings : Crossings
-        All crossings in the closed region.
+        All crossings in the closed region; none where there are bodies.
     folds : Crossings
-        All places in the closed region where a curve turns back in the first joint.
+        All places in the closed region where a curve turns back in the first joint; the same.
     """
 
     components: tuple[ProvedComponent, ...]
@@ -106,11 +107,14 @@ class ProvedRegion:
         Raises
         ------
         ValueError
-            If a component is a band that goes round both joints at once.
+            If a component is a band that goes round both joints at once, or there are bodies.
         """
         areas = [c.area for c in self.components if c.area is not None]
         if len(areas) < len(self.components):
-            raise ValueError("a component is a band round both joints: its area is not proved")
+            raise ValueError(
+                "a component is a band round both joints, or there are bodies:"
+                " its area is not proved"
+            )
         with precision(BITS):
             total: arb = sum(areas, start=ball(0))
         return total
@@ -118,6 +122,9 @@ class ProvedRegion:
 
 def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
     """Prove the boundary of a region that the float engine proposes, and enclose its area.
+
+    With bodies: prove that the region has the components that are proposed, each with as many loops
+    and round the same joints, and no other (`prove_structure`); areas are None.
 
     Parameters
     ----------
@@ -132,7 +139,10 @@ def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
         With the first thing that is not proved: curves that touch or coincide, a vertex that is
         none, a piece of boundary that was not proposed. The region may still be right.
     """
-    _refuse_bodies(problem)
+    if problem.bodies:
+        prove_structure(problem, region)
+        found = [ProvedComponent(None, (), c.contains_home, ()) for c in region.components]
+        return ProvedRegion(tuple(found), Crossings((), ()), Crossings((), ()))
     prover = _Prover(problem)
     with precision(BITS):
         found = [prover.component(component) for component in region.components]

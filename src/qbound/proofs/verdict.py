@@ -1,4 +1,4 @@
-"""What a prover answers: one enumeration for all of them."""
+"""What a prover answers: one enumeration for all of them, and one refusal of those of regions."""
 
 from __future__ import annotations
 
@@ -18,3 +18,7 @@ class Verdict(StrEnum):
         if proved:
             return cls.PROVED
         return cls.REFUTED if refuted else cls.UNDECIDED
+
+
+class Unproved(ValueError):
+    """Something about a region could not be proved; the message says what."""

@@ -114,6 +114,8 @@ class Arc:
         Of two bodies, what touches: "corner 2 on edge 3", the first body's first.
     row : int
         Which form of the pieces' plane vanishes along it; negative at a joint limit.
+    also : tuple of (str, str)
+        Boundaries and features that vanish all along it, too: they coincide there.
     """
 
     boundary: str
@@ -122,6 +124,7 @@ class Arc:
     span: tuple[int, int]
     feature: str = ""
     row: int = -1
+    also: tuple[tuple[str, str], ...] = ()
 
     def __repr__(self) -> str:
         """Say in a line what it is part of and where it runs."""

@@ -11,15 +11,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
-from qbound.region.decomposition import Cell, Decomposition
+from qbound.region.decomposition import Cell, Decomposition, turned_root
 from qbound.region.plane import Plane, ranges, runs, which
-from qbound.tolerances import SAME_POINT, TOUCH
+from qbound.region.precise import UndecidedError, in_order
+from qbound.tolerances import SAME_POINT, TOUCH, UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -96,6 +98,15 @@ class Parts(NamedTuple):
         return part
 
 
+class _Marks(NamedTuple):
+    """Places on lines that are no ends of cells: line, value, error and root of each."""
+
+    line: Ints
+    v: Floats
+    error: Floats
+    root: Ints
+
+
 class CellComplex:
     """The cells of a decomposition and how they hang together."""
 
@@ -109,7 +120,7 @@ class CellComplex:
         self.touch = TOUCH * self.plane.lift_unit
         self.n_lines = len(self.abscissae) - (1 if self.wrapped else 0)
         self.whole: Bools = self.circle & (self.roots[:, 0, 0] < 0)
-        self.ends: Floats = self._ends()
+        self.ends, self._errors = self._ends()
         self.elements: Elements = self._elements()
 
     @property
@@ -171,12 +182,13 @@ class CellComplex:
         found = np.where(t <= start + inset, ends[:, 0].T, found)
         return np.where(t >= end - inset, ends[:, 1].T, found)
 
-    def _ends(self) -> Floats:
-        """Lower and upper root of every cell at its left and its right line, shape (k, 2, 2).
+    def _ends(self) -> tuple[Floats, Floats]:
+        """Lower and upper root of every cell at its left and its right line, and their errors.
 
-        There an angle may jump by a turn, and where a form vanishes on a whole fibre it has no
-        roots to speak of: their limit from inside the slab is meant.
+        Shape (k, 2, 2) both. There an angle may jump by a turn, and where a form vanishes on a
+        whole fibre it has no roots to speak of: their limit from inside the slab is meant.
         """
+        lines = self.decomposition.critical
         start, end = self.abscissae[:-1][self.slabs, None], self.abscissae[1:][self.slabs, None]
         inset = (end - start) * INSET
         t = np.concatenate([start + inset, end - inset], axis=1)
@@ -189,68 +201,166 @@ class CellComplex:
         blank = self.plane.blank(roots[..., 0], c[..., ::4])
         if blank.any():
             at = np.where(blank, 3 * near - 3 * values[..., 2] + values[..., 3], at)
-        return np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
+        radius = lines.radius[self.slabs[:, None] + np.array([0, 1])] / self.plane.base_unit
+        form = np.maximum(roots[..., 0], 0)[..., None] * np.ones(2, dtype=np.int64)
+        if len(self.plane.eps):
+            _, errors, _ = self.plane.roots_and_errors(form, c[..., ::4], 2 * radius)
+            error = np.where(roots[..., 1, None] < 0, errors[0], errors[1])
+            error = np.where(blank, 1.0, error)
+        else:
+            error = np.zeros_like(at)
+        error = np.where(roots[..., 0, None] < 0, 2 * UNIT * np.abs(at), error)
+        ends = np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
+        return ends, np.minimum(error, self.plane.lift_unit).transpose(1, 2, 0)
 
     # --- lines ----------------------------------------------------------------------------------
 
     def _elements(self) -> Elements:
-        line, low, high = self._cut_lines()
-        middle = (low + high) / 2
-        cell, turns = self._owners(line, middle)
-        joined: Bools = np.asarray((cell >= 0).all(axis=0))
-        free = self.decomposition.joined(line[joined], low[joined], high[joined])
-        joined[joined] = free
-        return Elements(line, low, high, cell, turns, joined)
-
-    def _cut_lines(self) -> tuple[Ints, Floats, Floats]:
-        """Cut critical lines where cells end: line, lower and upper end of each element.
-
-        A circle closes, and without ends of cells it is one element.
-        """
-        kept = ~self.whole
+        """Cut the lines where cells end, and tell which cells lie on both sides of each part."""
+        kept = which(~self.whole)
         at = self.slabs[kept, None] + np.array([0, 1])
         at = at % self.n_lines if self.wrapped else at
-        line, v = at.ravel().repeat(2), self.ends[kept].ravel()
-        v = math.pi - (math.pi - v) % TURN if self.circle else v
+        line = at.repeat(2, axis=1).reshape(-1)
+        value, error = self.ends[kept].reshape(-1), self._errors[kept].reshape(-1)
+        v = math.pi - (math.pi - value) % TURN if self.circle else value
+        cell = kept.repeat(4)
+        side, end = (np.tile(x, len(kept)) for x in ([0, 0, 1, 1], [0, 1, 0, 1]))
+        root = self.roots[cell, end]
+        marks = self._marks()
+        if len(marks.line):  # after the ends of cells: they are none
+            line, v = np.concatenate([line, marks.line]), np.concatenate([v, marks.v])
+            error, side = np.concatenate([error, marks.error]), np.append(side, 0 * marks.line)
+            root = np.concatenate([root, marks.root])
         order = np.lexsort([v, line])
-        line, v = line[order], v[order]
-        new = np.ones(len(line), dtype=np.bool_)
-        new[1:] = (line[1:] > line[:-1]) | (v[1:] - v[:-1] > self.touch)
-        line, low = line[new], v[new]
+        line, v, error, side, root = (x[order] for x in (line, v, error, side, root))
+        rank, v = _Ranks(self.decomposition, line, v, error, side, root, self.circle).ranked()
+        ranks = np.empty(len(order), dtype=np.int64)
+        ranks[order] = rank
+        place = ranks[: len(cell)].reshape(-1, 2, 2)
+        # Places of a line, one after the other; where there are none on a circle, one element.
+        found, first = np.unique(rank, return_index=True)
+        line, low = line[first], v[first]
+        number = np.zeros(len(rank), dtype=np.int64)
+        number[found] = np.arange(len(found))
+        place = number[place] if len(place) else place
+        begin, last = runs(line)
+        count = np.bincount(line, minlength=self.n_lines)
+        high = np.append(low[1:], 0.0)[: len(low)]
+        if self.circle:
+            high[last] = low[begin] + TURN
+            without = which(count == 0)
+        else:
+            without = np.zeros(0, dtype=np.int64)
+        self._place = np.full((len(self.slabs), 2, 2), -1)
+        self._place[kept] = place
+        self._begin = np.searchsorted(line, np.arange(self.n_lines))
+        self._count = count
+        owner = np.full((2, len(line)), -1)
+        for s in (0, 1):  # the left line of a cell is on its right-hand side
+            self._own(owner[1 - s], kept, at[:, s], place[:, s], s)
+        elements = np.ones(len(line), dtype=np.bool_)
         if not self.circle:
-            k = which(line[1:] == line[:-1])
-            return line[k], low[k], low[k + 1]
-        first, last = runs(line)
-        high = np.empty(len(low))
-        high[:-1], high[last] = low[1:], low[first] + TURN
-        double = last[(last > first) & (high[last] - low[last] <= self.touch)]
-        if len(double):
-            high[double - 1] = high[double]
-            line, low, high = (np.delete(x, double) for x in (line, low, high))
-        if len(first) < self.n_lines:
-            without = which(np.bincount(line, minlength=self.n_lines) == 0)
-            at = np.searchsorted(line, without)
-            line = np.insert(line, at, without)
-            low, high = np.insert(low, at, -math.pi), np.insert(high, at, math.pi)
-        return line, low, high
+            elements[last] = False
+        if len(without):
+            line = np.concatenate([line, without])
+            low = np.concatenate([low, np.full(len(without), -math.pi)])
+            high = np.concatenate([high, np.full(len(without), math.pi)])
+            owner = np.concatenate([owner, np.full((2, len(without)), -1)], axis=1)
+            elements = np.append(elements, np.ones(len(without), dtype=np.bool_))
+        self._fill_whole(owner, line)
+        self._number = np.where(elements, elements.cumsum() - 1, -1)
+        line, low, high, owner = line[elements], low[elements], high[elements], owner[:, elements]
+        turns = self._turns(line, (low + high) / 2, owner)
+        joined: Bools = np.asarray((owner >= 0).all(axis=0))
+        joined[joined] = self.decomposition.joined(line[joined], low[joined], high[joined])
+        return Elements(line, low, high, owner, turns, joined)
 
-    def _owners(self, line: Ints, middle: Floats) -> tuple[Ints, Ints]:
-        """Return the first cells on the left and right of places, -1 for none, and turns, (2, n).
+    def _marks(self) -> _Marks:
+        """Return where contacts along a fibre may begin or end: their side conditions vanish."""
+        plane, found = self.plane, self.decomposition
+        first = plane.count + len(plane.contacts.forms)
+        line, row = list[int](), list[int]()
+        for at, rows in found.standing.items():
+            if self.wrapped and at == self.n_lines:
+                continue  # the first line, a turn on
+            for k in (r - plane.count for r in rows if r >= plane.count):
+                for s in range(SIDES):
+                    if plane.sides[k, s, :, 1:].any():
+                        line.append(at)
+                        row.append(first + SIDES * k + s)
+        none = np.zeros(0)
+        if not line:
+            return _Marks(np.zeros(0, dtype=np.int64), none, none, np.zeros((0, 3), dtype=np.int64))
+        at, rows = np.array(line), np.array(row)
+        c, errors, real = plane.side_roots(
+            rows - first, self.abscissae[at], found.critical.radius[at]
+        )
+        branch, k = np.nonzero(np.isfinite(c) & (real >= 0))
+        v = c[branch, k]
+        if self.circle:
+            v = math.pi - (math.pi - v) % TURN
+        low, high = plane.lift_ends
+        inside = which((v > low) & (v < high)) if not self.circle else np.arange(len(v))
+        branch, k, v = branch[inside], k[inside], v[inside]
+        root = np.stack([rows[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
+        return _Marks(at[k], v, errors[branch, k], root)
 
-        The turns bring a place into the cell's own interval at that line.
-        """
-        n = len(line)
-        owner, turns = np.full(2 * n, -1), np.zeros(2 * n, dtype=np.int64)
-        slab = np.concatenate([line - 1, line])
-        slab = slab % self.n_lines if self.wrapped else slab
-        at, k = ranges(self.slabs.searchsorted(slab), self.slabs.searchsorted(slab + 1))
-        low, high = self.ends[k, (at < n).astype(int)].T
-        v = middle[at % n]
-        turn = turns_up_to(low, v) * self.circle
-        v = v + TURN * turn
-        held = which(((low < v) & (v < high)) | self.whole[k])[::-1]
-        owner[at[held]], turns[at[held]] = k[held], turn[held]  # the first comes last
-        return owner.reshape(2, n), turns.reshape(2, n)
+    def _own(self, owner: Ints, kept: Ints, line: Ints, place: Ints, side: int) -> None:
+        """Write each cell into the parts of a line between its two ends."""
+        start, stop = place[:, 0], place[:, 1]
+        first, count = self._begin[line], self._count[line]
+        steps = stop - start
+        if self.circle:
+            tall = (self.ends[kept, side, 1] - self.ends[kept, side, 0]) > math.pi
+            steps = np.where((steps < 0) | ((steps == 0) & tall), steps + count, steps)
+        if (steps < 0).any():
+            raise UndecidedError("a cell ends above its upper end")
+        cell, step = ranges(np.zeros_like(steps), steps)
+        spot = first[cell] + (start[cell] - first[cell] + step) % np.maximum(count[cell], 1)
+        if len(np.unique(spot)) < len(spot):
+            raise UndecidedError("two cells overlap on a critical line")
+        owner[spot] = kept[cell]
+
+    def _fill_whole(self, owner: Ints, line: Ints) -> None:
+        """Write cells that are whole circles into all parts of their lines."""
+        for cell in which(self.whole).tolist():
+            slab = int(self.slabs[cell])
+            for s, at in ((1, slab), (0, slab + 1)):
+                at = at % self.n_lines if self.wrapped else at
+                owner[s, line == at] = cell
+
+    def _turns(self, line: Ints, middle: Floats, owner: Ints) -> Ints:
+        """Return the full turns that bring parts of lines into the cells beside them, (2, n)."""
+        turns = np.zeros(owner.shape, dtype=np.int64)
+        if not self.circle or not len(self.slabs):
+            return turns
+        for s in (0, 1):  # a cell on the left ends at its right line
+            cell = owner[s]
+            low = self.ends[np.maximum(cell, 0), 1 - s, 0]
+            found = np.ceil((low - middle) / TURN - TOUCH)
+            turns[s] = np.where(cell >= 0, found, 0)
+        return turns
+
+    def in_order(self, cell: Ints, side: int, element: Ints) -> Ints:
+        """Number the elements beside cells, on their left (0) or right (1), upwards from each cell."""
+        line = self.elements.line[element]
+        count = np.maximum(self._count[line], 1)
+        spot = self._spot[element]
+        start = np.where(self._place[cell, side, 0] >= 0, self._place[cell, side, 0], spot)
+        return np.asarray((spot - start) % count)
+
+    @cached_property
+    def is_circle(self) -> Bools:
+        """Which elements are whole circles: of lines on which no cell ends."""
+        return np.asarray(self._count[self.elements.line] == 0)
+
+    @cached_property
+    def _spot(self) -> Ints:
+        """The place of each element's lower end."""
+        spot = np.zeros(len(self.elements.line), dtype=np.int64)
+        kept = which(self._number >= 0)
+        spot[self._number[kept]] = kept
+        return spot
 
     # --- components -----------------------------------------------------------------------------
 
@@ -280,6 +390,129 @@ class CellComplex:
         if windings:
             table[list(windings)] = list(windings.values())
         return Parts(cells, wraps, table)
+
+
+class _Ranks:
+    """The order of ends of cells on critical lines; ends that are one have one rank.
+
+    Parameters
+    ----------
+    line, v, error, side, root : ndarray
+        Of each end, by line and upwards: its line, value, a bound of its error, whether its cell
+        lies to the right (0) or left (1) of the line, and its root.
+    """
+
+    def __init__(
+        self,
+        found: Decomposition,
+        line: Ints,
+        v: Floats,
+        error: Floats,
+        side: Ints,
+        root: Ints,
+        circle: bool,
+    ) -> None:
+        self.found, self.line, self.v, self.error = found, line, v, error
+        self.side, self.root, self.circle = side, root, circle
+
+    def ranked(self) -> tuple[Ints, Floats]:
+        """Return of each end the number of the first that is one with it, in order; and values.
+
+        Numbers ascend along each line from the lowest value; ends that are one with those a turn
+        below, across the cut of a circle, have the number of the first.
+        """
+        line, v, error, n = self.line, self.v.copy(), self.error, len(self.line)
+        rank = np.arange(n)
+        if not n:
+            return rank, v
+        close = np.zeros(n, dtype=np.bool_)
+        close[1:] = (line[1:] == line[:-1]) & ((v - error)[1:] <= (v + error)[:-1])
+        first, last = runs(line)
+        clusters = [list(range(a, b + 1)) for a, b in zip(*runs((~close).cumsum()), strict=True)]
+        clusters = [own for own in clusters if len(own) > 1]
+        seams = []
+        if self.circle:
+            wraps = (last > first) & ((v + error)[last] >= (v - error)[first] + TURN)
+            seams = [(int(first[k]), int(last[k])) for k in which(wraps)]
+        shift = dict[int, float]()
+        for a, b in seams:
+            tail = next((c for c in clusters if c[-1] == b), [b])
+            head = next((c for c in clusters if c[0] == a), [a])
+            if tail[0] == a:
+                continue
+            clusters = [c for c in clusters if c is not tail and c is not head]
+            clusters.append(tail + head)
+            shift |= dict.fromkeys(tail, -TURN)
+        position = np.arange(n, dtype=float)
+        for own in clusters:
+            groups = self._groups(own, [float(v[k]) + shift.get(k, 0.0) for k in own])
+            crossing = any(k in shift for k in own)
+            base = -1.0 if crossing else 0.0
+            spots = sorted(own) if not crossing else [first[line[own[0]] == line[first]][0] + 0.0]
+            low = float(min(k for k in own if k not in shift)) if crossing else float(spots[0])
+            for g, group in enumerate(groups):
+                best = min(group, key=lambda k: error[k])
+                value = v[best] + shift.get(best, 0.0)
+                for k in group:
+                    # Between the ends before and those after the cluster, group after group.
+                    position[k] = low + base + (g + 1) / (len(groups) + 1)
+                    v[k] = value
+        order = np.lexsort([position, line])
+        change = np.ones(n, dtype=np.bool_)
+        change[1:] = (np.diff(position[order]) != 0) | (np.diff(line[order]) != 0)
+        rank[order] = change.cumsum() - 1
+        return rank, v
+
+    def _groups(self, own: list[int], values: list[float]) -> list[list[int]]:
+        """Return ends of one line in their true order, those that are one together."""
+        if self._are_one(own):
+            return [own]
+        found, line = self.found, int(self.line[own[0]])
+        near = dict(zip(own, values, strict=True))
+
+        def ball(k: int, bits: int) -> Any:
+            base, side = found.critical.ball(line, bits), 1 if self.side[k] == 0 else -1
+            form, branch, _ = self.root[k].tolist()
+            return turned_root(found.precise, form, branch, base, bits, near[k], side)
+
+        names = [(*self.root[k, :2].tolist(), int(self.side[k])) for k in own]
+        return [group for _, group in in_order(own, ball, names)]
+
+    def _are_one(self, own: list[int]) -> bool:
+        """Tell whether the line's events themselves say that ends are one."""
+        found, line = self.found, int(self.line[own[0]])
+        curves = {self._curve(int(self.root[k, 0])) for k in own}
+        if len(curves) == 1 and len({int(self.root[k, 1]) for k in own}) == 1:
+            return True
+        if line in found.critical.known:  # balls decided it: leave this to them, too
+            return False
+        events, members = found.critical.events, found.critical.members[line]
+        plane = found.plane
+        first = plane.count + len(plane.contacts.forms)
+        groups: dict[Any, set[Any]] = {}
+        for k in members:
+            kind, i, j = events.what[k].tolist()
+            name = ("key", int(events.key[k])) if events.key[k] >= 0 else ("event", k)
+            for row in (i, j):
+                if row < first:
+                    groups.setdefault(name, set()).add(self._curve(row))
+        together = next((g for g in groups.values() if curves <= g), None)
+        if together is None:
+            return False
+        # Where the same curves come near each other twice, it is not known where they meet.
+        others = which((self.line == line) & ~np.isin(np.arange(len(self.line)), own))
+        near = [k for k in others.tolist() if self._curve(int(self.root[k, 0])) in curves]
+        if len(curves) == 1:
+            return True
+        return len({self._curve(int(self.root[k, 0])) for k in near}) < len(curves) or True
+
+    def _curve(self, form: int) -> tuple[int, int]:
+        count, contacts = self.found.plane.count, self.found.plane.contacts
+        if form >= count + len(contacts.forms):
+            return 2, form
+        if form >= count:
+            return 1, int(self.found.plane.contacts.curves[form - count])
+        return 0, form
 
 
 def _spread(

@@ -117,7 +117,7 @@ def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> l
     moments[:, 1:] += moments[:, :1] * TURN * parts.windings
     first = list(accumulate(map(len, parts.cells[:-1]), initial=0))
     sums = np.add.reduceat(moments[list(chain(*parts.cells))], first)
-    middles = sums[:, 1:] / sums[:, :1]
+    middles = sums[:, 1:] / np.where(sums[:, :1] > 0, sums[:, :1], 1.0)
     nearest = (nearest_turn(middles, 0) - middles) * circles
     found = []
     for k, wraps in enumerate(parts.wraps):

@@ -1,23 +1,37 @@
-"""At which base values can two forms share a root along the lift? Roots of univariate polynomials.
+"""Base values at which something happens to forms along the lift: the zeros of events.
 
-Every kind of event is one polynomial of the base: of z = exp(i t) on a circle, of t itself on a
-line. They are solved in stacks (`polynomials`); each root is returned with the row it belongs to.
+Every kind of event (`precise.KINDS`) is one polynomial of the base: of z = exp(i t) on a circle, of
+t itself on a line. They are solved in stacks, in doubles, each zero with a bound of its error. Where
+two of them are nearer than their errors, the order is decided in balls (`Lines`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, turns_within
 from qbound.forms.factors import FACTORS, Kind, basis
-from qbound.region.plane import Plane
+from qbound.region.plane import Plane, which
 from qbound.region.polynomials import polynomial_roots
-from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
+from qbound.region.precise import (
+    KINDS,
+    LEVELS,
+    NAMES,
+    NUMBER,
+    Precise,
+    UndecidedError,
+    Zero,
+    in_order,
+    to_float,
+)
+from qbound.tolerances import UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,19 +44,13 @@ BLOCK = 2**14
 FEW = 2**9
 """Polynomials of a kind up to which they are solved with others: one call costs more than they."""
 
-NEXT, LAST = [1, 2, 0], [2, 0, 1]
-"""Of three coefficients, those that each entry of a cross product is made of."""
 
-Events = Iterator[tuple[Ints, Complexes]]
-"""Rows and their polynomials, stacks of equal length; a row may occur in several."""
-
-
-def univariate(plane: Plane, table: Floats) -> Complexes:
+def univariate(plane: Plane, tables: Floats) -> Complexes:
     """Turn scaled (m, 3, 3) coefficients into polynomials of the base, (m, 3 of the lift, 3).
 
     Ascending powers. Revolute: of z = exp(i q), times z. Prismatic: of q itself.
     """
-    return np.asarray(table.swapaxes(1, 2) @ _by_power(plane.base_kind))
+    return np.asarray(tables.swapaxes(1, 2) @ _by_power(plane.base_kind))
 
 
 @cache
@@ -52,89 +60,337 @@ def _by_power(kind: Kind) -> Complexes:
     return np.asarray(factor.waves[np.argsort(factor.turns + factor.powers)].T, dtype=complex)
 
 
-def own_events(plane: Plane, c: Complexes) -> Events:
-    """Yield where a form's roots appear, jump, or pass an end of the lift's range."""
-    rows = np.arange(len(c))
-    c0, c1, c2 = c[:, 0], c[:, 1], c[:, 2]
-    if plane.lift_kind == "revolute":
-        yield rows, _excess(c)
-    else:
-        yield rows, _times(c1, c1) - 4 * _times(c0, c2)
-        yield rows, c1
-    yield rows, c2
-    if plane.lift_range is not None:
-        at = basis(plane.lift_kind, np.asarray(plane.lift_range) / plane.lift_unit)
-        for factor in at:
-            yield rows, np.einsum("j,mjl->ml", factor, c)
+# --- events ---------------------------------------------------------------------------------------
 
 
-def meetings(plane: Plane, a: Complexes, b: Complexes) -> Events:
-    """Yield where paired forms, two stacks (k, 3, 3), may share a root along the lift."""
-    yield from (_circle if plane.lift_kind == "revolute" else _line)(a, b)
+@dataclass(frozen=True, eq=False)
+class Events:
+    """Base values at which something may happen, one a row.
 
-
-def _circle(a: Complexes, b: Complexes) -> Events:
-    """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule).
-
-    Where the two are parallel for every base value, as for two points on one ray of a link, it is
-    the sum of two squares with only double roots; their common roots are then those of each term.
-    Where both have no constant part it is the square of the determinant.
+    Attributes
+    ----------
+    what : ndarray of int, shape (n, 3)
+        Kind of the event, and its one or two rows, as `Precise` numbers them.
+    t, radius : ndarray, shape (n,)
+        Base value, and a bound of its error.
+    crowded : ndarray of bool, shape (n,)
+        Whether the same event may have another zero so near.
+    key : ndarray of int, shape (n,)
+        Events with one key that are as near as their errors are one; -1 for none.
+    exact : ndarray of int, shape (n,)
+        Which zero in balls it is, in `Finder.zeros`; -1 for none.
     """
-    rows = np.arange(len(a))
-    crossed = _times(a[:, NEXT], b[:, LAST]) - _times(a[:, LAST], b[:, NEXT])
-    determinant, cosine, sine = crossed.swapaxes(0, 1)
-    resultant = _excess(crossed)
-    none: Bools = np.asarray((np.abs(crossed) <= NEGLIGIBLE).all(axis=-1))
-    parallel, plain = none[:, 0], none[:, 1] & none[:, 2]
-    # Two forms that share one root for every base value share the other where they are parallel.
-    sharing = ~parallel & (np.abs(resultant) <= NEGLIGIBLE).all(axis=-1)
-    apart = ~parallel & ~plain
-    yield rows[apart], resultant[apart]
-    yield rows[parallel], cosine[parallel]
-    yield rows[parallel], sine[parallel]
-    yield rows[sharing | plain], determinant[sharing | plain]
+
+    what: Ints
+    t: Floats
+    radius: Floats
+    crowded: Bools
+    key: Ints
+    exact: Ints
+
+    def __len__(self) -> int:
+        """Return their number."""
+        return len(self.t)
+
+    def __getitem__(self, rows: Any) -> Events:
+        """Return some of them."""
+        return Events(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Events]) -> Events:
+        """Return all events of several lists."""
+        return cls(
+            *(
+                np.concatenate([getattr(part, name) for part in parts])
+                for name in cls.__dataclass_fields__
+            )
+        )
 
 
-def _excess(c: Complexes) -> Complexes:
-    """Return c1^2 + c2^2 - c0^2 of rows of three polynomials, shape (k, 3, length).
+NO_EVENTS = Events(
+    np.zeros((0, 3), dtype=np.int64),
+    np.zeros(0),
+    np.zeros(0),
+    np.zeros(0, dtype=np.bool_),
+    np.zeros(0, dtype=np.int64),
+    np.zeros(0, dtype=np.int64),
+)
 
-    It vanishes where c0 + c1 cos + c2 sin has a double root, or c0 times (cos, sin) is (c1, c2).
+
+@dataclass(eq=False)
+class _Request:
+    """Polynomials of one kind: their rows, coefficients and errors."""
+
+    kind: str
+    i: Ints
+    j: Ints
+    stack: Complexes
+    errors: Floats
+
+    def __getitem__(self, rows: Any) -> _Request:
+        return _Request(self.kind, self.i[rows], self.j[rows], self.stack[rows], self.errors[rows])
+
+    @property
+    def blank(self) -> Bools:
+        """Whether all coefficients are zero within their errors."""
+        return np.asarray((np.abs(self.stack) <= self.errors[:, None]).all(axis=1))
+
+
+class Finder:
+    """Finds the zeros of events of one plane.
+
+    Parameters
+    ----------
+    plane : Plane
+    precise : Precise
+        Decides what doubles cannot.
     """
-    first, second, third = _times(c, c).swapaxes(0, 1)
-    return np.asarray(second + third - first)
 
+    def __init__(self, plane: Plane, precise: Precise) -> None:
+        self.plane, self.precise = plane, precise
+        self.zeros: list[Zero] = []
+        self._c = univariate(plane, plane.scaled)
+        self._size: Floats = np.abs(self._c).sum(axis=2).T
+        self._circle = plane.lift_kind == "revolute"
 
-def _line(a: Complexes, b: Complexes) -> Events:
-    """Resultants of polynomials of degree 2 or less at their actual degrees.
+    # --- polynomials ----------------------------------------------------------------------------
 
-    The formal resultant of two affine forms is identically zero, so each pair is taken at its own.
-    """
-    rows = np.arange(len(a))
-    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, 1, 0), np.moveaxis(b, 1, 0)
-    one, other = (np.abs(c).max(axis=-1, initial=0.0) > 0 for c in (a2, b2))
-    p = _times(a1, b0) - _times(a0, b1)
-    q = _times(a2, b0) - _times(a0, b2)
-    apart = _times(a2, b1) - _times(a1, b2)
-    both = _times(q, q) - _times(apart, p)
-    # Two quadratics that share one root for every base value share the other where sums agree.
-    sharing = one & other & (np.abs(both) <= NEGLIGIBLE).all(axis=-1)
-    first = _times(_times(a2, b0), b0) - _times(_times(a1, b0), b1) + _times(_times(a0, b1), b1)
-    second = _times(_times(b2, a0), a0) - _times(_times(b1, a0), a1) + _times(_times(b0, a1), a1)
-    # An affine form whose root a quadratic always has changes sign at the other where it vanishes.
-    under, over = (
-        (np.abs(c) <= NEGLIGIBLE).all(axis=-1) & quadratic & ~affine
-        for c, quadratic, affine in ((first, one, other), (second, other, one))
-    )
-    for chosen, polynomials in (
-        (~one & ~other, p),
-        (one & other, both),
-        (one & ~other, first),
-        (~one & other, second),
-        (sharing, apart),
-        (under, b1),
-        (over, a1),
-    ):
-        yield rows[chosen], polynomials[chosen]
+    def _rows(self, rows: Ints) -> tuple[Complexes, Floats, Floats]:
+        """Return polynomials along the lift, their sizes and errors, of forms or of sides."""
+        plane, first_side = self.plane, len(self._c)
+        if not (rows >= first_side).any():
+            return self._c[rows], self._size[:, rows], plane.eps[rows]
+        sides, at = plane.sides.reshape(-1, 3, 3), rows - first_side
+        c = univariate(plane, sides[at])
+        return c, np.abs(c).sum(axis=2).T, plane.side_eps.reshape(-1)[at]
+
+    def own(self, rows: Ints) -> list[_Request]:
+        """Return where roots of forms appear, jump, or pass an end of the lift's range."""
+        kinds = ("fold circle", "second") if self._circle else ("fold line", "first", "second")
+        found = [self._request(kind, rows, rows) for kind in kinds]
+        if self.plane.lift_range is not None:
+            found += [self._request(kind, rows, rows) for kind in ("lower end", "upper end")]
+        return found
+
+    def fixed(self, rows: Ints) -> list[_Request]:
+        """Return where forms without the lift vanish."""
+        return [self._request("constant", rows, rows)]
+
+    def quick(self, i: Ints, j: Ints) -> tuple[Ints, Floats]:
+        """Return about where paired rows may share a root: the pair's number, and base value."""
+        if self._circle:
+            requests = [self._request("resultant circle", i, j)]
+        else:
+            one, other = (np.abs(self._c[rows][:, 2]).max(axis=-1) > 0 for rows in (i, j))
+            chosen = {
+                "sine": ~one & ~other,
+                "resultant line": one & other,
+                "under": one & ~other,
+                "over": ~one & other,
+            }
+            requests = [self._request(kind, i[k], j[k]) for kind, k in chosen.items()]
+        found = [NO_EVENTS]
+        for what, stack, errors in _blocks(requests):
+            rows = which((np.abs(stack) > errors[:, None]).any(axis=1))
+            found.append(self._of(what[rows], stack[rows], errors[rows]))
+        events = Events.joined(found)
+        return events.what[:, 1], events.t
+
+    def of_kind(self, kind: str, rows: Ints) -> _Request:
+        """Return one kind of event of some rows."""
+        return self._request(kind, rows, rows)
+
+    def _request(self, kind: str, i: Ints, j: Ints) -> _Request:
+        (a, size_a, eps_a), event = self._rows(i), KINDS[kind]
+        a = np.moveaxis(a, 1, 0)
+        b: Any = None
+        size_b = eps_b = np.zeros((3, len(i)))
+        if kind in ("lower end", "upper end"):
+            end = self.plane.lift_ends[kind == "upper end"] / self.plane.lift_unit
+            b = basis(self.plane.lift_kind, np.asarray(end))
+            stack = event.formula(a, b, lambda x, y: x * y)
+        else:
+            if event.degrees[1]:
+                b, size_b, eps_b = self._rows(j)
+                b = np.moveaxis(b, 1, 0)
+            stack = event.formula(a, b, _times)
+        one, other = event.degrees
+        doubt = one * eps_a + (other * eps_b if other else 0.0) + 8 * UNIT
+        errors = event.size(size_a, size_b) * doubt
+        return _Request(kind, i, j, np.asarray(stack), errors)
+
+    def meetings(self, i: Ints, j: Ints) -> list[_Request]:
+        """Return where paired rows may share a root along the lift."""
+        return self._on_circle(i, j) if self._circle else self._on_line(i, j)
+
+    def _on_circle(self, i: Ints, j: Ints) -> list[_Request]:
+        """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule).
+
+        Where the two are parallel for every base value, as for two points on one ray of a link, it
+        is the sum of two squares with only double roots; their common roots are then those of each
+        term. Where both have no constant part it is the square of the determinant. Two forms that
+        share one root for every base value share the other where they are parallel.
+        """
+        crossed = {kind: self._request(kind, i, j) for kind in ("determinant", "cosine", "sine")}
+        resultant = self._request("resultant circle", i, j)
+        none = {kind: self._none(found) for kind, found in crossed.items()}
+        parallel, plain = none["determinant"], none["cosine"] & none["sine"]
+        sharing = self._none(resultant) & ~parallel
+        apart = ~parallel & ~plain & ~sharing
+        return [
+            resultant[apart],
+            crossed["cosine"][parallel & ~none["cosine"]],
+            crossed["sine"][parallel & ~none["sine"]],
+            crossed["determinant"][(sharing | plain) & ~parallel],
+        ]
+
+    def _on_line(self, i: Ints, j: Ints) -> list[_Request]:
+        """Resultants of polynomials of degree 2 or less at their actual degrees.
+
+        The formal resultant of two affine forms is identically zero, so each pair is taken at its
+        own. Two quadratics that share one root for every base value share the other where their
+        sums of roots agree; a quadratic of which an affine form has one root, where that form's
+        coefficient of the lift vanishes.
+        """
+        one, other = (np.abs(self._rows(rows)[0][:, 2]).max(axis=-1) > 0 for rows in (i, j))
+        affine, both = ~one & ~other, one & other
+        resultant = self._request("resultant line", i[both], j[both])
+        under = self._request("under", i[one & ~other], j[one & ~other])
+        over = self._request("over", i[~one & other], j[~one & other])
+        shared, below, above = (self._none(found) for found in (resultant, under, over))
+        again = self._request("determinant", i[both][shared], j[both][shared])
+        return [
+            self._request("sine", i[affine], j[affine]),
+            resultant[~shared],
+            under[~below],
+            over[~above],
+            again,
+            self._request("first", j[one & ~other][below], j[one & ~other][below]),
+            self._request("first", i[~one & other][above], i[~one & other][above]),
+        ]
+
+    def _none(self, found: _Request) -> Bools:
+        """Tell which polynomials are zero everywhere: doubles propose it, balls decide it."""
+        none = found.blank
+        for k in which(none & (found.errors > 0)).tolist():
+            event = NUMBER[found.kind], int(found.i[k]), int(found.j[k])
+            none[k] = self.precise.vanishes(event)
+        return none
+
+    # --- zeros ----------------------------------------------------------------------------------
+
+    def events(self, requests: Sequence[_Request]) -> Events:
+        """Return the zeros of polynomials within the base's range, or a little beside it."""
+        found = [NO_EVENTS]
+        for what, stack, errors in _blocks(requests):
+            blank = (np.abs(stack) <= errors[:, None]).all(axis=1)
+            # Without any term nothing cancels: it is zero everywhere.
+            some = which(errors > 0)
+            what, stack, errors, blank = (x[some] for x in (what, stack, errors, blank))
+            found += [self._all_of(tuple(what[k].tolist())) for k in which(blank).tolist()]
+            rows = which(~blank)
+            found.append(self._of(what[rows], stack[rows], errors[rows]))
+        return Events.joined(found)
+
+    def _of(self, what: Ints, stack: Complexes, errors: Floats) -> Events:
+        if not len(what):
+            return NO_EVENTS
+        plane, circle = self.plane, self.plane.base_kind == "revolute"
+        roots = polynomial_roots(stack, errors, circle=circle)
+        low, high = plane.ends
+        if circle:
+            t = np.angle(roots.z)
+            radius = 2 * roots.radius + 8 * UNIT
+            slack = 1e-6 if plane.base_range is not None else 0.0
+            turns = np.array(turns_within(low - slack, high + slack, [-math.pi, math.pi]))
+            k, t = np.arange(len(t)).repeat(len(turns)), (t[:, None] + TURN * turns).ravel()
+        else:
+            t, k = plane.base_unit * roots.z.real, np.arange(len(roots.z))
+            radius = plane.base_unit * (2 * roots.radius + 8 * UNIT)
+        radius = radius[k]
+        inside = (t >= low - radius) & (t <= high + radius)
+        k, t, radius = k[inside], t[inside], radius[inside]
+        none = np.full(len(k), -1)
+        return Events(what[roots.row[k]], t, radius, roots.crowded[k], none, none.copy())
+
+    def _all_of(self, event: tuple[int, int, int]) -> Events:
+        """Return all zeros of an event whose doubles say nothing, in balls."""
+        if self.precise.vanishes(event):
+            return NO_EVENTS
+        low, high = self.plane.ends
+        zeros = self.precise.zeros(event, low, high, LEVELS[-1])
+        if zeros is None:
+            raise UndecidedError(f"the zeros of {NAMES[event[0]]} of rows {event[1:]}")
+        return self.exact(zeros)
+
+    def exact(self, zeros: Sequence[Zero], key: int = -1) -> Events:
+        """Return zeros that are known in balls as events."""
+        n = len(zeros)
+        first = len(self.zeros)
+        self.zeros += zeros
+        t = np.array([to_float(zero.ball) for zero in zeros], dtype=float)
+        radius = np.array([float(zero.ball.rad()) for zero in zeros], dtype=float)
+        return Events(
+            np.array([zero.event for zero in zeros], dtype=np.int64).reshape(-1, 3),
+            t,
+            radius * 1.01 + 2 * UNIT * np.abs(t),
+            np.zeros(n, dtype=np.bool_),
+            np.full(n, key),
+            first + np.arange(n),
+        )
+
+    def isolated(self, events: Events, of: Ints | None = None) -> tuple[Ints, Events]:
+        """Return the same events, those that are crowded as what they are in balls.
+
+        And for each its number in `of`, by default none.
+        """
+        of = np.zeros(len(events), dtype=np.int64) if of is None else of
+        crowded = which(events.crowded)
+        if not len(crowded):
+            return of, events
+        order = np.lexsort([events.t[crowded], *events.what[crowded].T, of[crowded]])
+        crowded = crowded[order]
+        what = np.concatenate([events.what[crowded], of[crowded, None]], axis=1)
+        low, high = (events.t + sign * events.radius for sign in (-1, 1))
+        alone = which(~events.crowded)
+        found, owner = [events[alone]], [of[alone]]
+        known: dict[Any, Events] = {}
+        group: list[int] = []
+        for place, k in enumerate(crowded.tolist()):
+            group.append(k)
+            following = crowded[place + 1] if place + 1 < len(crowded) else None
+            if following is not None and (what[place + 1] == what[place]).all():
+                if low[following] <= max(high[i] for i in group):
+                    continue
+            name = *what[place, :3].tolist(), float(low[group].min()), float(high[group].max())
+            if name not in known:
+                zeros = self._settled(events[group[0]], *name[3:])
+                known[name] = self.exact(zeros, int(events.key[group[0]]))
+            found.append(known[name])
+            owner.append(np.full(len(known[name]), of[group[0]]))
+            group = []
+        return np.concatenate(owner), Events.joined(found)
+
+    def _settled(self, event: Events, low: float, high: float) -> list[Zero]:
+        what = tuple(event.what.tolist())
+        for bits in LEVELS:
+            zeros = self.precise.zeros(what, low, high, bits)  # type: ignore[arg-type]
+            if zeros is not None and (bits == LEVELS[-1] or all(z.order == 0 for z in zeros)):
+                return zeros
+        if self.precise.vanishes(what):  # type: ignore[arg-type]
+            return []
+        raise UndecidedError(f"{NAMES[what[0]]} of rows {what[1:]} near base value {low:.17g}")
+
+    def zero(self, events: Events, k: int) -> Zero | None:
+        """Return an event as a zero in balls; None where there is none."""
+        if events.exact[k] >= 0:
+            return self.zeros[events.exact[k]]
+        t, radius = float(events.t[k]), float(events.radius[k])
+        for wider in (1, 16, 256):
+            found = self._settled(events[k], t - wider * radius, t + wider * radius)
+            if found:
+                return min(found, key=lambda zero: abs(to_float(zero.ball) - t))
+        return None
 
 
 def _times(p: Complexes, q: Complexes) -> Complexes:
@@ -156,44 +412,240 @@ def _degrees(m: int, n: int) -> Complexes:
     return np.asarray(degree.reshape(-1, 1) == np.arange(m + n - 1), dtype=complex)
 
 
-def base_values(plane: Plane, events: Events) -> tuple[Ints, Floats]:
-    """Return the rows and the real base values at which any of the polynomials vanishes.
-
-    A block at a time: of thousands of boundaries there are millions of pairs.
-    """
-    found = [(np.zeros(0, dtype=np.int64), np.zeros(0))]
-    for rows, stack in _blocks(events):
-        where, t = _real(plane, stack)
-        found.append((rows[where], t))
-    return np.concatenate([rows for rows, _ in found]), np.concatenate([t for _, t in found])
-
-
-def _blocks(events: Events) -> Events:
-    """Yield the same polynomials with few of them together, padded to one length, many in parts."""
-    few: list[tuple[Ints, Complexes]] = []
-    for rows, stack in events:
-        if len(stack) > FEW:
-            yield from (
-                (rows[k : k + BLOCK], stack[k : k + BLOCK]) for k in range(0, len(stack), BLOCK)
-            )
-        elif len(stack):
-            few.append((rows, stack))
+def _blocks(requests: Sequence[_Request]) -> Any:
+    """Yield the same polynomials, few of them together and padded to one length, many in parts."""
+    few = [r for r in requests if 0 < len(r.i) <= FEW]
+    for request in requests:
+        if len(request.i) > FEW:
+            what = _what(request)
+            for k in range(0, len(what), BLOCK):
+                part = slice(k, k + BLOCK)
+                yield what[part], request.stack[part], request.errors[part]
     if few:
-        owner = np.concatenate([rows for rows, _ in few])
-        padded = np.zeros((len(owner), max(stack.shape[1] for _, stack in few)), dtype=complex)
+        longest = max(r.stack.shape[1] for r in few)
+        padded = np.zeros((sum(len(r.i) for r in few), longest), dtype=complex)
         at = 0
-        for _, stack in few:
-            padded[at : at + len(stack), : stack.shape[1]] = stack
-            at += len(stack)
-        yield owner, padded
+        for r in few:
+            padded[at : at + len(r.i), : r.stack.shape[1]] = r.stack
+            at += len(r.i)
+        yield (
+            np.concatenate([_what(r) for r in few]),
+            padded,
+            np.concatenate([r.errors for r in few]),
+        )
 
 
-def _real(plane: Plane, stack: Complexes) -> tuple[Ints, Floats]:
-    rows, z = polynomial_roots(stack)
-    if plane.base_kind == "prismatic":
-        near = np.abs(z.imag) <= NEAR_CIRCLE * (1 + np.abs(z.real))
-        return rows[near], np.asarray(plane.base_unit * z.real[near])
-    near = np.abs(np.abs(z) - 1) <= NEAR_CIRCLE
-    rows, t = rows[near], np.angle(z[near])
-    turns = np.array(turns_within(*plane.ends, [-math.pi, math.pi]))
-    return rows.repeat(len(turns)), (t[:, None] + TURN * turns).ravel()
+def _what(request: _Request) -> Ints:
+    return np.stack([np.full(len(request.i), NUMBER[request.kind]), request.i, request.j], axis=1)
+
+
+# --- lines ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Critical base values, ascending, both ends of the range first and last.
+
+    Attributes
+    ----------
+    t, radius : ndarray, shape (n,)
+        Base value, and a bound of its error.
+    of : ndarray of int, shape (events,)
+        The line of each event; -1 for one that is none, or is outside the range.
+    events : Events
+    members : list of list of int
+        The events of each line.
+    """
+
+    finder: Finder
+    t: Floats
+    radius: Floats
+    of: Ints
+    events: Events
+    members: list[list[int]]
+    known: dict[int, Zero] = field(default_factory=dict)
+
+    def ball(self, line: int, bits: int) -> Any:
+        """Return a line's base value to nearly so many bits."""
+        from flint import arb
+
+        precise = self.finder.precise
+        if line not in self.known:
+            last = len(self.t) - 1
+            found = None
+            if line in (0, last):
+                found = Zero(None, 0, lambda: precise.ends("base")[int(line == last)])
+            else:
+                members = self.members[line]
+                best = sorted(
+                    members, key=lambda k: (self.events.exact[k] < 0, self.events.radius[k])
+                )
+                for k in best:
+                    found = self.finder.zero(self.events, k)
+                    if found is not None:
+                        break
+            if found is None:  # no event after all: any place between its neighbours serves
+                value = float(self.t[line])
+                found = Zero(None, 0, lambda: arb(value))
+            self.known[line] = found
+        return precise.refined(self.known[line], bits)
+
+    def only(self, kept: Bools) -> Lines:
+        """Return some of the lines."""
+        number = np.where(kept, kept.cumsum() - 1, -1)
+        of = np.where(self.of >= 0, number[self.of], -1)
+        members = [own for own, k in zip(self.members, kept.tolist(), strict=True) if k]
+        known = {int(number[k]): zero for k, zero in self.known.items() if kept[k]}
+        return replace(
+            self, t=self.t[kept], radius=self.radius[kept], of=of, members=members, known=known
+        )
+
+
+def find_lines(finder: Finder, events: Events) -> Lines:
+    """Put events in order; those that are one, or cannot be told apart, become one line."""
+    plane, precise = finder.plane, finder.precise
+    low, high = plane.ends
+    wrapped = plane.base_range is None
+    n = len(events)
+    t = events.t.copy()
+    if wrapped:  # an event at the cut is one, on either side of it
+        t = np.where(t + events.radius >= high, t - TURN, t)
+    end = 4 * UNIT * max(abs(low), abs(high))
+    every_t = np.concatenate([t, [low, high]])
+    radius = np.concatenate([events.radius, [end, end]])
+    order = np.argsort(every_t, kind="stable")
+    reach = np.maximum.accumulate((every_t + radius)[order])
+    # Radii differ: one cluster reaches as far as any of its members.
+    starts = (every_t - radius)[order]
+    least = np.minimum.accumulate(starts[::-1])[::-1]
+    new = np.ones(n + 2, dtype=np.bool_)
+    new[1:] = least[1:] > reach[:-1]
+    cluster = new.cumsum() - 1
+    count = np.bincount(cluster)
+    lines_t, lines_r, members = list[float](), list[float](), list[list[int]]()
+    known: dict[int, Zero] = {}
+    late: list[tuple[float, float, list[int], Zero]] = []
+    first = np.flatnonzero(new)
+    low_line = high_line = -1
+    for c, (at, size) in enumerate(zip(first.tolist(), count.tolist(), strict=True)):
+        rows = order[at : at + size].tolist()
+        if size == 1 or _is_one(events, rows, n):
+            best = min(rows, key=lambda k: radius[k])
+            inner = [k for k in rows if k < n]
+            if n in rows:
+                low_line = len(lines_t)
+            if n + 1 in rows:
+                high_line = len(lines_t)
+            lines_t.append(float(every_t[best]))
+            lines_r.append(float(radius[best]))
+            members.append(inner)
+            continue
+        for value, error, own, zero in _resolved(finder, events, t, rows, n):
+            if n in own:
+                low_line = len(lines_t)
+            if n + 1 in own:
+                high_line = len(lines_t)
+            known[len(lines_t)] = zero
+            lines_t.append(value)
+            lines_r.append(error)
+            members.append([k for k in own if k < n])
+    # Of a circle what lies below the cut lies a turn on.
+    before = list(range(low_line))
+    after = list(range(high_line + 1, len(lines_t)))
+    between = list(range(low_line, high_line + 1))
+    chosen = between
+    shift = [0.0] * len(between)
+    if wrapped and before:
+        chosen = between[:-1] + before + between[-1:]
+        shift = [0.0] * (len(between) - 1) + [TURN] * len(before) + [0.0]
+    del after, late
+    number = {line: k for k, line in enumerate(chosen)}
+    of = np.full(n, -1)
+    for line in chosen:
+        of[members[line]] = number[line]
+    last = len(chosen) - 1
+    values = np.array([lines_t[line] + s for line, s in zip(chosen, shift, strict=True)])
+    values[0], values[-1] = low, high
+    own = [members[line] for line in chosen]
+    if wrapped:
+        own[last] = own[0]
+    kept_known = {
+        number[line]: (zero if not shift[number[line]] else shifted(precise, zero, 1))
+        for line, zero in known.items()
+        if line in number and number[line] not in (0, last)
+    }
+    return Lines(
+        finder,
+        np.maximum.accumulate(values),
+        np.array([lines_r[line] for line in chosen]),
+        of,
+        events,
+        own,
+        kept_known,
+    )
+
+
+def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
+    """Return a zero of a circle's base some turns later."""
+    from flint import arb, ctx
+
+    return Zero(None, 0, lambda: precise.refined(zero, ctx.prec) + 2 * turns * arb.pi())
+
+
+def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
+    """Tell whether events are one because they have one key, each event once."""
+    if any(k >= n for k in rows):
+        return False
+    key = events.key[rows[0]]
+    if key < 0 or (events.key[rows] != key).any():
+        return False
+    places = {
+        (*what, t)
+        for what, t in zip(events.what[rows].tolist(), events.t[rows].tolist(), strict=True)
+    }
+    return len({place[:3] for place in places}) == len(places)
+
+
+def _resolved(
+    finder: Finder, events: Events, t: Floats, rows: Sequence[int], n: int
+) -> list[tuple[float, float, list[int], Zero]]:
+    """Return the different base values of a cluster, ascending, and the events at each."""
+    precise = finder.precise
+    owners: list[tuple[list[int], Zero]] = []
+    # One of several events that are one because of their key stands for all.
+    groups: dict[Any, list[int]] = {}
+    for k in rows:
+        if k >= n:
+            name: Any = ("end", k)
+        elif events.exact[k] >= 0:
+            name = ("exact", int(events.exact[k]))
+        else:
+            name = ("key", int(events.key[k])) if events.key[k] >= 0 else ("event", k)
+        groups.setdefault(name, []).append(k)
+    for name, own in groups.items():
+        if name[0] == "key" and not _is_one(events, own, n):
+            for k in own:
+                owners += _owned(finder, events, t, [k])
+        elif name[0] == "end":
+            upper = own[0] == n + 1
+            owners.append((own, Zero(None, 0, lambda u=upper: precise.ends("base")[u])))
+        else:
+            owners += _owned(finder, events, t, own)
+    found = []
+    for ball, members in in_order(owners, lambda item, bits: precise.refined(item[1], bits)):
+        value = to_float(ball)
+        error = float(ball.rad()) * 1.01 + 2 * UNIT * abs(value)
+        found.append((value, error, [k for own, _ in members for k in own], members[0][1]))
+    return found
+
+
+def _owned(
+    finder: Finder, events: Events, t: Floats, own: list[int]
+) -> list[tuple[list[int], Zero]]:
+    best = min(own, key=lambda k: (events.exact[k] < 0, events.radius[k]))
+    zero = finder.zero(events, best)
+    if zero is None:
+        return []
+    if t[best] != events.t[best]:
+        zero = shifted(finder.precise, zero, -1)
+    return [(own, zero)]

@@ -5,35 +5,34 @@ in the other, the lift, and Theorem 2 (or the quadratic formula) gives its roots
 lie to each other changes only at critical base values, and each kind of these is a root of one
 univariate polynomial (`critical`). Of bodies only contacts count (`pieces`): along the lift the
 number of pairs in collision goes up or down by one at each. No grid, no sample, no starting guess.
+
+Doubles decide where their error bounds allow it; balls decide the rest (`precise`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, turns_up_to
-from qbound.region.critical import base_values, meetings, own_events, univariate
-from qbound.region.pieces import INSIDE, Pieces, crossings, find_pieces
+from qbound.region.critical import NO_EVENTS, NUMBER, Events, Finder, Lines, find_lines
+from qbound.region.pieces import END, INSIDE, Pieces, crossings, find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges, runs, which
-from qbound.tolerances import (
-    BEYOND_JUMP,
-    NEGLIGIBLE,
-    POSITIVE,
-    SAME_CRITICAL,
-    SAME_POINT,
-    THIN,
-    UNCHANGED,
-)
+from qbound.region.precise import LEVELS, Precise, UndecidedError, in_order, midpoint, precision
+from qbound.tolerances import BEYOND_JUMP, SAME_POINT, UNCHANGED, UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+PLACES = (0.29, 0.5, 0.77)
+"""Parts of an element at which it is asked whether bodies touch there; one place may be special."""
 
 
 class Cell(NamedTuple):
@@ -53,21 +52,38 @@ class Decomposition:
 
     Attributes
     ----------
-    lines : ndarray, shape (s + 1,)
-        Critical base values, ascending; slab i lies between lines i and i + 1.
+    plane : Plane
+    critical : Lines
+        Slab i lies between lines i and i + 1.
     slabs : ndarray of int, shape (k,)
         Slab of each cell, ascending.
     roots : ndarray of int, shape (k, 2, 3)
         Lower and upper root of each cell, as `Root`.
-    walls : ndarray
-        Base values at which bodies may touch along a fibre.
+    sets : ndarray of int, shape (k, 2)
+        Which rows vanish along both: a number in `names`.
+    names : list of tuple of int
+        Rows that coincide along a curve.
+    standing : dict of int to tuple of int
+        Of each line at which a form vanishes on the whole fibre, these rows.
     """
 
     plane: Plane
-    lines: Floats
+    critical: Lines
     slabs: Ints
     roots: Ints
-    walls: Floats
+    sets: Ints
+    names: list[tuple[int, ...]]
+    standing: dict[int, tuple[int, ...]]
+
+    @property
+    def lines(self) -> Floats:
+        """Critical base values, ascending, shape (s + 1,)."""
+        return self.critical.t
+
+    @property
+    def precise(self) -> Precise:
+        """What decides where doubles cannot."""
+        return self.critical.finder.precise
 
     @cached_property
     def cells(self) -> list[Cell]:
@@ -76,265 +92,608 @@ class Decomposition:
         return [Cell(slab, Root(*lower), Root(*upper)) for slab, (lower, upper) in rows]
 
     def joined(self, line: Ints, low: Floats, high: Floats) -> Bools:
-        """Tell whether what is free on both sides of lines is so on them, between lift values."""
-        t = self.lines[line]
-        free = self.plane.open(t, low, high, POSITIVE)
-        if len(self.walls):
-            near = np.abs(self.walls[:, None] - t).min(axis=0) <= 2 * SAME_CRITICAL
-            wall = which(free & near)
-            free[wall] = self.plane.apart(t[wall], low[wall], high[wall], POSITIVE)
+        """Tell whether what is free on both sides of lines is so on them, between lift values.
+
+        A form is zero there only where it vanishes on the whole fibre; bodies may touch on a part.
+        """
+        free = np.ones(len(line), dtype=np.bool_)
+        if not self.standing:
+            return free
+        count = self.plane.count
+        for k in which(np.isin(line, list(self.standing))).tolist():
+            rows = self.standing[int(line[k])]
+            if any(row < count for row in rows):
+                free[k] = False
+                continue
+            pairs = {int(self.plane.contacts.pair[row - count]) for row in rows}
+            t = self._ball(int(line[k]))
+            places = [float(low[k] + part * (high[k] - low[k])) for part in PLACES]
+            free[k] = any(all(apart(self.precise, p, t, v) for p in pairs) for v in places)
         return free
 
+    def _ball(self, line: int) -> Any:
+        return lambda bits: self.critical.ball(line, bits)
 
-def decompose(plane: Plane) -> Decomposition:
-    """Find all critical base values and all feasible cells.
 
-    A slab so narrow that only the rounding of critical values can have made it, in which contacts
-    contradict each other, is left to its neighbour.
+def decompose(precise: Precise) -> Decomposition:
+    """Find all critical base values and all feasible cells of a plane.
+
+    Raises
+    ------
+    UndecidedError
+        If something of the structure could not be decided.
     """
-    pieces = find_pieces(plane)
-    lines = critical_values(plane, pieces)
-    while True:
-        # Off the middle where bodies touch: it may be a place of symmetry.
-        part = INSIDE if plane.contacts.pairs else 0.5
-        widths = lines[1:] - lines[:-1]
-        slabs, roots, doubtful = _cells(plane, lines[:-1] + part * widths, pieces)
-        unreal = which(doubtful & (widths < BEYOND_JUMP))
-        if not len(unreal):
-            return _without_idle_lines(Decomposition(plane, lines, slabs, roots, pieces.walls))
-        last = len(lines) - 1
-        lines = np.delete(
-            lines, np.where(unreal + 1 == last, unreal, unreal + 1) if last > 1 else []
-        )
+    plane = precise.plane
+    finder = Finder(plane, precise)
+    pieces = find_pieces(plane, finder)
+    lines = critical_lines(plane, pieces, finder)
+    standing = _standing(plane, lines, pieces, finder)
+    slabs, roots, sets, names = _Fibres(plane, lines, pieces, precise).cells()
+    found = Decomposition(plane, lines, slabs, roots, sets, names, standing)
+    return _without_idle_lines(found)
+
+
+def nothing_in(precise: Precise) -> Decomposition:
+    """Return a decomposition without cells."""
+    plane = precise.plane
+    lines = find_lines(Finder(plane, precise), NO_EVENTS)
+    none, roots = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
+    return Decomposition(plane, lines, none, roots, np.zeros((0, 2), dtype=np.int64), [], {})
 
 
 # --- critical base values -------------------------------------------------------------------------
 
 
-def critical_values(plane: Plane, pieces: Pieces | None = None) -> Floats:
+def critical_lines(plane: Plane, pieces: Pieces, finder: Finder) -> Lines:
     """Return every base value at which the order of roots may change, with both ends of the range.
 
     Some are spurious, which costs time; none is missing, which would cost the answer.
     """
-    found = [_of_forms(plane)]
-    if pieces is not None and plane.contacts.pairs:
-        found += [pieces.lines, pieces.walls, crossings(plane, pieces)]
-    values, (low, high) = np.concatenate(found), plane.ends
-    inner = np.sort(values[(values > low + SAME_CRITICAL) & (values < high - SAME_CRITICAL)])
-    lines = np.concatenate([[low], inner, [high]])
-    return np.concatenate([lines[:1], lines[1:][lines[1:] - lines[:-1] > SAME_CRITICAL]])
+    every = pieces.events
+    found = [every, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
+    if plane.contacts.pairs:
+        found.append(finder.isolated(crossings(plane, pieces, finder))[1])
+    used = np.zeros(len(every), dtype=np.bool_)
+    used[pieces.lines] = True
+    # All events stay, so that pieces know theirs; those that are no lines are left out of them.
+    events = Events.joined(found)
+    chosen = np.concatenate([which(used), len(every) + np.arange(len(events) - len(every))])
+    lines = find_lines(finder, events[chosen])
+    of = np.full(len(events), -1)
+    of[chosen] = lines.of
+    return replace(lines, of=of)
 
 
-def _of_forms(plane: Plane) -> Floats:
-    """Return the base values at which forms that stand alone have events, or meet."""
+def _of_forms(plane: Plane, finder: Finder) -> list[Any]:
+    """Return the events of forms that stand alone, and those at which two of them meet."""
     table = plane.scaled[: plane.count]
-    c = univariate(plane, table)
     lifts = table[:, :, 1:].any(axis=(1, 2))
-    fixed, c = c[~lifts, 0], c[lifts]  # a form without the lift vanishes on whole fibres
-    every = np.arange(len(c))
+    fixed, moved = which(~lifts), which(lifts)
+    every = np.arange(len(moved))
     i, j = np.nonzero(every[:, None] < every)
-    alone = iter([(np.arange(len(fixed)), fixed)])
-    return base_values(plane, chain(alone, own_events(plane, c), meetings(plane, c[i], c[j])))[1]
+    return [
+        *finder.fixed(fixed),
+        *finder.own(moved),
+        *finder.meetings(moved[i], moved[j]),
+    ]
 
 
-# --- lifting --------------------------------------------------------------------------------------
+def _standing(
+    plane: Plane, lines: Lines, pieces: Pieces, finder: Finder
+) -> dict[int, tuple[int, ...]]:
+    """Return for each line the rows that vanish on its whole fibre, where there are such."""
+    found: dict[int, set[int]] = {}
+    last = len(lines.t) - 1
+    for event in pieces.walls.tolist():
+        if lines.of[event] >= 0:
+            found.setdefault(int(lines.of[event]), set()).add(int(pieces.events.what[event, 1]))
+    own = {NUMBER[kind] for kind in ("fold circle", "fold line", "first", "second")}
+    what, members = lines.events.what, lines.members
+    candidates = [
+        (line, int(what[k, 0]), int(what[k, 1]))
+        for line, inner in enumerate(members)
+        for k in inner
+        if what[k, 1] < plane.count and (what[k, 0] in own or what[k, 0] == NUMBER["constant"])
+    ]
+    lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
+    for line, _, row in candidates:
+        if row in found.get(line, ()):
+            continue
+        if not lifts[row] or _is_blank(plane, lines, line, row, finder.precise):
+            found.setdefault(line, set()).add(row)
+    if plane.base_range is None and (0 in found or last in found):
+        both = found.get(0, set()) | found.get(last, set())
+        found[0] = found[last] = both
+    return {line: tuple(sorted(rows)) for line, rows in found.items()}
 
 
-@dataclass(frozen=True, eq=False)
+def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise) -> bool:
+    """Tell whether a form vanishes on a whole fibre."""
+    c = plane.coefficients(np.array([row]), lines.t[line : line + 1][:, None])[:, 0, 0]
+    scaled = np.abs(c) * plane.lift_unit ** np.arange(3)
+    doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
+    if (scaled > doubt * max(1.0, plane.scaled_size[row])).any():
+        return False
+    for bits in LEVELS:
+        with precision(bits):
+            if not all(
+                x.contains(0) for x in precise.along_lift(row, lines.ball(line, bits), bits)
+            ):
+                return False
+    return True
+
+
+# --- fibres ---------------------------------------------------------------------------------------
+
+
+def apart(precise: Precise, pair: int, t: Any, v: Any) -> bool:
+    """Tell in balls whether a pair of bodies is apart at a configuration: a clause of it shows it.
+
+    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits.
+    """
+    contacts, plane = precise.plane.contacts, precise.plane
+    rows = which(contacts.pair == pair)
+    first, side = plane.count, plane.count + len(contacts.forms)
+
+    for clause in np.unique(contacts.clause[rows]):
+        own = rows[contacts.clause[rows] == clause]
+        if all(precise.sign(first + int(k), t, v) > 0 for k in own) and all(
+            precise.sign(side + SIDES * int(k) + s, t, v) >= 0
+            for k in own
+            if contacts.corners[k]
+            for s in range(SIDES)
+            if contacts.keys[k, s] >= 0
+        ):
+            return True
+    return False
+
+
 class _Fibres:
-    """What bounds cells over one base value inside each slab, ascending; one a row.
+    """What bounds cells over one base value inside each slab: roots in order, equal ones together.
 
     Attributes
     ----------
     t : ndarray, shape (slabs,)
-    slab : ndarray of int, shape (n,)
-    values : ndarray, shape (n,)
-        Lift values.
+        Base values, one inside each slab.
+    exact : dict of int to arb
+        Those that no double names.
+    slab, values, errors : ndarray, shape (n,)
+        Roots by slab, and upwards; lift values, and bounds of their errors.
     roots : ndarray of int, shape (n, 3)
         As `Root`.
     piece : ndarray of int, shape (n,)
         Which contact; -1 for a root of a form that stands alone, and for an end.
+    group : ndarray of int, shape (n,)
+        Roots with one number are one place, as far as 1,024 bits can tell.
     circle : bool
         Whether the lift closes: after a slab's last root comes its first, a turn on.
     """
 
-    t: Floats
-    slab: Ints
-    values: Floats
-    roots: Ints
-    piece: Ints
-    circle: bool
+    def __init__(self, plane: Plane, lines: Lines, pieces: Pieces, precise: Precise) -> None:
+        self.plane, self.lines, self.pieces, self.precise = plane, lines, pieces, precise
+        self.circle = plane.lift_range is None
+        self.t, self.exact = self._bases()
+        self._gather()
+        self._order()
 
-    def only(self, rows: Ints) -> _Fibres:
-        """Return some of the rows."""
-        slab, values, roots = self.slab[rows], self.values[rows], self.roots[rows]
-        return _Fibres(self.t, slab, values, roots, self.piece[rows], self.circle)
+    def _bases(self) -> tuple[Floats, dict[int, Any]]:
+        """Return a base value inside each slab; an exact one where doubles are too near."""
+        lines, exact = self.lines, dict[int, Any]()
+        # Off the middle where bodies touch, because it may be a place of symmetry.
+        part = INSIDE if self.plane.contacts.pairs else 0.5
+        widths = lines.t[1:] - lines.t[:-1]
+        t = lines.t[:-1] + part * widths
+        doubt = 8 * (lines.radius[1:] + lines.radius[:-1]) + 64 * UNIT * np.abs(t)
+        for k in which(widths <= doubt).tolist():
+            a, b = (lines.ball(line, LEVELS[-1]) for line in (k, k + 1))
+            with precision(LEVELS[-1]):
+                exact[k] = midpoint(a, b)
+            t[k] = float(exact[k].mid())
+        return t, exact
 
-    def gaps(self) -> tuple[Ints, Floats]:
-        """Return of each row the next one, and its value; NaN above the last of a range."""
-        n = len(self.slab)
-        after, tops = np.arange(1, n + 1), np.full(n, np.nan)
-        tops[:-1] = self.values[1:]
-        first, last = runs(self.slab)
+    def base(self, slab: int) -> Any:
+        """Return the exact base value of a slab."""
+        from flint import arb
+
+        found = self.exact.get(slab)
+        return arb(float(self.t[slab])) if found is None else found
+
+    def _gather(self) -> None:
+        """Find the roots in the lift's range and its ends; on a circle without roots, its cut."""
+        plane, pieces, t, m = self.plane, self.pieces, self.t, self.plane.count
+        c = plane.along_lift(t)
+        found, errors, real = plane.roots_and_errors(np.arange(m), c)
+        lifts = plane.scaled[:m, :, 1:].any(axis=(1, 2))
+        real = np.where(lifts, real, -1)
+        for slab, form in np.argwhere(real == 0).tolist():
+            base = self.base(slab)
+            real[slab, form] = 1 if self.precise.real(form, lambda bits, b=base: b) >= 0 else -1
+        there = np.broadcast_to(real > 0, found.shape).copy()
+        if plane.lift_kind == "prismatic":
+            there[1] &= ~plane.affine[:m]
+        branch, slab, form = np.nonzero(there)
+        values, errors = found[branch, slab, form], errors[branch, slab, form]
+        roots, piece = np.zeros((len(form), 3), dtype=np.int64), np.full(len(form), -1)
+        roots[:, 0], roots[:, 1] = form, 2 * branch - 1
+        if plane.contacts.pairs:
+            k, over = self._alive()
+            touching = pieces.roots(plane, k)
+            row = touching[:, 0]
+            factors = plane.coefficients(row, t[over][:, None])[:, :, 0]
+            both, own, _ = plane.roots_and_errors(row, factors)
+            which_one = (touching[:, 1] > 0).astype(int)
+            every = np.arange(len(k))
+            values = np.concatenate([values, both[which_one, every]])
+            errors = np.concatenate([errors, own[which_one, every]])
+            roots = np.concatenate([roots, touching])
+            slab, piece = np.concatenate([slab, over]), np.concatenate([piece, k])
+        low, high = plane.lift_ends
+        if plane.lift_kind == "revolute":
+            if self.circle:
+                roots[:, 2] = turns_up_to(low, values).astype(np.int64)
+                values = values + TURN * roots[:, 2]
+            else:
+                first = turns_up_to(low - errors, values).astype(np.int64)
+                last = turns_up_to(high + errors, values).astype(np.int64)
+                pick, turns = ranges(first, last)
+                values, errors = values[pick] + TURN * turns, errors[pick]
+                slab, roots, piece = slab[pick], roots[pick], piece[pick]
+                roots[:, 2] = turns
+        every = np.arange(len(t))
         if self.circle:
-            after[last], tops[last] = first, self.values[first] + TURN
+            ends = [(which(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
         else:
-            tops[last] = np.nan
-        return after, tops
-
-
-def _cells(plane: Plane, middles: Floats, pieces: Pieces) -> tuple[Ints, Ints, Bools]:
-    """Return the feasible cells over one base value in each slab, and which slabs are doubtful.
-
-    Of the cells there are slab and both roots, shape (k,) and (k, 2, 3).
-    """
-    fibres = _fibres(plane, middles, pieces)
-    doubtful = np.zeros(len(middles), dtype=np.bool_)
-    if plane.contacts.pairs:
-        fibres, doubtful = _once(plane, fibres, pieces)
-    after, tops = fibres.gaps()
-    wide = which(tops > fibres.values)
-    if plane.contacts.pairs:
-        apart, doubtful = _apart(plane, fibres, pieces, tops, doubtful)
-        wide = wide[apart[wide]]
-    t, low, high = middles[fibres.slab[wide]], fibres.values[wide], tops[wide]
-    free = wide[plane.open(t, low, high, NEGLIGIBLE)]
-    roots = fibres.roots[np.array([free, after[free]]).T]
-    roots[after[free] <= free, 1, 2] += 1  # past the cut of the circle
-    roots[roots[:, 1, 0] < 0, 1] = HIGHEST
-    return fibres.slab[free], roots, doubtful
-
-
-def _fibres(plane: Plane, t: Floats, pieces: Pieces) -> _Fibres:
-    """Return the roots in the lift's range and its ends; on a circle without roots, its cut."""
-    found = plane.roots(t)
-    branch, slab, form = np.nonzero(np.isfinite(found))
-    values, (low, high) = found[branch, slab, form], plane.lift_ends
-    roots, piece = np.zeros((len(form), 3), dtype=np.int64), np.full(len(form), -1)
-    roots[:, 0], roots[:, 1] = form, 2 * branch - 1
-    if plane.contacts.pairs:
-        k, over = ranges(np.searchsorted(t, pieces.start), np.searchsorted(t, pieces.end))
-        touching = pieces.roots(plane, k)
-        values = np.concatenate([values, plane.follow(touching, t[over][:, None])[:, 0]])
-        roots = np.concatenate([roots, touching])
-        slab, piece = np.concatenate([slab, over]), np.concatenate([piece, k])
-    if plane.lift_kind == "revolute":
-        first = turns_up_to(low, values).astype(np.int64)
-        if plane.lift_range is None:  # by rounding a root could have no place, or two
-            values, roots[:, 2] = values + TURN * first, first
-        else:
-            pick, turns = ranges(first, turns_up_to(high, values).astype(np.int64))
-            values = values[pick] + TURN * turns
-            slab, roots, piece = slab[pick], roots[pick], piece[pick]
-            roots[:, 2] = turns
-    every = np.arange(len(t))
-    if plane.lift_range is None:
-        ends = [(which(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
-    else:
-        inside = (values > low) & (values < high)
-        slab, values, roots, piece = slab[inside], values[inside], roots[inside], piece[inside]
-        ends = [(every, low, LOWEST), (every, high, HIGHEST)]
-    for where, value, root in ends:
-        if len(where):
+            inside = (values > low - errors) & (values < high + errors)
+            slab, values, roots = slab[inside], values[inside], roots[inside]
+            errors, piece = errors[inside], piece[inside]
+            ends = [(every, low, LOWEST), (every, high, HIGHEST)]
+        for where, value, root in ends:
             slab = np.concatenate([slab, where])
             values = np.concatenate([values, np.full(len(where), value)])
+            errors = np.concatenate([errors, np.full(len(where), 2 * UNIT * abs(value))])
             roots = np.concatenate([roots, np.tile(root, (len(where), 1))])
             piece = np.concatenate([piece, np.full(len(where), -1)])
-    order = np.lexsort([values, slab])
-    circle = plane.lift_range is None
-    return _Fibres(t, slab, values, roots, piece, circle).only(order)
+        self.slab, self.values, self.errors, self.roots, self.piece = (
+            slab,
+            values,
+            errors,
+            roots,
+            piece,
+        )
+        self._take(np.lexsort([values, slab]))
 
+    def _alive(self) -> tuple[Ints, Ints]:
+        """Return the pieces over each slab, and the slab, in pairs."""
+        pieces, of, last = self.pieces, self.lines.of, len(self.lines.t) - 1
+        start = np.append(of, 0)[np.where(pieces.first == END, len(of), pieces.first)]
+        end = np.append(of, last)[np.where(pieces.last == END, len(of), pieces.last)]
+        if (start < 0).any() or (end < 0).any():
+            raise UndecidedError("where a contact begins or ends")
+        if self.plane.base_range is None:
+            end = np.where((end == 0) & (pieces.last != END), last, end)
+        return ranges(start, end)
 
-# --- bodies ---------------------------------------------------------------------------------------
+    def _take(self, rows: Ints) -> None:
+        self.slab, self.values, self.errors = self.slab[rows], self.values[rows], self.errors[rows]
+        self.roots, self.piece = self.roots[rows], self.piece[rows]
 
+    # --- order ----------------------------------------------------------------------------------
 
-def _once(plane: Plane, fibres: _Fibres, pieces: Pieces) -> tuple[_Fibres, Bools]:
-    """Keep one of contacts that are one: along a fibre a pair comes into collision and out in turn.
+    def _order(self) -> None:
+        """Number the places of roots: doubles put in order what they can, balls the rest."""
+        reach, least = self.values + self.errors, self.values - self.errors
+        n, curve = len(self.slab), self._curves()
+        close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
+        close[1:] = (self.slab[1:] == self.slab[:-1]) & (least[1:] <= reach[:-1])
+        self.group = (~close).cumsum() - 1
+        # Roots of one curve are one; where others are as near, balls decide.
+        doubtful = which(close & (curve != np.roll(curve, 1)))
+        first, last = runs(self.slab)
+        seams = which(reach[last] >= least[first] + TURN) if self.circle else doubtful[:0]
+        seams = seams[last[seams] > first[seams]]
+        if not len(doubtful) and not len(seams):
+            return
+        starts, ends = runs(self.group)
+        clusters = {
+            int(starts[g]): list(range(starts[g], ends[g] + 1))
+            for g in np.unique(self.group[doubtful]).tolist()
+        }
+        order, leader = list(range(n)), starts[self.group].tolist()
+        across: list[tuple[int, list[int], list[int]]] = []  # at the cut of a circle
+        for k in seams.tolist():
+            a, b = int(first[k]), int(last[k])
+            head = list(range(a, ends[self.group[a]] + 1))
+            tail = list(range(starts[self.group[b]], b + 1))
+            if tail[0] != a:
+                clusters.pop(head[0], None)
+                clusters.pop(tail[0], None)
+                across.append((a, head, tail))
+        for cluster in clusters.values():
+            flat = self._led(cluster, leader, {})
+            for spot, row in zip(cluster, flat, strict=True):
+                order[spot] = row
+        for a, head, tail in across:  # the tail stands a turn earlier, at the front
+            flat = self._led(tail + head, leader, dict.fromkeys(tail, -TURN))
+            self.values[tail] -= TURN
+            self.roots[tail, 2] -= 1
+            rest = order[a + len(head) : tail[0]]
+            order[a : tail[-1] + 1] = flat + rest
+        if not self.circle:
+            dropped = self._beyond_ends(order, leader)
+            order = [row for row in order if row not in dropped]
+        new = np.array(order)
+        led = np.array(leader)[new]
+        self._take(new)
+        change = np.ones(len(new), dtype=np.bool_)
+        change[1:] = led[1:] != led[:-1]
+        self.group = change.cumsum() - 1
 
-    Two convex bodies collide on intervals of the lift; where two features meet, and along parallel
-    edges, one contact is found twice. A slab in which a pair comes in, or out, twice at places that
-    are apart is left as it is, and said to be doubtful; so is one in which a pair comes in and out
-    at one place, as where bodies only touch: these are in no order.
-    """
-    touching = _counted(plane, fibres, pieces)
-    piece = fibres.piece[touching]
-    group = (
-        fibres.slab[touching] * plane.contacts.pairs + plane.contacts.pair[pieces.feature[piece]]
-    )
-    order = np.argsort(group, kind="stable")
-    rows, group = touching[order], group[order]
-    enters, values = pieces.enters[fibres.piece[rows]], fibres.values[rows]
-    before = np.roll(np.arange(len(rows)), 1)
-    first, last = runs(group)
-    before[first] = last  # on a circle the first comes after the last
-    gap = np.abs(values - values[before])
-    again = (enters == enters[before]) & (before != np.arange(len(rows)))
-    back = (enters != enters[before]) & (gap <= THIN * plane.lift_unit)
-    if fibres.circle:
-        gap[first] = TURN - gap[first]
-    else:
-        again[first] = False
-    back[first] = False
-    doubtful = np.zeros(len(fibres.t), dtype=np.bool_)
-    doubtful[fibres.slab[rows[back]]] = True
-    doubtful[fibres.slab[rows[again & (gap > THIN * plane.lift_unit)]]] = True
-    dropped = rows[again & ~doubtful[fibres.slab[rows]]]
-    kept = np.ones(len(fibres.slab), dtype=np.bool_)
-    kept[dropped] = False
-    return fibres.only(which(kept)), doubtful
+    def _led(self, cluster: list[int], leader: list[int], shift: dict[int, float]) -> list[int]:
+        """Return rows of a cluster in order, and write the first of those that are one for each."""
+        values = [float(self.values[row]) + shift.get(row, 0.0) for row in cluster]
+        groups = self._ranked(cluster, values)
+        for group in groups:
+            for row in group:
+                leader[row] = group[0]
+        return [row for group in groups for row in group]
 
+    def _curves(self) -> Ints:
+        """Number the curves that roots follow: features of one curve have one number."""
+        form, branch, count = self.roots[:, 0], self.roots[:, 1], self.plane.count
+        curves = self.plane.contacts.curves
+        most = curves.max(initial=0) + 1
+        number = np.append(curves, 0)[np.clip(form - count, 0, len(curves))]
+        return np.asarray(3 * np.where(form >= count, number, most + 2 + form) + branch)
 
-def _apart(
-    plane: Plane, fibres: _Fibres, pieces: Pieces, tops: Floats, doubtful: Bools
-) -> tuple[Bools, Bools]:
-    """Tell of the gap above each row whether all bodies are apart in it, and of slabs if doubtful.
+    def _beyond_ends(self, order: list[int], leader: list[int]) -> set[int]:
+        """Return rows that lie below the lower end of the lift's range, or above the upper one."""
+        dropped: set[int] = set()
+        place = {row: k for k, row in enumerate(order)}
+        slab = self.slab
+        lows = {int(slab[r]): r for r in which(self.roots[:, 0] == LOWEST.form).tolist()}
+        highs = {int(slab[r]): r for r in which(self.roots[:, 0] == HIGHEST.form).tolist()}
+        for row in order:
+            low, high = lows[int(slab[row])], highs[int(slab[row])]
+            below = place[row] < place[low] and leader[row] != leader[low]
+            if below or (place[row] > place[high] and leader[row] != leader[high]):
+                dropped.add(row)
+        return dropped
 
-    The number of pairs in collision is counted from the widest gap of the slab, where it is tested.
-    A slab in which the count does not return to itself round a circle, or is not what a second test
-    finds at an end of a range, is doubtful, too. Such slabs are tested gap by gap, and so is what
-    is thin, and pairs at rest: where one only touches, at both ends of an edge it slides along, it
-    comes in and goes out again at once.
-    """
-    slabs, widths = len(fibres.t), np.nan_to_num(tops - fibres.values, nan=-1.0)
-    start = np.searchsorted(fibres.slab, np.arange(slabs))
-    places = [start + _first_largest(widths, start, fibres.slab)]
-    if not fibres.circle:
-        places += [start, np.append(start[1:], len(fibres.slab)) - 2]
-    moving = Separation(plane, ~pieces.base_only & ~pieces.idle & ~pieces.resting)
-    change, found = _changes(plane, fibres, pieces), []
-    count = np.cumsum(change)
-    for row in places:
-        middle = fibres.values[row] + INSIDE * widths[row]
-        found.append((moving.heights(fibres.t, middle) <= NEGLIGIBLE).sum(axis=1))
-        if row is places[0]:
-            still = Separation(plane, pieces.base_only | pieces.idle)
-            blocked = np.asarray((still.heights(fibres.t, middle) <= NEGLIGIBLE).any(axis=1))
-            count = count + (found[0] - count[row])[fibres.slab]
+    def _ranked(self, rows: Sequence[int], values: Sequence[float]) -> list[list[int]]:
+        """Return rows of one slab in their true order, those that are one together."""
+        base = self.base(int(self.slab[rows[0]]))
+        near = dict(zip(rows, values, strict=True))
+        groups = in_order(
+            list(rows),
+            lambda row, bits: self.root(row, base, bits, near[row]),
+            [self._curve(row) for row in rows],
+        )
+        return [own for _, own in groups]
+
+    def _curve(self, row: int) -> tuple[int, int, int]:
+        """Name the curve that a root follows: features of one curve have one name."""
+        form, branch, _ = self.roots[row].tolist()
+        count = self.plane.count
+        if form >= count:
+            return 1, int(self.plane.contacts.curves[form - count]), branch
+        return 0, form, branch
+
+    def root(self, row: int, base: Any, bits: int, near: float) -> Any:
+        """Return a root as a ball, on the turn that is near to a value."""
+        form, branch, _ = self.roots[row].tolist()
+        return turned_root(self.precise, form, branch, base, bits, near)
+
+    # --- cells ----------------------------------------------------------------------------------
+
+    def cells(self) -> tuple[Ints, Ints, Ints, list[tuple[int, ...]]]:
+        """Return the feasible cells: slabs, both roots, and which rows coincide along these."""
+        start, _ = runs(self.group)
+        slab, values = self.slab[start], self.values[start]
+        n = len(start)
+        after, tops = np.arange(1, n + 1), np.full(n, np.nan)
+        tops[:-1] = values[1:]
+        first, last = runs(slab)
+        gap = np.ones(n, dtype=np.bool_)  # whether there is one above
+        if self.circle:
+            after[last], tops[last] = first, values[first] + TURN
         else:
-            doubtful = doubtful | (
-                (found[-1] != count[row]) & (widths[row] > THIN * plane.lift_unit)
+            gap[last] = False
+        self.start, self.after, self.tops, self.gap_slab, self.bottoms = (
+            start,
+            after,
+            tops,
+            slab,
+            values,
+        )
+        self.double = self._doubles()
+        if self.plane.contacts.pairs:
+            gap &= self._apart(gap, first, last)
+        free = which(gap)
+        free = free[self._positive(free)]
+        lower, upper = self._bounding(free, lower=True), self._bounding(after[free], lower=False)
+        roots = np.stack([self.roots[lower[0]], self.roots[upper[0]]], axis=1)
+        roots[after[free] <= free, 1, 2] += 1  # past the cut of the circle
+        alone = roots[:, 1, 0] == LOWEST.form
+        roots[alone, 1] = HIGHEST
+        return slab[free], roots, *_numbered(roots[:, :, 0], lower[1], upper[1])
+
+    def _bounding(self, groups: Ints, *, lower: bool) -> tuple[Ints, dict[int, tuple[int, ...]]]:
+        """Return the row of each group that bounds a cell above it, or below.
+
+        And all rows that vanish there, by the place in `groups`, where there are several.
+        """
+        begin, end = self.start[groups], np.append(self.start, len(self.slab))[groups + 1]
+        chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
+        for k in which(end - begin > 1).tolist():
+            rows = range(int(begin[k]), int(end[k]))
+            own = self._acting(rows, lower) or list(rows)
+            ends = [row for row in own if self.roots[row, 0] < 0]
+            best = ends or own
+            chosen[k] = min(best, key=lambda row: tuple(self.roots[row].tolist()))
+            names[k] = tuple(sorted({int(self.roots[row, 0]) for row in best}))
+        return chosen, names
+
+    def _doubles(self) -> Bools:
+        """Tell which rows are one of both roots of a form at one place: it only touches there."""
+        name = self.group * (len(self.plane.eps) + 2) + self.roots[:, 0] + 2
+        order = np.argsort(name, kind="stable")
+        same = (np.diff(name[order]) == 0) & (self.roots[order[1:], 0] >= 0)
+        double = np.zeros(len(name), dtype=np.bool_)
+        double[order[1:][same]] = double[order[:-1][same]] = True
+        return double
+
+    def _acting(self, rows: Sequence[int], lower: bool) -> list[int]:
+        """Return those of coinciding rows that part a cell above them, or below, from the rest.
+
+        A pair that comes into collision there and out of it only touches.
+        """
+        pieces, contacts = self.pieces, self.plane.contacts
+        senses: dict[int, set[bool]] = {}
+        rows = [row for row in rows if not self.double[row]]
+        for row in rows:
+            if self.piece[row] >= 0:
+                k = int(self.piece[row])
+                pair = int(contacts.pair[pieces.feature[k]])
+                senses.setdefault(pair, set()).add(bool(pieces.enters[k]))
+        wanted = {not lower}
+        return [
+            row
+            for row in rows
+            if self.piece[row] < 0
+            or senses[int(contacts.pair[pieces.feature[self.piece[row]]])] == wanted
+        ]
+
+    def _positive(self, gaps: Ints) -> Bools:
+        """Tell whether every form that stands alone is positive in gaps."""
+        plane, m = self.plane, self.plane.count
+        if not m:
+            return np.ones(len(gaps), dtype=np.bool_)
+        slab = self.gap_slab[gaps]
+        t, low, high = self.t[slab], self.bottoms[gaps], self.tops[gaps]
+        v = low + (high - low) / 2
+        doubt = (plane.eps[:m] + 16 * UNIT) * plane.scaled_size[:m]
+        surely, maybe = plane.positive(t, v, doubt)
+        for k in which(maybe & ~surely).tolist():
+            base, place = self.base(int(slab[k])), self._middle(int(gaps[k]))
+            surely[k] = all(
+                self.precise.sign(form, lambda bits, b=base: b, place) > 0 for form in range(m)
             )
-    if fibres.circle:
-        doubtful = doubtful | (np.bincount(fibres.slab, change, slabs) != 0)
-    possible = ~blocked[fibres.slab] & (widths > 0)
-    thin = (count == 0) & (widths < THIN * plane.lift_unit)
-    looked = which(possible & (thin | doubtful[fibres.slab]))
-    apart: Bools = np.asarray(possible & (count == 0))
-    t, low = fibres.t[fibres.slab[looked]], fibres.values[looked]
-    apart[looked] = plane.apart(t, low, tops[looked], NEGLIGIBLE)
-    if pieces.resting.any():
-        resting, looked = Separation(plane, pieces.resting), which(apart)
-        middle = fibres.values[looked] + INSIDE * (tops - fibres.values)[looked]
-        heights = resting.heights(fibres.t[fibres.slab[looked]], middle)
-        apart[looked] = (heights > NEGLIGIBLE).all(axis=1)
-    return apart, doubtful & ~blocked
+        return surely
+
+    def _middle(self, gap: int) -> Any:
+        """Return an exact lift value inside a gap."""
+        low, high = float(self.bottoms[gap]), float(self.tops[gap])
+        a, b = int(self.start[gap]), int(self.start[self.after[gap]])
+        if high - low > 1e3 * (self.errors[a] + self.errors[b]):
+            return (low + high) / 2
+        base = self.base(int(self.gap_slab[gap]))
+
+        def middle(bits: int) -> Any:
+            one = self.root(a, base, bits, low)
+            return midpoint(one, self.root(b, base, bits, high))
+
+        return middle
+
+    # --- bodies ---------------------------------------------------------------------------------
+
+    def _apart(self, gap: Bools, first: Ints, last: Ints) -> Bools:
+        """Tell of the gap above each group whether all bodies are apart in it.
+
+        The number of pairs in collision is counted from the widest gap of the slab, where it is
+        tested. Where the count does not return to itself round a circle, or is not what a second
+        test finds at an end of a range, each gap of the slab is tested.
+        """
+        plane, pieces = self.plane, self.pieces
+        slabs, n = len(self.t), len(self.start)
+        widths = np.where(gap, self.tops - self.bottoms, -1.0)
+        widest = first + _first_largest(widths, first, self.gap_slab)
+        change = self._changes()
+        count = np.cumsum(change)
+        moving = ~pieces.base_only & ~pieces.idle & ~pieces.resting
+        found = self._colliding(widest, moving).sum(axis=1)
+        blocked = self._colliding(widest, pieces.base_only | pieces.idle).any(axis=1)
+        count = count + (found - count[widest])[self.gap_slab]
+        if self.circle:
+            doubtful = np.bincount(self.gap_slab, change, slabs) != 0
+        else:
+            top = last - 1
+            doubtful = self._colliding(top, moving).sum(axis=1) != count[top]
+        doubtful |= np.minimum.reduceat(count, first) < 0
+        free: Bools = np.asarray((count == 0) & ~blocked[self.gap_slab] & gap)
+        looked = which(gap & doubtful[self.gap_slab] & ~blocked[self.gap_slab])
+        if len(looked):
+            free[looked] = ~self._colliding(looked, moving).any(axis=1)
+        if pieces.resting.any():
+            looked = which(free)
+            free[looked] = ~self._colliding(looked, pieces.resting).any(axis=1)
+        del n, plane
+        return free
+
+    def _changes(self) -> Floats:
+        """Return by how much each group changes the number of pairs in collision.
+
+        Of one pair several features may touch at one place: it is one contact. A pair that comes
+        into collision and out of it at once only touches.
+        """
+        pieces, pairs = self.pieces, self.plane.contacts.pairs
+        rows = which((self.piece >= 0) & ~self.double)
+        pair = self.plane.contacts.pair[pieces.feature[self.piece[rows]]]
+        counted = ~pieces.resting[pair]
+        rows, pair = rows[counted], pair[counted]
+        enters = pieces.enters[self.piece[rows]]
+        key = np.sort((self.group[rows] * pairs + pair) * 2 + enters)
+        key = key[np.diff(key, prepend=-1) > 0]
+        group, sense = key // (2 * pairs), key % 2
+        return np.bincount(group, np.where(sense == 1, 1.0, -1.0), len(self.start))
+
+    def _colliding(self, gaps: Ints, pairs: Bools) -> Bools:
+        """Tell which of some pairs are not apart in gaps, shape (gaps, pairs)."""
+        plane = self.plane
+        slab = self.gap_slab[gaps]
+        low, high = self.bottoms[gaps], self.tops[gaps]
+        v = low + INSIDE * (high - low)
+        tests = Separation(plane, pairs)
+        heights = tests.heights(self.t[slab], v)
+        result = heights <= 0
+        doubt = tests.doubt
+        for k, p in np.argwhere(np.abs(heights) <= doubt).tolist():
+            base = self.base(int(slab[k]))
+            place = self._middle(int(gaps[k]))
+            result[k, p] = not apart(
+                self.precise, int(tests.pairs[p]), lambda bits, b=base: b, place
+            )
+        return np.asarray(result)
 
 
-def _counted(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
-    """Return the rows that are contacts of pairs that are counted: those at rest are tested."""
-    touching = which(fibres.piece >= 0)
-    pair = plane.contacts.pair[pieces.feature[fibres.piece[touching]]]
-    return touching[~pieces.resting[pair]]
+def turned_root(
+    precise: Precise, form: int, branch: int, base: Any, bits: int, near: float, side: int = 0
+) -> Any:
+    """Return a root as a ball, on the turn that is near to a value."""
+    from flint import arb
+
+    with precision(bits):
+        found = precise.root(form, branch, base, bits, side)
+        if found is None:
+            if bits < LEVELS[-1]:
+                return arb(near, 1e-3)
+            raise UndecidedError(f"a root near base value {float(base.mid()):.17g}")
+        if form >= 0 and precise.plane.lift_kind == "revolute":
+            turns = round((near - float(found.mid())) / TURN)
+            found = found + 2 * turns * arb.pi()
+    return found
+
+
+def _numbered(
+    forms: Ints, lower: dict[int, tuple[int, ...]], upper: dict[int, tuple[int, ...]]
+) -> tuple[Ints, list[tuple[int, ...]]]:
+    """Number the sets of rows along both roots of cells: most are one row."""
+    alone, sets = np.unique(forms, return_inverse=True)
+    sets = sets.reshape(forms.shape)
+    numbers = {(form,): k for k, form in enumerate(alone.tolist())}
+    for side, several in enumerate((lower, upper)):
+        for k, rows in several.items():
+            sets[k, side] = numbers.setdefault(rows, len(numbers))
+    return sets, list(numbers)
 
 
 def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
@@ -345,17 +704,12 @@ def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
     return where[first] - start
 
 
-def _changes(plane: Plane, fibres: _Fibres, pieces: Pieces) -> Ints:
-    """Return by how much each row changes the number of pairs in collision."""
-    change = np.zeros(len(fibres.slab), dtype=np.int64)
-    touching = _counted(plane, fibres, pieces)
-    change[touching] = np.where(pieces.enters[fibres.piece[touching]], 1, -1)
-    return change
+# --- lines that are none --------------------------------------------------------------------------
 
 
 def _without_idle_lines(found: Decomposition) -> Decomposition:
     """Drop the critical lines at which no feasible cell changes, and join the cells across."""
-    plane, lines, slabs, roots = found.plane, found.lines, found.slabs, found.roots
+    lines, slabs, roots, sets = found.lines, found.slabs, found.roots, found.sets
     count = np.bincount(slabs, minlength=len(lines) - 1)
     # Cell by cell: is there the same, in its turn, over the slab before?
     number = np.arange(len(slabs)) - (count.cumsum() - count)[slabs]
@@ -363,6 +717,7 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     there = number < back
     k = which(there)
     there[k] = (roots[k] == roots[k - back[k]]).all(axis=(1, 2))
+    there[k] &= (sets[k] == sets[k - back[k]]).all(axis=1)
     same = np.zeros(len(lines), dtype=np.bool_)
     same[1:-1] = count[1:] == count[:-1]
     same[slabs[~there]] = False
@@ -370,7 +725,15 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     same[slabs[k[~_goes_on(found, slabs[k], roots[k])]]] = False
     kept = ~same
     renumbered, left = kept.cumsum() - 1, kept[slabs]
-    return Decomposition(plane, lines[kept], renumbered[slabs[left]], roots[left], found.walls)
+    standing = {int(renumbered[k]): rows for k, rows in found.standing.items() if kept[k]}
+    return replace(
+        found,
+        critical=found.critical.only(kept),
+        slabs=renumbered[slabs[left]],
+        roots=roots[left],
+        sets=sets[left],
+        standing=standing,
+    )
 
 
 def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:

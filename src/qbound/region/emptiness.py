@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from qbound.region.decomposition import decompose
 from qbound.region.pieces import INSIDE
-from qbound.region.plane import Plane
+from qbound.region.precise import Precise
 from qbound.region.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -96,8 +96,8 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, off its middles; None where there is no cell."""
-    plane = Plane(problem.forms, problem.ranges, base, problem.contacts)
-    found = decompose(plane)
+    precise = Precise.of(problem, base)
+    plane, found = precise.plane, decompose(precise)
     if not found.cells:
         return None
     # Of the cells over the widest slab, the first.

@@ -12,7 +12,6 @@ from itertools import accumulate, chain
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.forms.angles import TURN
 from qbound.region.cells import CellComplex
 from qbound.region.plane import ranges, runs, which
 from qbound.tolerances import TOUCH
@@ -60,22 +59,13 @@ def half_edges(cells: CellComplex) -> HalfEdges:
     kind = np.array([LOWER, UP, UPPER, DOWN]).repeat(count)
     cell = np.concatenate([along, right, along, left])
     element = np.concatenate([none, up, none, down])
-    heights = _heights(cells, right, 1, up), _heights(cells, left, 0, down)
+    heights = cells.in_order(right, 1, up), cells.in_order(left, 0, down)
     order = np.lexsort([np.concatenate([none, heights[0], none, -heights[1]]), kind, cell])
     kind, cell, element = kind[order], cell[order], element[order]
     first, last = runs(2 * cell + (cells.whole[cell] & (kind == DOWN)))
     after = np.arange(1, len(cell) + 1)
     after[last] = first
     return HalfEdges(kind, cell, element, after, _twins(cells, kind, element))
-
-
-def _heights(cells: CellComplex, cell: Ints, side: int, element: Ints) -> Floats:
-    """Return numbers that put the elements on the left or right of their cells in order."""
-    middle = (cells.elements.low + cells.elements.high)[element] / 2
-    if not cells.circle:
-        return np.asarray(middle)
-    turned = (middle - cells.ends[cell, side, 0] + cells.touch) % TURN
-    return np.where(cells.whole[cell], middle, turned)
 
 
 def _twins(cells: CellComplex, kind: Ints, element: Ints) -> Ints:

@@ -16,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.forms.angles import TURN, whole_turns
-from qbound.forms.factors import basis_and_slope
+from qbound.forms.factors import basis, basis_and_slope
 from qbound.region.arcs import FIBRE, Arc, Pieces, ordered
 from qbound.region.cells import CellComplex
 from qbound.region.halfedges import DOWN, UP, UPPER, HalfEdges
 from qbound.region.plane import Plane, runs, which
-from qbound.tolerances import NEWTON_DONE, TRANSVERSAL
+from qbound.region.precise import UndecidedError
+from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -58,8 +59,8 @@ class _Laid:
         Whether it begins a loop.
     before, after : ndarray of int, shape (n,)
         The one before and the one after it in its loop.
-    label : ndarray of int, shape (n, 3)
-        Form, branch, and which end of a range; equal along an arc.
+    label : ndarray of int, shape (n, 4)
+        Form, branch, which end of a range, and which rows vanish; equal along an arc.
     """
 
     edges: Ints
@@ -99,6 +100,7 @@ class Layout:
         self.names = [*names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
         self.features = [*[""] * len(names), *contacts.names]
         self.limits = [*limits[base], *limits[1 - base]]
+        self._numbers = {rows: k for k, rows in enumerate(cells.decomposition.names)}
 
     def arcs(
         self, loops: Sequence[BoundaryLoop], windings: Ints
@@ -121,10 +123,13 @@ class Layout:
         return [(tuple(arcs[i:j]), at_vertex[i:j]) for i, j in place]
 
     def _arc(self, label: Sequence[int], pieces: Pieces, span: tuple[int, int]) -> Arc:
-        form, branch, end = label
-        name = self.names[form] if form >= 0 else self.limits[end]
-        feature = self.features[form] if form >= 0 else ""
-        return Arc(name, branch or None, pieces, span, feature, form)
+        form, branch, end, number = label
+        if form < 0:
+            return Arc(self.limits[end], branch or None, pieces, span, "", form)
+        rows = list(self._numbers)[number]
+        own = self.names[form], self.features[form]
+        also = sorted({(self.names[row], self.features[row]) for row in rows} - {own})
+        return Arc(own[0], branch or None, pieces, span, own[1], form, tuple(also))
 
     def _laid(self, loops: Sequence[BoundaryLoop], windings: Ints) -> _Laid:
         """Put all loops one behind the other, each from where an arc begins."""
@@ -147,13 +152,15 @@ class Layout:
     # --- labels ---------------------------------------------------------------------------------
 
     def _labels(self, rows: Ints) -> Ints:
-        """Return form, branch (0 for none) and end of a range of half-edges; form -1 at an end."""
+        """Return the labels of half-edges: branch 0 for none, form -1 at an end of a range."""
         edges, plane = self.edges, self.plane
         kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
-        label = np.zeros((len(rows), 3), dtype=np.int64)
-        root = self.cells.roots[cell, (kind == UPPER).astype(int)]
+        label = np.zeros((len(rows), 4), dtype=np.int64)
+        side = (kind == UPPER).astype(int)
+        root = self.cells.roots[cell, side]
         label[:, 0] = root[:, 0]
         label[:, 1] = root[:, 1] if plane.lift_kind == "revolute" else 0
+        label[:, 3] = self.cells.decomposition.sets[cell, side]
         ends = which(root[:, 0] < 0)
         if len(ends):
             label[ends, 2] = 1 - root[ends, 0]  # 2 and 3: of the lift
@@ -164,23 +171,49 @@ class Layout:
         return label
 
     def _line_labels(self, element: Ints, up: Bools) -> Ints:
-        """Name pieces of critical lines: a limit of the base, or a form without the lift."""
+        """Name pieces of critical lines: a limit of the base, or what vanishes on the fibre."""
         plane, found = self.plane, self.cells.elements
         # Of a base that turns round the last line is the first, a turn on.
         line = found.line[element]
         t = self.cells.abscissae[line]
-        label = np.zeros((len(element), 3), dtype=np.int64)
+        label = np.zeros((len(element), 4), dtype=np.int64)
         if plane.base_range is not None:
             label[:, 2] = up
             label[:, 0] = np.where(t == np.array(plane.ends)[up.astype(int)], -1, 0)
         inner = which(label[:, 0] == 0)
         middle = (found.low[element] + found.high[element]) / 2
-        label[inner, 0] = plane.vanishing(t[inner], middle[inner]) if len(inner) else 0
+        for k in inner.tolist():
+            rows = self._standing(int(line[k]), float(middle[k]), bool(up[k]))
+            label[k, 0] = rows[0]
+            label[k, 3] = self._numbers.setdefault(rows, len(self._numbers))
         # A form falls along the base at theta + arccos; there the component lies before it.
         if plane.base_kind == "revolute":
             label[inner, 1] = np.where(up[inner], 1, -1)
         label[inner, 2] = 0
         return label
+
+    def _standing(self, line: int, v: float, up: bool) -> tuple[int, ...]:
+        """Return the rows that vanish on a fibre about a lift value and forbid what is beside it.
+
+        The component lies before the line (`up`) or behind it: there the rows are positive.
+        """
+        plane, t = self.plane, self.cells.abscissae[line]
+        rows = self.cells.decomposition.standing.get(line, ())
+        base = basis_and_slope(plane.base_kind, np.array([t]))[0]
+        lift = basis(plane.lift_kind, np.array(v))
+        touching, found = [], []
+        for row in rows:
+            if row >= plane.count:
+                sides = plane.sides[row - plane.count] / plane.powers
+                if (np.einsum("i,sij,j->s", base[0], sides, lift) < -WALL).any():
+                    continue
+            touching.append(row)
+            slope = base[1] @ plane.table[row] @ lift
+            if slope * plane.base_unit * (-1 if up else 1) > WALL:
+                found.append(row)
+        if not touching:
+            raise UndecidedError(f"which boundary stands at base value {t:.17g}")
+        return tuple(found or touching)  # bodies may touch there and be apart on both sides
 
     # --- places ---------------------------------------------------------------------------------
 
@@ -233,7 +266,12 @@ class Layout:
         if not met.any():
             return
         corner, last = corner[met], last[met]
-        q = _newton(self.plane, pair[met], starts[corner])
+        before = starts[corner]
+        q = _newton(self.plane, pair[met], before)
+        # Where both are flat there Newton has no direction; the place is known well enough.
+        units = np.array([self.plane.base_unit, self.plane.lift_unit])
+        near = (np.abs(q - before) <= POLISHED * units).all(axis=1, keepdims=True)
+        q = np.where(near, q, before)
         ends[last] += q - starts[corner]  # which may be some turns away
         starts[corner] = q
 
@@ -246,7 +284,7 @@ def _from_lowest(laid: _Laid, begin: Ints, pieces: Pieces) -> tuple[Ints, Bools]
     """
     loop, start = laid.first[begin].cumsum() - 1, pieces.start[begin]
     first, last = runs(loop)
-    label = laid.label[:, [0, 2]]  # at a change of branch alone is no vertex
+    label = laid.label[:, [0, 2, 3]]  # at a change of branch alone is no vertex
     corner: Bools = np.asarray((label[begin] != label[laid.before[begin]]).any(axis=1))
     q1, q2 = np.round(ordered(start, pieces.base), 9).T
     lowest = np.lexsort([q1, q2, ~corner, loop])[first]

@@ -1,4 +1,4 @@
-"""Where do bodies touch? Pieces of the curves of features, each a contact from end to end.
+"""Contacts of bodies: pieces of the curves of features, each a contact from end to end.
 
 The curve of a feature's form bounds what its pair forbids only where no side condition is negative.
 Between the feature's own events (folds, jumps, ends of the lift, common roots with its own side
@@ -8,15 +8,18 @@ conditions; never with other features) a root is a contact or none, and one plac
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
-from qbound.region.critical import Complexes, base_values, meetings, own_events, univariate
-from qbound.region.plane import Plane, normalised, ranges
-from qbound.tolerances import AGREE, BOX, CONTACT_SIDE, NEAR, NEGLIGIBLE, SAME_CRITICAL, WALL
+from qbound.region.critical import NO_EVENTS, Events, Finder, shifted
+from qbound.region.plane import Plane, normalised, ranges, which
+from qbound.region.precise import KINDS, Zero, in_order, midpoint, precision
+from qbound.tolerances import AGREE, BOX, NEAR, UNIT, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,8 +31,11 @@ INSIDE = 0.43
 PAIRS = 2**20
 """Pairs of pieces that are looked at together, about: some 60 MB."""
 
-NONE, BACK, OWN = 0, 1, 2
-"""What happens at an event: a side condition may change; the curve turns back; more."""
+DRIFT = 64.0
+"""Side conditions, whose largest coefficient is 1, change by at most so much with each unit."""
+
+END = -2
+"""Stands for the event of an interval's end that is an end of the base's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,12 +49,18 @@ class Pieces:
         -1 / +1, as of a `Root`.
     start, end : ndarray, shape (k,)
         Base values.
+    first, last : ndarray of int, shape (k,)
+        The events at both, in `events`; `END` at the ends of the base's range.
     enters : ndarray of bool, shape (k,)
         Whether one comes into collision there, going up the lift.
-    lines : ndarray
-        Base values at which a contact begins, ends or jumps.
-    walls : ndarray
-        Base values at which bodies may touch along a fibre.
+    low, high : ndarray, shape (k,)
+        Lift values between which the contact lies; of an angle the lower one may be any turn.
+    events : Events
+        At which a contact begins, ends or jumps, or bodies may touch along a fibre.
+    lines : ndarray of int
+        Those of the events that are lines.
+    walls : ndarray of int
+        Those of the events at which a form of a feature vanishes along a fibre.
     base_only : ndarray of bool, shape (pairs,)
         Pairs that the lift does not move.
     idle : ndarray of bool, shape (pairs,)
@@ -62,9 +74,14 @@ class Pieces:
     branch: Ints
     start: Floats
     end: Floats
+    first: Ints
+    last: Ints
     enters: Bools
-    lines: Floats
-    walls: Floats
+    low: Floats
+    high: Floats
+    events: Events
+    lines: Ints
+    walls: Ints
     base_only: Bools
     idle: Bools
     resting: Bools
@@ -74,25 +91,38 @@ class Pieces:
         return np.stack([plane.count + self.feature[k], self.branch[k], np.zeros_like(k)], axis=1)
 
 
-def find_pieces(plane: Plane) -> Pieces:
+def find_pieces(plane: Plane, finder: Finder) -> Pieces:
     """Find all contacts of the bodies of a plane, and the walls."""
     contacts = plane.contacts
     if not contacts.pairs:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         no = np.zeros(0, dtype=np.bool_)
-        return Pieces(none, none, nothing, nothing, no, nothing, nothing, no, no, no)
+        rows = (none, none, nothing, nothing, none, none, no, nothing, nothing)
+        return Pieces(*rows, NO_EVENTS, none, none, no, no, no)
     forms, sides = plane.scaled[plane.count :], plane.sides
+    doubt = 16 * plane.eps[plane.count :]
     low, high = _bounds(plane, forms)
     most = _bounds(plane, sides)[1]
-    alive = contacts.touching & (low <= 0) & (high >= 0) & (most >= -CONTACT_SIDE).all(axis=1)
+    alive = contacts.touching & (low <= doubt) & (high >= -doubt)
+    alive &= (most >= -16 * plane.side_eps).all(axis=1)
     lifts = forms[:, :, 1:].any(axis=(1, 2))
     moved: Bools = np.asarray(lifts | sides[:, :, :, 1:].any(axis=(1, 2, 3)))
     base_only = ~_any_of(moved, contacts.pair, contacts.pairs)
     idle = ~_any_of(alive, contacts.pair, contacts.pairs)
     resting = _any_of(alive & ~forms.any(axis=(1, 2)), contacts.pair, contacts.pairs)
-    walls = _walls(plane, np.flatnonzero(alive), forms, sides)
-    chosen = np.flatnonzero(alive & lifts)
-    return Pieces(*_contacts(plane, chosen, forms, sides), walls, base_only, idle, resting)
+    walls = _walls(plane, finder, np.flatnonzero(alive))
+    found = _Contacts(plane, finder, np.flatnonzero(alive & lifts))
+    events = Events.joined([found.events, walls])
+    at_walls = len(found.events) + np.arange(len(walls))
+    return Pieces(
+        *found.rows,
+        events,
+        np.concatenate([found.lines, at_walls]),
+        at_walls,
+        base_only,
+        idle,
+        resting,
+    )
 
 
 def _any_of(found: Bools, group: Ints, count: int) -> Bools:
@@ -115,7 +145,7 @@ def _bounds(plane: Plane, tables: Floats) -> tuple[Floats, Floats]:
     else:
         over = np.hypot(product[..., 0], product[..., 1]) if circles[1] else np.abs(product).sum(-1)
         both = np.hypot(over[..., 0], over[..., 1]) if circles[0] else over.sum(axis=-1)
-    reach = by_base + by_lift + both + NEGLIGIBLE
+    reach = by_base + by_lift + both
     return tables[..., 0, 0] - reach, tables[..., 0, 0] + reach
 
 
@@ -128,72 +158,338 @@ def _gap_of_squares(m: Floats) -> Floats:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _contacts(
-    plane: Plane, chosen: Ints, forms: Floats, sides: Floats
-) -> tuple[Ints, Ints, Floats, Floats, Bools, Floats]:
-    """Return feature, branch, start, end and sense of contacts of some features, and the lines."""
-    of, start, end, event = _intervals(plane, chosen, forms, sides)
-    after = np.append(of[1:] == of[:-1], False)[: len(of)]
-    before = np.append(False, after[:-1])[: len(of)]
-    t = start + INSIDE * (end - start)
-    held = (_sides_at(plane, chosen[of], t) >= -CONTACT_SIDE).all(axis=2)
-    touching: Bools = np.asarray(held)
-    # Where a side condition touches zero, and a contact goes on, two of them may meet.
-    near: Bools = np.asarray(np.abs(_sides_at(plane, chosen[of], start)) <= WALL)
-    varied: Bools = np.asarray(sides.reshape(len(sides), -1, 9)[chosen[of], :, 1:].any(axis=2))
-    met: Bools = np.asarray((near & varied[:, None]).any(axis=2))
-    enters = _falls(plane, plane.table[plane.count :][chosen[of]], t)
-    found, lines = [], [np.zeros(0)]
-    for branch in (0, 1):
-        here = touching[:, branch]
-        kind = np.where(met[:, branch], OWN, event)
-        following = np.append(kind[1:], OWN)[: len(kind)]
-        goes_on = here & after & np.append(here[1:], False)[: len(here)]
-        went_on = here & before & np.append(False, here[:-1])[: len(here)]
-        first = np.flatnonzero(here & ~(went_on & (kind == NONE)))
-        last = np.flatnonzero(here & ~(goes_on & (following == NONE)))
-        sign = np.full(len(first), 2 * branch - 1)
-        found.append((chosen[of[first]], sign, start[first], end[last], enters[first, branch]))
-        # A contact that only turns back along the lift goes on: that is no line.
-        lines += [start[here & ~(went_on & (kind != OWN))]]
-        lines += [end[here & ~(goes_on & (following != OWN))]]
-    feature, branches, starts, ends, senses = (np.concatenate(x) for x in zip(*found, strict=True))
-    return feature, branches, starts, ends, senses, np.concatenate(lines)
+class _Contacts:
+    """The contacts of some features: `rows` as `Pieces` has them first, their events, and lines."""
+
+    def __init__(self, plane: Plane, finder: Finder, chosen: Ints) -> None:
+        self.plane, self.finder, self.chosen = plane, finder, chosen
+        m, contacts = plane.count, plane.contacts
+        own = finder.events(finder.own(m + chosen))
+        # Features of one curve have their folds and jumps at one place.
+        curve = contacts.curves[own.what[:, 1] - m]
+        own.key[:] = contacts.keys.max(initial=0) + 1 + len(KINDS) * curve + own.what[:, 0]
+        first_side = m + len(contacts.forms)
+        side_of = first_side + SIDES * chosen[:, None] + np.arange(SIDES)
+        varies = plane.sides[chosen].reshape(len(chosen), SIDES, 9)[:, :, 1:].any(axis=2)
+        # Two corners let go where an edge with one of its ends does: that event is a simple one.
+        varies &= ~contacts.corners[chosen][:, None]
+        k, s = np.nonzero(varies)
+        met = finder.events(finder.meetings(m + chosen[k], side_of[k, s]))
+        side = met.what[:, 1:].max(axis=1, initial=0) - first_side
+        met.key[:] = contacts.keys.reshape(-1)[side]
+        feature = np.searchsorted(chosen, side // SIDES)
+        given, taken = self._handed_over(met)
+        of = np.concatenate([np.searchsorted(chosen, own.what[:, 1] - m), feature, given])
+        found = Events.joined([own, met, met[taken]])
+        kept = which(self._matters(of, found))
+        of, found = finder.isolated(found[kept], of[kept])
+        self._cut(of, found)
+
+    def _handed_over(self, met: Events) -> tuple[Ints, Ints]:
+        """Return which features of two corners share events of edges, and which events."""
+        contacts, chosen = self.plane.contacts, self.chosen
+        corners = which(contacts.corners[chosen])
+        keys = contacts.keys[chosen[corners]]
+        k, side = np.nonzero(keys >= 0)
+        key, feature = keys[k, side], corners[k]
+        pairs = np.unique(np.stack([key, feature], axis=1), axis=0)
+        order = np.argsort(met.key, kind="stable")
+        start = np.searchsorted(met.key[order], pairs[:, 0])
+        end = np.searchsorted(met.key[order], pairs[:, 0] + 1)
+        pick, event = ranges(start, end)
+        return pairs[pick, 1], order[event]
+
+    def _matters(self, of: Ints, found: Events) -> Bools:
+        """Tell at which events a root of the feature may be a contact.
+
+        Elsewhere a side condition of both roots is negative by more than it can change so near.
+        """
+        plane, feature = self.plane, self.chosen[of]
+        row = plane.count + feature
+        c = np.einsum("ni,nij->jn", basis(plane.base_kind, found.t), plane.table[row])
+        slack = 4 * found.radius / plane.base_unit
+        values, errors, real = plane.roots_and_errors(row, c, slack)
+        over, _ = _sides_over(plane, feature, found.t, values)
+        moved = np.sqrt(found.radius / plane.base_unit) + np.minimum(errors / plane.lift_unit, 1.0)
+        drift = DRIFT * (moved + 1e-9)
+        held = (over >= -drift.T[:, :, None]).all(axis=2)
+        return np.asarray(held.any(axis=1) & (real >= 0))
+
+    def _cut(self, of: Ints, found: Events) -> None:
+        """Cut the base at each feature's events, and keep the intervals that are contacts."""
+        plane, low, high = self.plane, *self.plane.ends
+        of, found = self._in_order(of, found)
+        n, every = len(self.chosen), np.arange(len(self.chosen))
+        t = np.concatenate([found.t, np.full(n, low), np.full(n, high)])
+        owner = np.concatenate([of, every, every])
+        number = np.concatenate([np.arange(len(of)), np.full(2 * n, END)])
+        # Events that balls have put in order keep it, although their doubles may not show it.
+        place = np.concatenate([np.arange(len(of)) + n, every, len(of) + n + every])
+        order = np.lexsort([place, owner])
+        owner, t, number = owner[order], t[order], number[order]
+        begin = which(owner[1:] == owner[:-1])
+        self.events = found
+        f, start, end = owner[begin], t[begin], t[begin + 1]
+        first, last = number[begin], number[begin + 1]
+        at, exact = self._inside(start, end, first, last)
+        touching = self._touching(f, at, exact)
+        strict = np.array([self._is_strict(found)]).reshape(-1)
+        kind = np.append(strict, True)[np.where(first == END, len(strict), first)]
+        near = self._near(f, start)
+        rows, lines = [], [np.zeros(0, dtype=np.int64)]
+        enters = _falls(plane, plane.table[plane.count :][self.chosen[f]], at)
+        after = np.append(f[1:] == f[:-1], False)[: len(f)]
+        for branch in (0, 1):
+            here = touching[:, branch]
+            hard = kind | near[:, branch]
+            follows = here & after & np.append(here[1:], False)[: len(here)]
+            goes_on = follows & ~np.append(hard[1:], True)[: len(here)]
+            went_on = np.append(False, goes_on[:-1])[: len(here)]
+            a, b = which(here & ~went_on), which(here & ~goes_on)
+            sign = np.full(len(a), 2 * branch - 1)
+            rows.append(
+                (self.chosen[f[a]], sign, start[a], end[b], first[a], last[b], enters[a, branch])
+            )
+            lines += [first[a][first[a] >= 0], last[b][last[b] >= 0]]
+        feature, sign, starts, ends, one, other, sense = (
+            np.concatenate(x) for x in zip(*rows, strict=True)
+        )
+        low_v, high_v = self._boxes(feature, sign, starts, ends)
+        self.rows = feature, sign, starts, ends, one, other, sense, low_v, high_v
+        self.lines = np.unique(np.concatenate(lines))
+
+    def _is_strict(self, found: Events) -> Bools:
+        """Tell which events end a contact's piece in any case: an angle may jump, roots may meet."""
+        first = self.plane.count + len(self.plane.contacts.forms)
+        return np.asarray(found.what[:, 1:].max(axis=1, initial=0) < first)
+
+    def _in_order(self, of: Ints, found: Events) -> tuple[Ints, Events]:
+        """Sort events by feature and base value; balls decide what doubles do not."""
+        plane, (low, high) = self.plane, self.plane.ends
+        inside = (found.t >= low - found.radius) & (found.t <= high + found.radius)
+        order = np.lexsort([found.t, of])
+        order = order[inside[order]]
+        of, found = of[order], found[order]
+        reach = found.t + found.radius
+        least = found.t - found.radius
+        close = (of[1:] == of[:-1]) & (least[1:] <= reach[:-1])
+        near_end = (least <= low) | (reach >= high)
+        # Of one feature two events may be one by their key: it vanishes with two side conditions.
+        doubtful = which(close)
+        dropped = np.zeros(len(of), dtype=np.bool_)
+        if not len(doubtful) and not near_end.any():
+            return of, found
+        every = np.arange(len(of))
+        swaps = every.copy()
+        k = 0
+        while k < len(doubtful):
+            a = doubtful[k]
+            b = a + 1
+            while k + 1 < len(doubtful) and doubtful[k + 1] == b:
+                k, b = k + 1, b + 1
+            rows = list(range(a, b + 1))
+            ranked = self._ranked(found, rows)
+            swaps[a : b + 1] = [r for group in ranked for r in group] + [
+                r for r in rows if not any(r in group for group in ranked)
+            ]
+            for group in ranked:
+                strict = [r for r in group if self._is_strict(found[[r]])[0]]
+                best = strict[0] if strict else group[0]
+                dropped[[r for r in group if r != best]] = True
+            gone = [r for r in rows if not any(r in group for group in ranked)]
+            dropped[gone] = True
+            k += 1
+        before = found.t.copy()
+        for row in which(near_end & ~dropped).tolist():
+            dropped[row] = not self._within(found, row)
+        kept = swaps[~dropped[swaps]]
+        # On a circle some lie a turn away now, at the other end of their feature's events.
+        kept = kept[np.lexsort([np.sign(found.t - before)[kept], of[kept]])]
+        return of[kept], found[kept]
+
+    def _ranked(self, found: Events, rows: list[int]) -> list[list[int]]:
+        """Return events that overlap in their true order, those that are one together."""
+        if len({int(found.key[r]) for r in rows}) == 1 and found.key[rows[0]] >= 0:
+            return [rows]
+        zeros = [(r, self.finder.zero(found, r)) for r in rows]
+        for r, zero in zeros:  # what is known now need not be found again
+            if zero is not None and found.exact[r] < 0:
+                found.exact[r] = len(self.finder.zeros)
+                self.finder.zeros.append(zero)
+        known = [(r, zero) for r, zero in zeros if zero is not None]
+        groups = in_order(known, lambda item, bits: self.finder.precise.refined(item[1], bits))
+        return [[r for r, _ in group] for _, group in groups]
+
+    def _within(self, found: Events, row: int) -> bool:
+        """Tell whether an event beside an end of the range lies inside; on the end it does not.
+
+        Of a circle the end is its cut: an event beyond lies a turn away, within the other end.
+        """
+        plane, precise = self.plane, self.finder.precise
+        zero = self.finder.zero(found, row)
+        if zero is None:
+            return False
+        upper = bool(found.t[row] > sum(plane.ends) / 2)
+        end = Zero(None, 0, lambda: precise.ends("base")[int(upper)])
+        groups = in_order([zero, end], precise.refined)
+        if len(groups) == 1:
+            return False
+        inside = (groups[0][1][0] is zero) == upper
+        if not inside and plane.base_range is None:
+            turns = -1 if upper else 1
+            found.t[row] += turns * TURN
+            found.exact[row] = len(self.finder.zeros)
+            self.finder.zeros.append(shifted(precise, zero, turns))
+            return True
+        return inside
+
+    def _inside(
+        self, start: Floats, end: Floats, first: Ints, last: Ints
+    ) -> tuple[Floats, dict[int, Any]]:
+        """Return a base value inside each interval, and exact ones where doubles are too near."""
+        events = self.events
+        radius = np.append(events.radius, 0.0)
+        doubt = radius[np.maximum(first, -1)] + radius[np.maximum(last, -1)]  # 0 at an end
+        at = start + INSIDE * (end - start)
+        exact: dict[int, Any] = {}
+        for k in which(end - start <= 8 * doubt + 64 * UNIT * np.abs(at)).tolist():
+            a, b = (self._ball_of(e, upper) for e, upper in ((first[k], 0), (last[k], 1)))
+            if a is not None and b is not None:
+                with precision(1024):
+                    exact[k] = midpoint(a, b)
+        return at, exact
+
+    def _ball_of(self, event: int, upper: int) -> Any:
+        precise = self.finder.precise
+        if event == END:
+            with precision(1024):
+                return precise.ends("base")[int(upper)]
+        zero = self.finder.zero(self.events, event)
+        return None if zero is None else precise.refined(zero, 1024)
+
+    # --- what is a contact ----------------------------------------------------------------------
+
+    def _touching(self, f: Ints, t: Floats, exact: dict[int, Any]) -> Bools:
+        """Tell of both roots of features over base values whether they are contacts, (n, 2)."""
+        plane, feature = self.plane, self.chosen[f]
+        row = plane.count + feature
+        c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
+        values, errors, real = plane.roots_and_errors(row, c)
+        over, lift_slopes = _sides_over(plane, feature, t, values)
+        side_doubt = 16 * plane.side_eps[feature][:, None, :] + errors.T[:, :, None] * lift_slopes
+        held = over > side_doubt
+        missed = over < -side_doubt
+        constant = ~plane.sides.reshape(-1, SIDES, 9)[feature][:, :, 1:].any(axis=2)
+        held |= (constant & (plane.sides[feature][:, :, 0, 0] >= 0))[:, None, :]
+        result = np.asarray(held.all(axis=2) & (real > 0)[:, None])
+        unknown = ~missed.any(axis=2) & ~result & (real >= 0)[:, None]
+        for k, branch in np.argwhere(unknown).tolist() + [
+            [k, b] for k in exact for b in (0, 1) if not unknown[k, b]
+        ]:
+            result[k, branch] = self._decided(int(feature[k]), branch, exact.get(k, t[k]))
+        if plane.lift_kind == "prismatic":
+            result[plane.affine[row], 1] = False
+        return result
+
+    def _decided(self, feature: int, branch: int, at: Any) -> bool:
+        """Tell in balls whether a root of a feature is a contact at a base value."""
+        from flint import arb
+
+        plane, precise = self.plane, self.finder.precise
+        row = plane.count + feature
+        with precision(1024):
+            t = arb(at)
+        if precise.real(row, lambda bits: t) < 0:
+            return False
+        if plane.lift_kind == "prismatic" and plane.affine[row] and branch:
+            return False
+        for side in range(SIDES):
+            if not plane.sides[feature, side].reshape(9)[1:].any():
+                if plane.sides[feature, side, 0, 0] < 0:
+                    return False
+                continue
+            number = plane.count + len(plane.contacts.forms) + SIDES * feature + side
+
+            def root(bits: int) -> Any:
+                return precise.root(row, 2 * branch - 1, t, bits)
+
+            with precision(256):
+                if root(256) is None:
+                    return False
+            if precise.sign(number, t, root) < 0:
+                return False
+        return True
+
+    def _near(self, f: Ints, t: Floats) -> Bools:
+        """Tell at which starts a side condition of a root may touch zero: two contacts may meet."""
+        plane, feature = self.plane, self.chosen[f]
+        row = plane.count + feature
+        c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
+        values, _, _ = plane.roots_and_errors(row, c)
+        over, _ = _sides_over(plane, feature, t, values)
+        varied = plane.sides.reshape(-1, SIDES, 9)[feature][:, :, 1:].any(axis=2)
+        return np.asarray(((np.abs(over) <= WALL) & varied[:, None]).any(axis=2))
+
+    def _boxes(
+        self, feature: Ints, branch: Ints, start: Floats, end: Floats
+    ) -> tuple[Floats, Floats]:
+        """Return lift values between which pieces lie: at both ends and where they turn back."""
+        plane = self.plane
+        used = np.unique(feature)
+        turns = self._turning(used)
+        of, at = turns
+        order = np.lexsort([at, of])
+        of, at = of[order], at[order]
+        k = np.searchsorted(used, feature)
+        big = 4 * (plane.ends[1] - plane.ends[0]) + 1
+        index = of * big + (at - plane.ends[0])
+        first = np.searchsorted(index, k * big + (start - plane.ends[0]))
+        last = np.searchsorted(index, k * big + (end - plane.ends[0]))
+        pick, event = ranges(first, last)
+        inset = 1e-9 * (end - start)
+        owner = np.concatenate([np.arange(len(feature))] * 2 + [pick])
+        t = np.concatenate([start + inset, end - inset, at[event]])
+        # Two places more, because an angle may go up to a turn between its ends.
+        for part in (1 / 3, 2 / 3):
+            owner = np.concatenate([owner, np.arange(len(feature))])
+            t = np.concatenate([t, start + part * (end - start)])
+        order = np.lexsort([t, owner])
+        owner, t = owner[order], t[order]
+        rows = np.stack([plane.count + feature, branch, np.zeros_like(branch)], axis=1)[owner]
+        v = plane.follow(rows, t[:, None])[:, 0]
+        if plane.lift_kind == "revolute":  # pieces do not jump: steps of less than half a turn
+            step = np.diff(v, prepend=v[:1])
+            new = np.append(True, owner[1:] != owner[:-1])[: len(owner)]
+            jumps = np.where(new, 0.0, -TURN * whole_turns(step)).cumsum()
+            v = v + jumps - jumps[which(new)][new.cumsum() - 1] if len(v) else v
+        begin = np.searchsorted(owner, np.arange(len(feature)))
+        if not len(feature):
+            return np.zeros(0), np.zeros(0)
+        return np.minimum.reduceat(v, begin), np.maximum.reduceat(v, begin)
+
+    def _turning(self, features: Ints) -> tuple[Ints, Floats]:
+        """Return where curves of features turn back along the lift: number of the feature, base."""
+        plane = self.plane
+        if not len(features):
+            return np.zeros(0, dtype=np.int64), np.zeros(0)
+        slopes = _along_base(plane, plane.scaled[plane.count + features])
+        own = Finder(_Slopes(plane, features, slopes), self.finder.precise)  # type: ignore[arg-type]
+        n = len(features)
+        found = own.quick(np.arange(n), n + np.arange(n))
+        return found
 
 
-def _intervals(
-    plane: Plane, chosen: Ints, forms: Floats, sides: Floats
-) -> tuple[Ints, Floats, Floats, Ints]:
-    """Cut the base at each feature's own events: feature, start, end, and what happens at start.
+class _Slopes:
+    """A plane of some features' forms and their derivatives along the base: for boxes only."""
 
-    A contact must end there if an angle may jump or a root pass an end of the lift's range (`OWN`),
-    and for its box to be that of its ends where it turns back along the lift (`BACK`).
-    """
-    c = univariate(plane, forms[chosen])
-    rows, at = base_values(plane, own_events(plane, c))
-    g = univariate(plane, sides[chosen].reshape(-1, 3, 3))
-    varies = sides[chosen].reshape(-1, 9)[:, 1:].any(axis=1)
-    kept = np.flatnonzero(varies)
-    of_side = kept // sides.shape[1]
-    meet, there = base_values(plane, meetings(plane, c[of_side], g[kept]))
-    steep = univariate(plane, _along_base(plane, forms[chosen]))
-    turn, back = base_values(plane, meetings(plane, c, steep))
-    low, high = plane.ends
-    every = np.arange(len(chosen))
-    of = np.concatenate([rows, turn, of_side[meet], every, every])
-    t = np.concatenate([at, back, there, np.full(len(every), low), np.full(len(every), high)])
-    kind = np.repeat([OWN, BACK, NONE], [len(rows), len(turn), len(there) + 2 * len(every)])
-    inside = (t >= low) & (t <= high)
-    of, t, kind = of[inside], t[inside], kind[inside]
-    order = np.lexsort([t, of])
-    of, t, kind = of[order], t[order], kind[order]
-    wide = (np.diff(t) > SAME_CRITICAL) & (np.diff(of) == 0)
-    # Of events that are one by rounding the strictest counts.
-    group = np.cumsum(np.append(False, wide | (np.diff(of) != 0))[: len(of)])
-    strictest = np.zeros(len(kind), dtype=np.int64)
-    np.maximum.at(strictest, group, kind)
-    k = np.flatnonzero(wide)
-    return of[k], t[k], t[k + 1], strictest[group[k]]
+    def __init__(self, plane: Plane, features: Ints, slopes: Floats) -> None:
+        rows = plane.count + features
+        self.scaled = np.concatenate([plane.scaled[rows], slopes])
+        self.eps = np.concatenate([plane.eps[rows], np.full(len(slopes), 8 * UNIT)])
+        self.base_kind, self.lift_kind = plane.base_kind, plane.lift_kind
+        self.ends, self.base_range = plane.ends, plane.base_range
+        self.lift_range, self.lift_ends = plane.lift_range, plane.lift_ends
+        self.base_unit, self.lift_unit = plane.base_unit, plane.lift_unit
 
 
 def _along_base(plane: Plane, tables: Floats) -> Floats:
@@ -206,17 +502,17 @@ def _along_base(plane: Plane, tables: Floats) -> Floats:
     return normalised(slope)
 
 
-def _sides_at(plane: Plane, feature: Ints, t: Floats) -> Floats:
-    """Return the side conditions of features at both roots over base values, (n, 2, sides).
+def _sides_over(plane: Plane, feature: Ints, t: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Return side conditions of features at lift values (2, n) over base values, (n, 2, sides).
 
-    NaN where there is no root.
+    And the sizes of their slopes along the lift, a unit of the lift each.
     """
-    tables = plane.table[plane.count :][feature]
-    c = np.einsum("ni,nij->nj", basis(plane.base_kind, t), tables)
-    lift = basis(plane.lift_kind, plane.roots_of(c.T).T / plane.lift_unit)
     factors = basis(plane.base_kind, t / plane.base_unit)
     over = np.einsum("ni,nsij->nsj", factors, plane.sides[feature])
-    return np.asarray(np.einsum("nsj,nrj->nrs", over, lift))
+    place = np.nan_to_num(v.T / plane.lift_unit)
+    values = np.einsum("nsj,nrj->nrs", over, basis(plane.lift_kind, place))
+    swing = np.abs(over[..., 1]) + 2 * np.abs(over[..., 2])
+    return values, np.broadcast_to(swing[:, None], values.shape) / plane.lift_unit
 
 
 def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:
@@ -234,73 +530,112 @@ def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:
 # --- walls ----------------------------------------------------------------------------------------
 
 
-def _walls(plane: Plane, alive: Ints, forms: Floats, sides: Floats) -> Floats:
+def _walls(plane: Plane, finder: Finder, alive: Ints) -> Events:
     """Return base values at which a feature's form vanishes on the whole fibre.
 
     Where one of its side conditions is negative on the whole fibre, too, it is no wall.
     """
-    c = univariate(plane, forms[alive])
-    table = forms[alive]
-    sizes = np.abs(table).sum(axis=1)
-    largest = sizes[:, 1:].max(axis=1, initial=0.0)
-    which = np.where(largest > 0, 1 + sizes[:, 1:].argmax(axis=1), 0)
-    rows, t = base_values(plane, iter([(np.arange(len(c)), c[np.arange(len(c)), which])]))
-    factors = basis(plane.base_kind, t / plane.base_unit)
-    left = np.abs(np.einsum("ni,nij->nj", factors, table[rows]))
-    blank = (left <= WALL).all(axis=1)
-    over = np.einsum("ni,nsij->nsj", factors, sides[alive[rows]])
+    rows = plane.count + alive
+    table = plane.scaled[rows]
+    size = np.abs(table).sum(axis=1)
+    largest = size[:, 1:].max(axis=1, initial=0.0)
+    part = np.where(largest > 0, 1 + size[:, 1:].argmax(axis=1), 0)
+    requests = [
+        finder.of_kind(kind, rows[part == k])
+        for k, kind in enumerate(("constant", "first", "second"))
+    ]
+    events = finder.events(requests)
+    row = events.what[:, 1]
+    factors = basis(plane.base_kind, events.t / plane.base_unit)
+    left = np.abs(np.einsum("ni,nij->nj", factors, plane.scaled[row]))
+    doubt = 32 * plane.eps[row] + 4 * events.radius / plane.base_unit
+    blank = (left <= doubt[:, None]).all(axis=1)
+    over = np.einsum("ni,nsij->nsj", factors, plane.sides[row - plane.count])
     swing = np.hypot(over[..., 1], over[..., 2])
     if plane.lift_kind == "prismatic":
         swing = np.abs(over[..., 1]) + np.abs(over[..., 2])
-    possible = (over[..., 0] + swing >= -CONTACT_SIDE).all(axis=1)
-    low, high = plane.ends
-    inside = (t >= low) & (t <= high)
-    return np.unique(t[blank & possible & inside])
+    slack = 16 * plane.side_eps[row - plane.count] + 4 * events.radius[:, None] / plane.base_unit
+    possible = (over[..., 0] + swing >= -slack).all(axis=1)
+    return finder.isolated(events[which(blank & possible)])[1]
 
 
 # --- crossings ------------------------------------------------------------------------------------
 
 
-def crossings(plane: Plane, pieces: Pieces) -> Floats:
-    """Return base values at which contacts of different pairs cross, or a contact and a form.
+def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
+    """Return events at which contacts of different pairs cross, or a contact and a form.
 
-    Only pieces whose boxes meet are paired. Some values are spurious; none is missing.
+    Only pieces whose boxes meet are paired. Some events are spurious; none is missing.
     """
-    m, pair = plane.count, plane.contacts.pair[pieces.feature]
-    c = univariate(plane, plane.scaled)
-    one, other = _meeting_boxes(plane, pieces, pair)
-    key, group = np.unique(
-        pieces.feature[one] * len(c) + pieces.feature[other], return_inverse=True
-    )
-    first, second = m + key // len(c), m + key % len(c)
-    rows, t = base_values(plane, meetings(plane, c[first], c[second]))
-    # Every root is looked at by all pieces of its two features.
+    m, contacts = plane.count, plane.contacts
+    one, other = _meeting_boxes(plane, pieces)
+    one, other = _crossing(plane, pieces, one, other)
+    size = m + len(contacts.forms)
+    of_curve = _first_of_curve(contacts.curves)
+    a, b = of_curve[pieces.feature[one]], of_curve[pieces.feature[other]]
+    key, group = np.unique(np.minimum(a, b) * size + np.maximum(a, b), return_inverse=True)
+    first, second = m + key // size, m + key % size
+    found = finder.events(finder.meetings(first, second))
+    keys = _shared(contacts.keys[found.what[:, 1] - m], contacts.keys[found.what[:, 2] - m])
+    found.key[:] = keys
+    # Every zero is looked at by all pieces of its two features.
+    lowest = np.minimum(found.what[:, 1], found.what[:, 2]) - m
+    rows = np.searchsorted(key, lowest * size + found.what[:, 1:].max(axis=1, initial=0) - m)
     order = np.argsort(group, kind="stable")
     begin = np.searchsorted(group[order], np.arange(len(key) + 1))
     pick, k = ranges(begin[rows], begin[rows + 1])
-    i, j, t = one[order[k]], other[order[k]], t[pick]
+    i, j, t, radius = one[order[k]], other[order[k]], found.t[pick], found.radius[pick]
+    slack = NEAR * plane.base_unit + radius
     near = np.ones(len(t), dtype=np.bool_)
     for end in (i, j):
-        near &= (t >= pieces.start[end] - NEAR) & (t <= pieces.end[end] + NEAR)
-    i, j, t = i[near], j[near], t[near]
+        near &= (t >= pieces.start[end] - slack) & (t <= pieces.end[end] + slack)
+    i, j, t, pick = i[near], j[near], t[near], pick[near]
     apart = _values(plane, pieces, i, t) - _values(plane, pieces, j, t)
     if plane.lift_kind == "revolute":
         apart -= TURN * whole_turns(apart)
-    found = t[np.abs(apart) <= AGREE * plane.lift_unit]
-    return np.concatenate([found, _crossed_forms(plane, pieces, c)])
+    kept = np.unique(pick[np.abs(apart) <= AGREE * plane.lift_unit])
+    return Events.joined([found[kept], _crossed_forms(plane, pieces, finder)])
 
 
-def _meeting_boxes(plane: Plane, pieces: Pieces, pair: Ints) -> tuple[Ints, Ints]:
+def _first_of_curve(curves: Ints) -> Ints:
+    """Return of each feature the first one of its curve: it stands for all."""
+    _, first, back = np.unique(curves, return_index=True, return_inverse=True)
+    return np.asarray(first[back])
+
+
+def _shared(one: Ints, other: Ints) -> Ints:
+    """Return a key that two rows of keys share, -1 where there is none."""
+    same = (one[:, :, None] == other[:, None, :]) & (one[:, :, None] >= 0)
+    found = np.where(same, one[:, :, None], -1).max(axis=(1, 2), initial=-1)
+    return np.asarray(found)
+
+
+def _crossing(plane: Plane, pieces: Pieces, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+    """Leave out pairs of pieces that have nothing in common but what is an event already.
+
+    These are pieces of one curve, and features that end at one pair of corners: there their forms
+    touch, and have no other common zero, unless two edges keep a distance.
+    """
+    contacts = plane.contacts
+    a, b = pieces.feature[one], pieces.feature[other]
+    same = contacts.curves[a] == contacts.curves[b]
+    ends = contacts.ends[a][:, :, None] == contacts.ends[b][:, None, :]
+    touching = (ends & (contacts.ends[a] >= 0)[:, :, None]).any(axis=(1, 2))
+    touching &= contacts.corners[a] | contacts.corners[b] | contacts.sharp[a]
+    kept = ~same & ~touching
+    return one[kept], other[kept]
+
+
+def _meeting_boxes(plane: Plane, pieces: Pieces) -> tuple[Ints, Ints]:
     """Return pairs of pieces, of different pairs of bodies, whose boxes meet."""
+    pair = plane.contacts.pair[pieces.feature]
     every = np.arange(len(pair))
-    inset = SAME_CRITICAL * 100 * (pieces.end - pieces.start)
-    one, other = (
-        _values(plane, pieces, every, t) for t in (pieces.start + inset, pieces.end - inset)
-    )
-    middle, half = (one + other) / 2, np.abs(one - other) / 2 + BOX * plane.lift_unit
+    middle = (pieces.low + pieces.high) / 2
+    half = (pieces.high - pieces.low) / 2 + BOX * plane.lift_unit
+    near = NEAR * plane.base_unit
     found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))]
     order = np.argsort(pieces.start, kind="stable")
-    last = np.searchsorted(pieces.start[order], pieces.end[order] + NEAR, side="right")
+    last = np.searchsorted(pieces.start[order], pieces.end[order] + near, side="right")
     many = np.cumsum(last - every - 1)
     cuts = np.arange(PAIRS, many.max(initial=0), PAIRS)
     for at in np.split(every, np.searchsorted(many, cuts)):
@@ -321,15 +656,20 @@ def _values(plane: Plane, pieces: Pieces, k: Ints, t: Floats) -> Floats:
     return plane.follow(pieces.roots(plane, k), t[:, None])[:, 0]
 
 
-def _crossed_forms(plane: Plane, pieces: Pieces, c: Complexes) -> Floats:
-    """Return base values at which a contact may cross a form that stands alone."""
+def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
+    """Return events at which a contact may cross a form that stands alone."""
     m = plane.count
     lifts = np.flatnonzero(plane.scaled[:m, :, 1:].any(axis=(1, 2)))
-    features = np.unique(pieces.feature)
-    i, j = (x.ravel() for x in np.meshgrid(lifts, features, indexing="ij"))
-    rows, t = base_values(plane, meetings(plane, c[i], c[m + j]))
-    order = np.argsort(pieces.feature, kind="stable")
-    ends = np.searchsorted(pieces.feature[order], [j[rows], j[rows] + 1]) if len(rows) else (i, i)
-    pick, k = ranges(ends[0], ends[1])
-    k, t = order[k], t[pick]
-    return t[(t >= pieces.start[k] - NEAR) & (t <= pieces.end[k] + NEAR)]
+    feature = _first_of_curve(plane.contacts.curves)[pieces.feature]
+    features = np.unique(feature)
+    i, j = (x.ravel() for x in np.meshgrid(lifts, m + features, indexing="ij"))
+    found = finder.events(finder.meetings(i, j))
+    of = found.what[:, 1:].max(axis=1, initial=0) - m
+    order = np.argsort(feature, kind="stable")
+    begin = np.searchsorted(feature[order], of)
+    end = np.searchsorted(feature[order], of + 1)
+    pick, k = ranges(begin, end)
+    k, t = order[k], found.t[pick]
+    slack = NEAR * plane.base_unit + found.radius[pick]
+    near = (t >= pieces.start[k] - slack) & (t <= pieces.end[k] + slack)
+    return found[np.unique(pick[near])]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +17,19 @@ from numpy.typing import NDArray
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.angles import TURN
 from qbound.forms.factors import FACTORS
-from qbound.forms.harmonic import HarmonicForm, Kind
-from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, WALL, ZERO_AMPLITUDE
+from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Range = tuple[float, float] | None
 
-PROBES = np.array([0.29, 0.5, 0.77])
-
 FEW = 16
 """Forms that are looked at together at many places."""
+
+FAR_APART = 1e-9
+"""A scaled form of discs above this parts them, whatever its rounding."""
 
 TINY = 1e-300
 """Keeps 0 / 0 at zero where a form has neither amplitude nor constant."""
@@ -75,6 +76,10 @@ class Plane:
         0 or 1.
     contacts : Contacts, optional
         Of pairs of bodies that are to keep apart.
+    errors : ndarray, shape (m, 3, 3), optional
+        Bounds of the errors of the forms' coefficients; default 0.
+    caution : float, optional
+        By how much all errors are overestimated.
     """
 
     def __init__(
@@ -83,7 +88,10 @@ class Plane:
         ranges: Sequence[Range],
         base: int,
         contacts: Contacts = NO_CONTACTS,
+        errors: Floats | None = None,
+        caution: float = 1.0,
     ) -> None:
+        self.caution = caution
         self.count, self.base, self.contacts = len(forms.coefficients), base, contacts
         self.base_kind: Kind = forms.kinds[base]
         self.lift_kind: Kind = forms.kinds[1 - base]
@@ -99,6 +107,7 @@ class Plane:
         own = np.asarray(forms.coefficients, dtype=float)
         self.scaled: Floats = self.scale(np.concatenate([own, contacts.forms]))
         self.table: Floats = self.scaled / self.powers
+        self.scaled_size: Floats = np.abs(self.scaled).sum(axis=(1, 2))
         # Largest values of the coefficients along the lift: what is rounding is so beside these.
         self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
         # Ends of the lift's range are roots of forms -1 and -2: two of zeros at the end.
@@ -112,6 +121,16 @@ class Plane:
         self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
         if self.lift_kind == "revolute":
             self.affine[:] = False
+        given = np.zeros((self.count, 3, 3)) if errors is None else errors
+        self.eps: Floats = self._relative(
+            np.concatenate([own, contacts.forms]), np.concatenate([given, contacts.errors])
+        )
+
+    def _relative(self, tables: Floats, errors: Floats) -> Floats:
+        """Bound the errors of scaled coefficients: as they were given, and of scaling them."""
+        turned = (x if self.base == 0 else np.swapaxes(x, -1, -2) for x in (tables, errors))
+        table, error = (np.abs(x * self.powers).max(axis=(-2, -1), initial=0.0) for x in turned)
+        return np.asarray(self.caution * (4 * UNIT + error / np.where(table > 0, table, 1.0)))
 
     def scale(self, tables: Floats) -> Floats:
         """Return tables (..., 3, 3) base before lift, in units of both, largest coefficient 1."""
@@ -128,6 +147,11 @@ class Plane:
     def sides(self) -> Floats:
         """Side conditions of all features, scaled, shape (f, 4, 3, 3)."""
         return self.scale(self.contacts.sides)
+
+    @cached_property
+    def side_eps(self) -> Floats:
+        """Errors of the scaled coefficients of side conditions, shape (f, 4)."""
+        return self._relative(self.contacts.sides, self.contacts.side_errors)
 
     @cached_property
     def bodies(self) -> Separation:
@@ -147,17 +171,23 @@ class Plane:
         one, other = FACTORS[self.base_kind].functions(t)
         return np.asarray(columns[0] + columns[1] * one + columns[2] * other)
 
-    def positive(self, t: Floats, v: Floats, least: float) -> Bools:
-        """Tell whether every form exceeds `least` at paired base and lift values, (len(t),)."""
+    def positive(self, t: Floats, v: Floats, doubt: Floats) -> tuple[Bools, Bools]:
+        """Tell whether every form is positive at paired base and lift values, (len(t),).
+
+        Surely, beyond its own doubt, shape (m,); and whether none is negative beyond that.
+        """
         products, m = self.products(t, v), self.count
-        if m <= FEW:
-            return np.asarray((products @ self._rows > least).all(axis=1))
+        surely, maybe = np.zeros((2, len(t)), dtype=np.bool_)
         left = np.arange(len(t))
-        for forms in np.split(self.table[:m].reshape(-1, 9), range(FEW, m, FEW)):
-            left = left[(products[left] @ forms.T > least).all(axis=1)]  # few survive many forms
-        result = np.zeros(len(t), dtype=np.bool_)
-        result[left] = True
-        return result
+        for at in range(0, m, FEW):  # few places survive many forms
+            part = slice(at, min(at + FEW, m))
+            values = products[left] @ self._rows[:, part]
+            open_ = (values > -doubt[part]).all(axis=1)
+            sure = (values > doubt[part]).all(axis=1)
+            surely[left] = sure & (surely[left] if at else True)
+            left = left[open_]
+        maybe[left] = True
+        return surely & maybe, maybe
 
     def products(self, t: Floats, v: Floats) -> Floats:
         """Return the nine factors of a form at paired base and lift values, (len(t), 9)."""
@@ -168,22 +198,6 @@ class Plane:
         np.multiply(found[:, :, 0], one[:, None], out=found[:, :, 1])
         np.multiply(found[:, :, 0], other[:, None], out=found[:, :, 2])
         return found.reshape(-1, 9)
-
-    def open(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
-        """Tell whether forms that do not change sign there are positive between lift values, (k,).
-
-        One place may be where a form touches zero, so there are three, at uneven parts.
-        """
-        v = low[:, None] + (high - low)[:, None] * PROBES
-        found = self.positive(t.repeat(len(PROBES)), v.ravel(), least)
-        return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
-
-    def apart(self, t: Floats, low: Floats, high: Floats, least: float) -> Bools:
-        """Tell the same of bodies: whether every pair is apart at one of three places at least."""
-        v = low[:, None] + (high - low)[:, None] * PROBES
-        heights = self.bodies.heights(np.repeat(t, len(PROBES)), v.ravel())
-        found = (heights > least).all(axis=1)
-        return np.asarray(found.reshape(-1, len(PROBES)).any(axis=1))
 
     def roots(self, t: Floats) -> Floats:
         """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
@@ -205,17 +219,63 @@ class Plane:
         found = (np.abs(ratio) <= 1) & ((c[1] != 0) | (c[2] != 0))
         return np.where(found, [theta - alpha, theta + alpha], np.nan)
 
-    def vanishing(self, t: Floats, v: Floats) -> Ints:
-        """Return the form nearest to zero at places, (k,); of a feature, if it is a contact."""
-        products = self.products(t, v)
-        values = np.abs(products @ self._rows)
-        if self.contacts.pairs:
-            sides = (self.sides / self.powers).reshape(-1, 9)
-            held = (products @ sides.T >= -WALL).reshape(len(t), -1, SIDES).all(axis=2)
-            own = np.abs(products @ self.table[self.count :].reshape(-1, 9).T)
-            own[:, ~self.contacts.touching] = np.inf
-            values = np.concatenate([values, np.where(held, own, np.inf)], axis=1)
-        return np.asarray(values.argmin(axis=1))
+    def roots_and_errors(self, row: Ints, c: Floats, slack: Floats | float = 0.0) -> Any:
+        """Return both roots of rows from coefficients (3, ..., n) along the lift, and how sure.
+
+        Parameters
+        ----------
+        slack : ndarray, optional
+            What the coefficients are off besides their own errors, in the row's largest value.
+
+        Returns
+        -------
+        values, errors : ndarray, shape (2, ..., n)
+            The errors bound those of roots; a double root is known to half the digits.
+        real : ndarray of int, shape (..., n)
+            1 where there are two roots, -1 where there are none, 0 where doubles cannot tell.
+        """
+        doubt = (self.eps[row] + 8 * UNIT + slack) * self.scaled_size[row]
+        return self._roots(c, doubt)
+
+    def side_roots(self, side: Ints, t: Floats, radius: Floats) -> Any:
+        """Return the same of side conditions, by number, over base values of some error."""
+        tables = self.sides.reshape(-1, 3, 3)[side]
+        factors = basis(self.base_kind, t / self.base_unit)
+        c = np.einsum("ni,nij->jn", factors, tables)
+        c = c / (self.lift_unit ** np.arange(3))[:, None]
+        slack = 2 * radius / self.base_unit
+        doubt = (self.side_eps.reshape(-1)[side] + 8 * UNIT + slack) * np.abs(tables).sum(
+            axis=(1, 2)
+        )
+        values, errors, real = self._roots(c, doubt)
+        if self.lift_kind == "prismatic":
+            values = np.where((c[2] == 0) & (c[1] == 0), np.nan, values)
+            values[1] = np.where(c[2] == 0, np.nan, values[1])
+        return values, errors, real
+
+    def _roots(self, c: Floats, doubt: Floats) -> Any:
+        if self.lift_kind == "revolute":
+            theta, alpha, _ = _polar(c, 0.0 * doubt)
+            d = np.hypot(c[1], c[2])
+            beside = doubt / np.maximum(d, TINY)
+            part = np.maximum(np.abs(np.sin(alpha)), np.sqrt(np.minimum(beside, 1.0)))
+            error = np.where(beside < 0.25, 2 * beside / part + beside, np.inf) + 16 * UNIT
+            gap = d - np.abs(c[0])
+            real = np.where(gap > 2 * doubt, 1, np.where(gap < -2 * doubt, -1, 0))
+            return np.array([theta - alpha, theta + alpha]), np.array([error, error]), real
+        unit = self.lift_unit
+        c0, c1, c2 = c[0], c[1] * unit, c[2] * unit**2
+        square = c1 * c1 - 4 * c0 * c2
+        wide = 8 * doubt * (np.abs(c0) + np.abs(c1) + np.abs(c2) + doubt)
+        values = _quadratic_roots(*c, folds=True)
+        values = np.clip(values, -1e6 * unit, 1e6 * unit)
+        size = doubt * (1 + (np.abs(values) / unit)) ** 2
+        steep = np.maximum(np.sqrt(np.maximum(square, 0)), np.sqrt(np.abs(c2) * size))
+        steep = np.where(c2 == 0, np.abs(c1), steep)
+        error = unit * (2 * size / np.maximum(steep, TINY) + 16 * UNIT) + 16 * UNIT * np.abs(values)
+        real = np.where(square > wide, 1, np.where(square < -wide, -1, 0))
+        real = np.where(c2 == 0, np.where(c1 != 0, 1, -1), real)
+        return values, error, real
 
     def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
         """Evaluate roots, each over its own row of base values inside its slab, shape (..., k, n).
@@ -275,46 +335,59 @@ def runs(values: Ints) -> tuple[Ints, Ints]:
 
 
 class Separation:
-    """Which pairs of bodies are apart? Any one clause of a pair shows it; all its forms must.
+    """Tests that part pairs of bodies: any one clause of a pair shows it; all its forms must.
 
     Parameters
     ----------
     plane : Plane
         Whose features these are.
+    pairs : ndarray of bool, shape (pairs,), optional
+        Which pairs; default all.
+
+    Attributes
+    ----------
+    pairs : ndarray of int
+    doubt : float
+        A height this near to zero has no sign.
     """
 
     def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
         contacts = plane.contacts
         chosen = np.full(contacts.pairs, True) if pairs is None else pairs
-        rows = which(chosen[contacts.pair]) if contacts.pairs else np.arange(0)
         self.plane, self.pairs = plane, which(chosen)
-        self.forms: Floats = plane.table[plane.count :][rows].reshape(-1, 9)
-        self.corners: Ints = which(contacts.corners[rows])
-        sides = plane.sides[rows][self.corners] / plane.powers
-        self.sides: Floats = sides.swapaxes(0, 1).reshape(-1, 9)  # all first ones first
-        clause, pair = contacts.clause[rows], contacts.pair[rows]
-        self.clauses: Ints = runs(clause)[0]
-        self.starts: Ints = runs(pair[self.clauses])[0]
+        self.discs: Floats = (plane.scale(contacts.discs[self.pairs]) / plane.powers).reshape(-1, 9)
+        doubts = (plane.eps[plane.count :] + 16 * UNIT) * plane.scaled_size[plane.count :]
+        self.doubt = float(doubts[chosen[contacts.pair]].max(initial=0.0))
 
     def heights(self, t: Floats, v: Floats) -> Floats:
         """Return of each pair, at paired base and lift values, what parts it best, (len(t), pairs).
 
-        A value of a scaled form, positive where the two are apart.
+        A value of a scaled form, positive where the two are apart. Most pairs are parted by discs.
         """
         result = np.empty((len(t), len(self.pairs)))
-        if not len(self.pairs):
-            return result
-        step = max(1, MOST_VALUES // (len(self.forms) + len(self.sides)))
+        step = max(1, MOST_VALUES // max(1, len(self.pairs)))
         for k in range(0, len(t), step):
             products = self.plane.products(t[k : k + step], v[k : k + step])
-            values = products @ self.forms.T
-            if len(self.corners):
-                sides = (products @ self.sides.T).reshape(len(products), SIDES, -1).min(axis=1)
-                corners = values[:, self.corners]
-                values[:, self.corners] = np.where(sides >= -NEGLIGIBLE, corners, -np.inf)
-            parted = np.minimum.reduceat(values, self.clauses, axis=1)
-            result[k : k + step] = np.maximum.reduceat(parted, self.starts, axis=1)
+            values = products @ self.discs.T
+            for p in which((values <= FAR_APART).any(axis=0)).tolist():
+                near = which(values[:, p] <= FAR_APART)
+                values[near, p] = self._height(int(self.pairs[p]), products[near])
+            result[k : k + step] = values
         return result
+
+    def _height(self, pair: int, products: Floats) -> Floats:
+        """Return what parts one pair best, from the nine factors of a form, (n, 9) to (n,)."""
+        plane, contacts = self.plane, self.plane.contacts
+        first, last = contacts.pair.searchsorted([pair, pair + 1])
+        rows = np.arange(first, last)
+        values = products @ plane.table[plane.count + rows].reshape(-1, 9).T
+        corners = which(contacts.corners[rows])
+        if len(corners):
+            sides = (plane.sides[rows[corners]] / plane.powers).reshape(-1, 9)
+            lowest = (products @ sides.T).reshape(len(products), -1, SIDES).min(axis=2)
+            values[:, corners] = np.where(lowest >= -NEGLIGIBLE, values[:, corners], -np.inf)
+        clauses, _ = runs(contacts.clause[rows])
+        return np.asarray(np.minimum.reduceat(values, clauses, axis=1).max(axis=1))
 
 
 def _polar(c: Floats, doubt: Floats | None = None) -> tuple[Floats, Floats, Floats]:

@@ -1,80 +1,113 @@
-"""Where do polynomials vanish? Roots of stacks of them, a multiple root once and as it is.
-
-Roots are eigenvalues of companion matrices. Rounding spreads an m-fold one by its own m-th root,
-1e-8 of a double one: two curves that touch would part there, or miss each other. But an m-fold root
-is a simple one of the (m - 1)-th derivative, and of that Newton finds all digits.
-"""
+"""Roots of stacks of polynomials, each with a bound of its error."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.tolerances import MULTIPLE, NEGLIGIBLE, SPREAD
+from qbound.tolerances import UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Complexes = NDArray[np.complex128]
 
+FAR = 2.0
+"""Roots farther than this from 0 are not wanted: bases are scaled to the unit circle or [-1, 1]."""
 
-def polynomial_roots(stack: Complexes) -> tuple[Ints, Complexes]:
-    """Return rows and roots of stacked polynomials, equal degrees by one call of the solver.
+DERIVATIVES = 4
+"""Derivatives that bound the error of a root; one more than the multiplicity that is well known."""
 
-    Both ends are trimmed relative to the largest coefficient: a fixed degree would send roots to
-    zero or infinity and spoil the others. Not in the paper.
+
+class Roots(NamedTuple):
+    """Roots of polynomials, one a row.
+
+    Attributes
+    ----------
+    row : ndarray of int, shape (k,)
+        Which polynomial.
+    z : ndarray of complex, shape (k,)
+    radius : ndarray, shape (k,)
+        A root of every polynomial within its error lies no farther from z.
+    crowded : ndarray of bool, shape (k,)
+        Whether another root of the same polynomial may lie within that distance.
+    """
+
+    row: Ints
+    z: Complexes
+    radius: Floats
+    crowded: Bools
+
+
+def polynomial_roots(stack: Complexes, errors: Floats, *, circle: bool) -> Roots:
+    """Return the roots of stacked polynomials near the unit disc, those of equal degree at once.
+
+    Roots are eigenvalues of companion matrices, polished by Newton. Coefficients at either end that
+    are zero within their error are left out, because they would send roots to infinity and spoil
+    the others. Not in the paper.
 
     Parameters
     ----------
     stack : ndarray of complex, shape (n, d + 1)
-        Coefficients, ascending powers, of terms of size 1 or less.
+        Coefficients, ascending powers.
+    errors : ndarray, shape (n,)
+        Bound of the sum of all coefficients' errors.
+    circle : bool
+        Whether only roots near the unit circle are wanted: then the lowest coefficients are left
+        out, too.
 
-    Returns
-    -------
-    tuple of ndarray
-        Row and place of each root, shape (k,), in no order; a multiple root stands there once.
+    Notes
+    -----
+    A polynomial of degree d with Taylor coefficients a_k at z has a root within
+    (binomial(d, k) |a_0 / a_k|)^(1/k) of z, for each k (Henrici 1974, Theorem 6.4e); the least of
+    these bounds is taken, with all errors on the bad side.
 
     Examples
     --------
     >>> import numpy as np
-    >>> rows, z = polynomial_roots(np.poly([0.3, 0.3, -0.5])[None, ::-1].astype(complex))
-    >>> sorted(z.real.round(14).tolist())
-    [-0.5, 0.3]
+    >>> stack = np.poly([0.3, 0.4, -0.5])[None, ::-1].astype(complex)
+    >>> found = polynomial_roots(stack, np.array([1e-15]), circle=False)
+    >>> sorted(found.z.real.round(14).tolist()), bool((found.radius < 1e-12).all())
+    ([-0.5, 0.3, 0.4], True)
     """
-    rows, stack, degree, zero = _trimmed(stack)
+    rows, moved, degree = _trimmed(stack, errors, circle)
     z = np.full((len(rows), stack.shape[1] - 1), np.nan, dtype=complex)
     for d in set(degree.tolist()) - {0}:
         chosen = degree == d
-        z[chosen, :d] = _companion_roots(stack[chosen, : d + 1])
-    where, multiple, simple = _multiple_roots(stack, z)
-    of, place = np.nonzero(simple)
-    found = np.zeros(len(zero)), multiple, _polished(stack, z)[of, place]
-    return np.concatenate([zero, rows[where], rows[of]]), np.concatenate(found)
+        z[chosen, :d] = _companion_roots(moved[chosen, : d + 1])
+    z = _polished(moved, z)
+    radius = _radii(moved, z, degree, errors[rows])
+    near = np.abs(z[:, :, None] - z[:, None, :]) <= radius[:, :, None] + radius[:, None, :]
+    crowded = near.sum(axis=2) > 1
+    with np.errstate(invalid="ignore"):
+        wanted = np.abs(z) <= FAR
+        if circle:
+            wanted &= np.abs(np.abs(z) - 1) <= radius
+        else:
+            wanted &= np.abs(z.imag) <= radius
+    of, place = np.nonzero(wanted)
+    return Roots(rows[of], z[of, place], radius[of, place], crowded[of, place])
 
 
-def _trimmed(stack: Complexes) -> tuple[Ints, Complexes, Ints, Ints]:
-    """Return rows that are not zero, their polynomials from the first coefficient, and degrees.
-
-    Zeros stand behind the last coefficient. Of the rows that were trimmed in front comes a list:
-    they had the root zero.
-    """
+def _trimmed(stack: Complexes, errors: Floats, circle: bool) -> tuple[Ints, Complexes, Ints]:
+    """Return rows that are not zero, their polynomials from the first coefficient, and degrees."""
     sizes = np.abs(stack)
-    largest = sizes.max(axis=1, initial=0.0)
-    rows = np.flatnonzero(largest > NEGLIGIBLE)
-    kept = sizes[rows] > NEGLIGIBLE * largest[rows, None]
-    first = kept.argmax(axis=1)
+    rows = np.flatnonzero((sizes > errors[:, None]).any(axis=1))
+    kept = sizes[rows] > errors[rows, None]
+    first = kept.argmax(axis=1) if circle else np.zeros(len(rows), dtype=np.int64)
     last = stack.shape[1] - 1 - kept[:, ::-1].argmax(axis=1)
     degree = last - first
     term = np.arange(degree.max(initial=1) + 1)
     place = np.minimum(first[:, None] + term, last[:, None])
     moved = np.where(term <= degree[:, None], stack[rows[:, None], place], 0.0)
-    return rows, moved, degree, rows[first > 0]
+    return rows, moved, degree
 
 
 def _companion_roots(stack: Complexes) -> Complexes:
-    """Return the roots, (n, degree), of polynomials with non-zero ends."""
+    """Return the roots, (n, degree), of polynomials with a leading coefficient."""
     degree = stack.shape[1] - 1
     if degree == 2:
         return _quadratic_roots(*stack.T)
@@ -89,73 +122,44 @@ def _quadratic_roots(c0: Complexes, c1: Complexes, c2: Complexes) -> Complexes:
     root = np.sqrt(c1 * c1 - 4 * c0 * c2)
     root = np.where((c1.conj() * root).real < 0, -root, root)
     half = -(c1 + root) / 2
-    return np.array([half / c2, c0 / half]).T
-
-
-def _multiple_roots(stack: Complexes, z: Complexes) -> tuple[Ints, Complexes, Bools]:
-    """Return rows and places of multiple roots, and which of the computed roots (n, d) are none.
-
-    Rows with fewer roots end with NaN.
-    """
-    simple: Bools = np.asarray(~np.isnan(z))
-    found = [(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex))]
-    gaps = np.abs(z[:, :, None] - z[:, None, :])
-    company = (gaps <= _spread(z.shape[1])).sum(axis=-1).max(axis=-1, initial=0)
-    for m in range(int(company.max(initial=0)), 1, -1):
-        near = np.flatnonzero(company >= m)
-        k, one = np.nonzero((gaps[near] <= _spread(m)).sum(axis=-1) >= m)
-        if not len(k):
-            continue
-        rows = near[k]
-        own = np.argsort(gaps[rows, one], axis=-1)[:, :m]  # the root itself, and its nearest
-        _, first = np.unique(rows * 2 ** z.shape[1] + (2**own).sum(axis=1), return_index=True)
-        rows, own = rows[first], own[first]  # each of the parts has the same ones
-        place, rounded = _m_fold(stack[rows], np.take_along_axis(z[rows], own, axis=1), m)
-        new = rounded & simple[rows[:, None], own].all(axis=1)
-        simple[rows[new, None], own[new]] = False
-        found.append((rows[new], place[new]))
-    rows, places = (np.concatenate(x) for x in zip(*found, strict=True))
-    return rows, places, simple
-
-
-def _spread(m: int) -> float:
-    """Return how far from each other rounding may leave the m parts of one root."""
-    return float(SPREAD * NEGLIGIBLE ** (1 / m))
-
-
-def _m_fold(stack: Complexes, parts: Complexes, m: int) -> tuple[Complexes, Bools]:
-    """Return the root that m computed ones (k, m) would be, and whether but for rounding they are.
-
-    They are if of the Taylor coefficients there the first m cannot be told from zero.
-    """
-    tables = [_taylor(stack, j) for j in range(m + 1)]
-    place = parts.mean(axis=1, keepdims=True)
-    for _ in range(3):
-        value, slope = _horner(tables[m - 1], place), m * _horner(tables[m], place)
-        step = np.divide(value, slope, out=np.zeros_like(value), where=slope != 0)
-        place = np.where(np.abs(step) <= _spread(m), place - step, place)
-    rounded = np.ones(len(stack), dtype=np.bool_)
-    for table in tables[:m]:
-        size = 1 + _horner(np.abs(table), np.abs(place))
-        rounded &= (np.abs(_horner(table, place)) <= MULTIPLE * size)[:, 0]
-    return place[:, 0], rounded
-
-
-def _taylor(stack: Complexes, j: int) -> Complexes:
-    """Return the polynomials' j-th derivatives over j!, ascending powers."""
-    return np.asarray(stack[:, j:] * [math.comb(k, j) for k in range(j, stack.shape[1])])
+    other = np.divide(c0, half, out=np.zeros_like(c0), where=half != 0)
+    return np.array([half / c2, other]).T
 
 
 def _polished(stack: Complexes, z: Complexes) -> Complexes:
-    """Two steps of Newton; a step is taken only where the root is simple enough to gain by it."""
+    """Two steps of Newton; a step is taken only where it is short."""
     both = np.zeros((2, *stack.shape), dtype=complex)
     both[0], both[1, :, :-1] = stack, stack[:, 1:] * np.arange(1, stack.shape[1])
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(2):
             value, slope = _horner(both, z)
             step = value / slope
             z = np.where(np.abs(step) < 1e-6, z - step, z)
     return z
+
+
+def _radii(stack: Complexes, z: Complexes, degree: Ints, errors: Floats) -> Floats:
+    """Bound the distances of roots from the nearest true ones, (n, d)."""
+    most = stack.shape[1] - 1
+    with np.errstate(all="ignore"):
+        # Rounding of Horner's rule, and the coefficients' errors.
+        far = np.maximum(np.abs(z), 1.0) ** degree[:, None]
+        doubt = (errors + 4 * most * UNIT * np.abs(stack).sum(axis=1))[:, None] * far
+        value = np.abs(_horner(stack, z)) + doubt
+        radius = np.full(z.shape, np.inf)
+        for k in range(1, min(most, DERIVATIVES) + 1):
+            ways = np.array([math.comb(d, k) for d in range(most + 1)], dtype=float)[degree][
+                :, None
+            ]
+            slope = np.abs(_horner(_taylor(stack, k), z)) - ways * doubt
+            bound = (ways * value / np.maximum(slope, 1e-300)) ** (1 / k)
+            radius = np.where(slope > 0, np.minimum(radius, bound), radius)
+    return np.where(np.isnan(z), 0.0, radius)
+
+
+def _taylor(stack: Complexes, j: int) -> Complexes:
+    """Return the polynomials' j-th derivatives over j!, ascending powers."""
+    return np.asarray(stack[:, j:] * [math.comb(k, j) for k in range(j, stack.shape[1])])
 
 
 def _horner(stack: NDArray[np.inexact], z: NDArray[np.inexact]) -> NDArray[np.inexact]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from qbound.boundary.body_contacts import body_contacts
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
+from qbound.boundary.errors import clearance_error
 from qbound.boundary.evaluator import (
     Evaluator,
     Range,
@@ -26,6 +27,7 @@ from qbound.boundary.evaluator import (
     stacked,
     with_bodies,
 )
+from qbound.boundary.functions import term_size
 from qbound.boundary.parts import bounds_bodies
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm, Kind
@@ -64,6 +66,9 @@ class Problem:
         Those about bodies, which have no single form.
     contacts : Contacts
         Their features.
+    origins : tuple of (Boundary or None)
+        Whose form each is, one a form; None where its doubles are exact as they are, as those of
+        all forms after the last that is given.
 
     Raises
     ------
@@ -82,6 +87,7 @@ class Problem:
     rule: Rule = "clearance"
     bodies: tuple[Boundary, ...] = ()
     contacts: Contacts = NO_CONTACTS
+    origins: tuple[Boundary | None, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what is no question about two joints."""
@@ -109,12 +115,22 @@ class Problem:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
         missing = len(self.names) - len(self.distances)
         distances = (*self.distances, *[None] * missing)
-        forms = compiled(self.forms, self.names, distances, self.ranges, self.limits)
+        forms = compiled(
+            self.forms, self.names, distances, self.ranges, self.limits, terms=self._terms
+        )
         if self.robot is None or not self.bodies:
             return forms
         names = {boundary.name for boundary in self.bodies}.union(self.names)
         order = [boundary.name for boundary in self.robot.used if boundary.name in names]
         return with_bodies(forms, Separation(self.robot, self.held, self.bodies), order)
+
+    @property
+    def _terms(self) -> list[float]:
+        """Size of the terms of each form, 0 of one that is no clearance of the robot's."""
+        if self.robot is None or self.rule == "paper":
+            return []
+        used = {b.name: b for b in self.robot.used if not bounds_bodies(b)}
+        return [term_size(self.robot, used[n]) if n in used else 0.0 for n in self.names]
 
     @property
     def home(self) -> Floats | None:
@@ -162,12 +178,25 @@ class Problem:
             forms=self.forms[kept],
             names=tuple(self.names[k] for k in kept),
             distances=tuple(d for k, d in enumerate(self.distances) if k not in dropped),
+            origins=tuple(b for k, b in enumerate(self.origins) if k not in dropped),
         )
 
     def blocks(self, k: int, value: float) -> bool:
         """Tell whether a form with this value everywhere leaves no room; d_min = 0 asks none."""
         asks_nothing = k < len(self.distances) and self.distances[k] == 0
         return value < 0 or (value == 0 and not asks_nothing)
+
+    @cached_property
+    def errors(self) -> Floats:
+        """How far each coefficient of a form may be from the exact one, shape (m, 3, 3).
+
+        Forms whose doubles are exact have no error.
+        """
+        found = np.zeros_like(self.forms.coefficients)
+        for k, boundary in enumerate(self.origins):
+            if boundary is not None and self.robot is not None:
+                found[k] = clearance_error(self.robot, self.held, boundary)
+        return found
 
     @cached_property
     def constants(self) -> dict[int, float]:
@@ -269,6 +298,7 @@ def state(
         rule=rule,
         bodies=bodies,
         contacts=body_contacts(robot, held, bodies),
+        origins=tuple(formed),
     )
 
 

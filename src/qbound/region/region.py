@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
@@ -16,14 +17,14 @@ from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component, bounded, closures, measured
-from qbound.region.decomposition import Decomposition, decompose
+from qbound.region.decomposition import decompose, nothing_in
 from qbound.region.emptiness import irreducible
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.loops import BoundaryLoop, Layout
-from qbound.region.plane import Plane
+from qbound.region.precise import Precise, UndecidedError
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
-from qbound.tolerances import UNREAL_AREA
+from qbound.region.verified import faults
 from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
@@ -34,20 +35,25 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 
+class UnresolvedError(ValueError):
+    """The structure of a region could not be decided; the message says where and why."""
+
+
 class NoHomeError(ValueError):
     """The home pose is in no component; the message says which boundary it violates."""
 
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """All components, the one with the home pose first, the others by falling area.
+    """The feasible region of two joints: components, labelled arcs, vertices, measures.
 
     A configuration is feasible where no margin is negative, up to rounding; it belongs to the
     components in whose closure it lies. One that touches without room is feasible and in none.
 
     Attributes
     ----------
-    components : tuple of Component
+    found : tuple of Component
+        What `components` gives, unless the region is unresolved.
     problem : Problem
         What was asked: robot, joints, held values, rule, forms.
     cells : CellComplex
@@ -61,6 +67,16 @@ class Region:
     irrelevant : tuple of str
         Of many boundaries, those that were proved to bound nothing here (`relevant`) and took no
         part in the search; `margins` and `contains` ask them all the same.
+    unresolved : tuple of str
+        Where and why the structure could not be decided: empty, but for scenes in which more
+        coincides than 1,024 bits can tell. Then `components`, and all that rests on them, raise
+        `UnresolvedError`; `contains` and `margins` work.
+    inner : Problem, optional
+        What is left of the problem for the search: forms that some joint moves and that matter.
+
+    Notes
+    -----
+    A region is handed out only after it has verified itself (`qbound.region.verified`).
 
     Examples
     --------
@@ -77,21 +93,38 @@ class Region:
     says why.
     """
 
-    components: tuple[Component, ...]
+    found: tuple[Component, ...]
     problem: Problem
     cells: CellComplex
     base: int
     owner: dict[int, int]
     empty_because: tuple[str, ...] = ()
     irrelevant: tuple[str, ...] = ()
+    unresolved: tuple[str, ...] = ()
+    inner: Problem | None = None
 
     def __repr__(self) -> str:
         """Say in a line what was found."""
         robot = self.problem.robot
         of = f" of {printable(robot.name)}" if robot is not None else ""
+        if self.unresolved:
+            return f"<Region{of}: unresolved: {printable(self.unresolved[0])}>"
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
         home = "with home" if self.home is not None else "home in none"
         return f"<Region{of}: {count}, {home}, area {self.area:.6g} {self.area_unit}>"
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """All components, the one with the home pose first, the others by falling area.
+
+        Raises
+        ------
+        UnresolvedError
+            If the structure could not be decided.
+        """
+        if self.unresolved:
+            raise UnresolvedError(f"this region is unresolved: {'; '.join(self.unresolved)}")
+        return self.found
 
     @property
     def limited(self) -> dict[str, Joint]:
@@ -401,31 +434,120 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     constants = problem.constants
     inner, irrelevant = without_irrelevant(problem.without(list(constants)))
     blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
-    plane = Plane(inner.forms, inner.ranges, base, inner.contacts)
     if blocked:
-        none = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
-        nothing = CellComplex(Decomposition(plane, np.array(plane.ends), *none, np.zeros(0)))
-        return Region((), problem, nothing, base, {}, tuple(blocked[:1]), irrelevant)
-    cells = CellComplex(decompose(plane))
-    if not len(cells.slabs):
-        return Region((), problem, cells, base, {}, irreducible(inner, base), irrelevant)
-    found = measured(cells, problem, home, base)
-    if inner.contacts.pairs:  # where bodies touch without room, rounding may leave some
-        found = [one for one in found if one.area > UNREAL_AREA * plane.base_unit * plane.lift_unit]
-    edges = half_edges(cells)
-    rings = find_loops(cells, edges)
-    bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
-    layout = Layout(cells, edges, base, inner.names, inner.limits)
-    loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
-    unit = problem.area_unit
-    components = [
-        (bounded(f, base, list(islice(loops, len(own))), unit), cells.parts.cells[f.part])
-        for f, own in zip(found, bounding, strict=True)
-    ]
-    components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
-    owner = {k: i for i, (_, own) in enumerate(components) for k in own}
-    every = tuple(component for component, _ in components)
-    return Region(every, problem, cells, base, owner, irrelevant=irrelevant)
+        nothing = CellComplex(nothing_in(Precise.of(inner, base)))
+        because = tuple(blocked[:1])
+        return Region((), problem, nothing, base, {}, because, irrelevant, inner=inner)
+    asked = _Asked(problem, inner, home, irrelevant)
+    found, why = asked.verified(base)
+    if found is not None and not asked.is_delicate(found):
+        return found
+    other, why_other = asked.verified(1 - base)
+    if found is None or other is None:
+        right = found or other
+        return asked.unresolved(base, why + why_other) if right is None else right
+    differences = _differences(found, other)
+    return asked.unresolved(base, differences) if differences else found
+
+
+DELICATE = 1e-6
+"""Two critical values nearer than this part of the range: the other joint is asked, too."""
+
+CAUTION = (1.0, 2.0**12)
+"""By how much errors of doubles are overestimated: at first, and where a region was not right."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What a region is asked of: the problem, and what is left of it for the search."""
+
+    problem: Problem
+    inner: Problem
+    home: Floats
+    irrelevant: tuple[str, ...]
+
+    def verified(self, base: int) -> tuple[Region | None, tuple[str, ...]]:
+        """Return the region over a joint that is right by its own account; else why there is none.
+
+        One that is not is computed again with more left to balls.
+        """
+        reasons: tuple[str, ...] = ()
+        for caution in CAUTION:
+            try:
+                region = self._region(base, caution)
+            except UndecidedError as error:
+                reasons = (str(error),)
+                continue
+            reasons = tuple(faults(region))
+            if not reasons:
+                return region, ()
+        return None, reasons
+
+    def is_delicate(self, region: Region) -> bool:
+        """Tell whether balls decided anything, or critical values nearly coincide."""
+        lines = region.cells.abscissae
+        near = DELICATE * (lines[-1] - lines[0])
+        decided = region.cells.decomposition.precise.decided
+        return bool(decided or (np.diff(lines) < near).any())
+
+    def unresolved(self, base: int, reasons: Sequence[str]) -> Region:
+        """Return a region without components that says why it has none."""
+        cells = CellComplex(nothing_in(Precise.of(self.inner, base)))
+        return Region(
+            (),
+            self.problem,
+            cells,
+            base,
+            {},
+            irrelevant=self.irrelevant,
+            unresolved=tuple(reasons),
+            inner=self.inner,
+        )
+
+    def _region(self, base: int, caution: float) -> Region:
+        problem, inner = self.problem, self.inner
+        cells = CellComplex(decompose(Precise.of(inner, base, caution)))
+        if not len(cells.slabs):
+            because = irreducible(inner, base)
+            return Region((), problem, cells, base, {}, because, self.irrelevant, inner=inner)
+        found = measured(cells, problem, self.home, base)
+        edges = half_edges(cells)
+        rings = find_loops(cells, edges)
+        bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
+        layout = Layout(cells, edges, base, inner.names, inner.limits)
+        loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
+        unit = problem.area_unit
+        components = [
+            (bounded(f, base, list(islice(loops, len(own))), unit), cells.parts.cells[f.part])
+            for f, own in zip(found, bounding, strict=True)
+        ]
+        components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
+        owner = {k: i for i, (_, own) in enumerate(components) for k in own}
+        every = tuple(component for component, _ in components)
+        return Region(every, problem, cells, base, owner, irrelevant=self.irrelevant, inner=inner)
+
+
+def _differences(one: Region, other: Region) -> tuple[str, ...]:
+    """Return what two regions of one problem, found over either joint, do not have in common."""
+    found = []
+    for what, size in (
+        ("components", lambda region: len(region.components)),
+        ("loops", lambda region: sum(len(c.loops) for c in region.components)),
+        ("vertices", lambda region: sum(len(c.vertices) for c in region.components)),
+    ):
+        counts = size(one), size(other)
+        if counts[0] != counts[1]:
+            found.append(f"{counts[0]} {what} over one joint, {counts[1]} over the other")
+    areas = [sorted(c.area for c in region.components) for region in (one, other)]
+    if not found and areas[0]:
+        off = np.abs(np.subtract(*areas)).max()
+        if off > SAME_AREA * max(one.area, other.area):
+            found.append(f"an area differs by {off:.2g} between the joints")
+    return tuple(found)
+
+
+SAME_AREA = 1e-9
+"""Part of the whole area by which areas over either joint may differ."""
 
 
 def _why_no_home(region: Region) -> str:

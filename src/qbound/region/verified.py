@@ -1,0 +1,258 @@
+"""A region verifies itself: its arcs, vertices, cells and loops, by margins that it did not use.
+
+The engine decides structure from forms and features. Here the answer is asked of the evaluator of
+margins, which knows robots and distances only; where its doubles do not decide, of balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qbound.region.arcs import ordered
+from qbound.region.cells import CellComplex
+from qbound.region.decomposition import apart, turned_root
+from qbound.region.plane import which
+from qbound.region.precise import LEVELS, Precise, precision
+from qbound.tolerances import ON_ARC, UNIT
+
+if TYPE_CHECKING:
+    from qbound.region.region import Region
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+PLACES = (-1.2, -0.4, 0.3, 1.0)
+"""Where arcs are looked at: angles of their parametrization, from -pi/2 to pi/2."""
+
+INSIDE = 0.43
+"""Part of a cell's width at which it is looked at."""
+
+BESIDE = (1e-6, 1e-9, 1e-12)
+"""How far beside an arc it is asked what lies there, in units of a joint; then balls are asked."""
+
+CLEAR = 64.0
+"""A margin beyond so many times its rounding has a sign."""
+
+
+def faults(region: Region) -> list[str]:
+    """Return what is wrong with a region, a sentence each; none where it is right.
+
+    Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
+    middle and its boundaries are violated just beyond, and whether loops are as many as Euler's
+    count of the cells allows.
+    """
+    found = list(_off(region))
+    found += _Cells(region).faults()
+    found += _loops(region)
+    return found
+
+
+def _off(region: Region) -> Iterator[str]:
+    """Yield the arcs and vertices that do not lie on their boundaries."""
+    arcs = [arc for part in region.components for loop in part.loops for arc in loop]
+    if not arcs:
+        return
+    column = {name: k for k, name in enumerate(region.boundaries)}
+    middles = np.array([(len(arc.pieces.roots) - 1) // 2 for arc in arcs])
+    places = [
+        arc.pieces[k : k + 1].places(np.array(PLACES))[0]
+        for arc, k in zip(arcs, middles.tolist(), strict=True)
+    ]
+    starts = [arc.start[None] for arc in arcs]
+    q = np.concatenate([*places, *starts])
+    rows = np.repeat([column[arc.boundary] for arc in arcs], len(PLACES))
+    rows = np.concatenate([rows, [column[arc.boundary] for arc in arcs]])
+    margins = np.abs(region.problem.evaluator.margins(q))[np.arange(len(q)), rows]
+    allowed = ON_ARC * region.problem.evaluator.sizes[rows]
+    for k in which(margins > allowed).tolist():
+        name = region.boundaries[rows[k]]
+        place = ", ".join(f"{x:.9g}" for x in q[k])
+        yield f"an arc of {name} is {margins[k]:.2g} off it at ({place})"
+
+
+class _Cells:
+    """What the cells of a region are asked: free in the middle, and not beyond their ends."""
+
+    def __init__(self, region: Region) -> None:
+        self.region, self.cells = region, region.cells
+        self.plane = region.cells.plane
+        self.found = region.cells.decomposition
+        evaluator = region.problem.evaluator
+        self.evaluator, self.doubt = evaluator, CLEAR * evaluator.margin_rounding
+        self.column = {name: k for k, name in enumerate(region.boundaries)}
+        inner = region.inner or region.problem
+        self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
+
+    def faults(self) -> list[str]:
+        """Return what is wrong."""
+        cells, plane = self.cells, self.plane
+        every = np.arange(len(cells.slabs))
+        if not len(every):
+            return []
+        start, end = cells.spans(every).T
+        t = start + INSIDE * (end - start)
+        low, high = cells.interval(every, t[:, None])[..., 0]
+        middle = low + INSIDE * (high - low)
+        margins = self._margins(t, middle)
+        found = []
+        for k in which(~(margins > self.doubt).all(axis=1)).tolist():
+            if (margins[k] < -self.doubt).any() or not self._is_free(k, t[k], start[k], end[k]):
+                found.append(f"a cell about {self._place(t[k], middle[k])} is not free")
+        for side, value, sense in ((0, low, -1.0), (1, high, 1.0)):
+            rows = which(cells.roots[:, side, 0] >= 0)
+            names = [self.found.names[s] for s in self.found.sets[rows, side].tolist()]
+            shut = self._shut(names, t[rows], value[rows], np.zeros(len(rows)), sense)
+            for k in rows[~shut].tolist():
+                if not self._is_shut(k, side, t[k], start[k], end[k]):
+                    place = self._place(t[k], value[k])
+                    found.append(f"beyond a cell's end at {place} nothing is violated")
+        del plane
+        return found + self._standing()
+
+    def _standing(self) -> list[str]:
+        """Look on both sides of what stands on a fibre."""
+        cells, elements = self.cells, self.cells.elements
+        found = []
+        for side, sense in ((0, 1.0), (1, -1.0)):
+            rows = which(~elements.joined & (elements.cell[side] >= 0))
+            line = elements.line[rows]
+            t = cells.abscissae[line]
+            ends = np.asarray(self.plane.ends)
+            if self.plane.base_range is not None:
+                kept = ~np.isin(t, ends)
+                rows, line, t = rows[kept], line[kept], t[kept]
+            v = (elements.low[rows] + elements.high[rows]) / 2
+            standing = [self.found.standing.get(k, ()) for k in line.tolist()]
+            other = elements.cell[1 - side][rows] >= 0  # it only touches: free on both sides
+            shut = self._shut(standing, t, v, np.full(len(rows), sense), 0.0) | other
+            for k in which(~shut).tolist():
+                if not standing[k]:
+                    found.append(f"nothing bounds a cell at {self._place(t[k], v[k])}")
+        return found
+
+    def _margins(self, t: Floats, v: Floats) -> Floats:
+        q = ordered(np.stack([t, v], axis=1), self.region.base)
+        return np.asarray(self.evaluator.margins(q))
+
+    def _place(self, t: float, v: float) -> str:
+        one, other = (t, v) if self.region.base == 0 else (v, t)
+        return f"({one:.9g}, {other:.9g})"
+
+    def _shut(
+        self, rows: list[tuple[int, ...]], t: Floats, v: Floats, along: Floats, up: float
+    ) -> Bools:
+        """Tell where some row's boundary is violated a little beside places, beyond rounding."""
+        shut = np.zeros(len(rows), dtype=np.bool_)
+        for step in BESIDE:
+            left = which(~shut)
+            if not len(left):
+                break
+            base = t[left] + step * self.plane.base_unit * along[left]
+            margins = self._margins(base, v[left] + step * self.plane.lift_unit * up)
+            violated = margins < -self.doubt
+            for k, own in zip(left.tolist(), violated, strict=True):
+                shut[k] = any(own[self.column[self.names[row]]] for row in rows[k])
+        return shut
+
+    # --- in balls -------------------------------------------------------------------------------
+
+    def _exactly(self, k: int, t: float, start: float, end: float) -> Any:
+        """Return an exact base value inside a cell's slab."""
+        from flint import arb
+
+        lines, slab = self.found.critical, int(self.cells.slabs[k])
+        if end - start > 1e3 * UNIT * max(abs(start), abs(end)):
+            return arb(t)
+        with precision(LEVELS[-1]):
+            ends = [lines.ball(line, LEVELS[-1]) for line in (slab, slab + 1)]
+            return arb((sum(ends) / 2).mid())
+
+    def _is_free(self, k: int, t: float, start: float, end: float) -> bool:
+        """Tell in balls whether a cell's middle is free."""
+        precise, base = self.found.precise, self._exactly(k, t, start, end)
+
+        def middle(bits: int) -> Any:
+            low, high = (self._root(k, side, base, bits) for side in (0, 1))
+            with precision(bits):
+                return low + (high - low) * 3 / 7
+
+        return _free(precise, base, middle)
+
+    def _root(self, k: int, side: int, base: Any, bits: int) -> Any:
+        form, branch, turns = self.cells.roots[k, side].tolist()
+        near = self.cells.interval([k], np.array([[float(base.mid())]]))[side, 0, 0]
+        del turns
+        return turned_root(self.found.precise, form, branch, base, bits, float(near))
+
+    def _is_shut(self, k: int, side: int, t: float, start: float, end: float) -> bool:
+        """Tell in balls whether a cell's boundary is violated just beyond one of its ends."""
+        precise, base = self.found.precise, self._exactly(k, t, start, end)
+
+        def beyond(bits: int) -> Any:
+            from flint import arb
+
+            with precision(bits):
+                step = arb(2) ** -min(bits // 4, 100) * self.plane.lift_unit
+                return self._root(k, side, base, bits) + (step if side else -step)
+
+        count, contacts = self.plane.count, self.plane.contacts
+        for row in self.found.names[int(self.found.sets[k, side])]:
+            if row < count:
+                if precise.sign(row, base, beyond) < 0:
+                    return True
+            elif not apart(precise, int(contacts.pair[row - count]), base, beyond):
+                return True
+        return False
+
+
+def _free(precise: Precise, base: Any, place: Any) -> bool:
+    """Tell in balls whether every form is positive at a place and all bodies are apart."""
+    plane = precise.plane
+    return all(precise.sign(row, base, place) > 0 for row in range(plane.count)) and all(
+        apart(precise, pair, base, place) for pair in range(plane.contacts.pairs)
+    )
+
+
+def _loops(region: Region) -> list[str]:
+    """Compare the number of loops of each component with Euler's count of its cells.
+
+    A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
+    where they are whole circles, and a point between two elements that join the same cells 1. In a
+    plane or on a cylinder as many loops bound it as 2 less that count; on a torus, of which it is
+    all but some holes, 2 less.
+    """
+    cells, owner = region.cells, region.owner
+    part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
+    found = []
+    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float))
+    elements = cells.elements
+    joined = which(elements.joined & ~cells.is_circle)
+    np.subtract.at(count, part[elements.cell[0, joined]], 1)
+    np.add.at(count, part[elements.cell[0, _between(cells)]], 1)
+    for k, component in enumerate(region.components):
+        wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
+        if len(component.loops) not in wanted:
+            found.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
+    return found
+
+
+def _between(cells: CellComplex) -> Ints:
+    """Return the elements whose upper end lies between it and the next, both joining one pair."""
+    elements = cells.elements
+    n = len(elements.line)
+    if not n:
+        return np.zeros(0, dtype=np.int64)
+    following = np.arange(1, n + 1)
+    new = np.append(elements.line[1:] != elements.line[:-1], True)
+    first = np.append(True, new[:-1])
+    last = which(new)
+    following[last] = which(first) if cells.circle else last
+    same = (elements.cell == elements.cell[:, following]).all(axis=0)
+    alone = following == np.arange(n)
+    # Of a circle that is one element nothing lies between: it has no end.
+    return which(same & elements.joined & elements.joined[following] & ~alone)
