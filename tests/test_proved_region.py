@@ -13,6 +13,7 @@ from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
 from qbound.proofs.proved_region import prove_region, proved_component
+from qbound.proofs.verdict import Unproved
 from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS
@@ -178,7 +179,7 @@ def test_a_hole_that_is_not_proposed_is_found():
     (whole,) = region.components
     outer = max(whole.loops, key=lambda loop: max(np.abs(a.points).max() for a in loop))
     with pytest.raises(Unproved, match="not proposed"):
-        prove_region(exact, replace(region, components=(replace(whole, loops=(outer,)),)))
+        prove_region(exact, replace(region, found=(replace(whole, loops=(outer,)),)))
 
 
 # --- where a configuration lies -------------------------------------------------------------------
@@ -208,8 +209,10 @@ def test_on_the_boundary_nothing_is_said():
         proved_component(CLEARANCE, prove_region(CLEARANCE, REGION), vertex)
 
 
-def test_of_bodies_no_region_is_proved_and_no_place_in_it():
+def test_of_bodies_the_components_are_proved_and_no_area_and_no_place_in_them():
     robot = load_robot("two-links-on-a-table")
     problem = exact_problem(exact_robot(robot))
-    with pytest.raises(Unproved, match="bodies"):
-        prove_region(problem, find_region(robot))
+    proved = prove_region(problem, find_region(robot))
+    assert [component.area for component in proved.components] == [None, None]
+    with pytest.raises(ValueError, match="bodies"):
+        _ = proved.area

@@ -33,6 +33,7 @@ from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
 from qbound.proofs.paving import Paving
 from qbound.proofs.proved_region import prove_region, proved_component
+from qbound.proofs.structure import Structure
 from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Region, find_region, violated
 
@@ -258,8 +259,8 @@ class _Asked:
 
     @cached_property
     def components(self) -> list[int | None]:
-        """Number of the component that each end lies in, in floating point; empty for others."""
-        if self.region is None:
+        """Number of the component that each end lies in, in floating point; empty if unknown."""
+        if self.region is None or self.region.unresolved:
             return []
         return [self.region.component_of(q) for q in self.ends[:, self.moving]]
 
@@ -398,20 +399,40 @@ def _by_region(asked: _Asked) -> Why | str:
     if asked.region is None:
         return ""
     try:
-        if len(asked.problem.names) > MOST_PROVED:
-            raise Unproved(f"{len(asked.problem.names)} boundaries; {MOST_PROVED} are the most")
-        proved = prove_region(asked.problem, asked.region)
-        places = asked.ends[:, asked.moving]
-        one, other = (proved_component(asked.problem, proved, q) for q in places)
+        one, other = _proved_components(asked, asked.region)
     except Unproved as reason:
         return f"the region is not proved ({reason}); {_said_of_components(asked)}"
-    said = "the boundary of the region is proved, and start and goal lie in"
+    what, where = "boundary", f"component {one} of it"
     if one != other:
-        said = f"{said} components {one} and {other} of it"
+        where = f"components {one} and {other} of it"
+    if asked.problem.bodies:  # whose components nothing but the proof numbers
+        what, where = "structure", f"{'one component' if one == other else 'two components'} of it"
+    said = f"the {what} of the region is proved, and start and goal lie in {where}"
+    if one != other:
         return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
     found = _joined(asked, SEEDS, TRIES)
-    said = f"{said} component {one} of it"
     return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+
+
+def _proved_components(asked: _Asked, region: Region) -> tuple[int, int]:
+    """Return the component that each end is proved to lie in; of bodies by cells (`structure`).
+
+    Raises
+    ------
+    Unproved
+        If the components of the region are not proved, or in which one an end lies.
+    """
+    problem, (start, goal) = asked.problem, asked.ends[:, asked.moving]
+    if problem.bodies:
+        structure = Structure(problem)
+        one, other = structure.part_of(start), structure.part_of(goal)
+        if -1 in (one, other):
+            raise Unproved("an end is not proved to be feasible")
+        return one, other
+    if len(problem.names) > MOST_PROVED:
+        raise Unproved(f"{len(problem.names)} boundaries; {MOST_PROVED} are the most")
+    proved = prove_region(problem, region)
+    return proved_component(problem, proved, start), proved_component(problem, proved, goal)
 
 
 def _for_file(asked: _Asked) -> Certificate | None:
@@ -424,6 +445,8 @@ def _for_file(asked: _Asked) -> Certificate | None:
 
 
 def _said_of_components(asked: _Asked) -> str:
+    if not asked.components:
+        return "floating point does not decide it"
     one, other = asked.components
     if one is None or other is None:
         return "in floating point an end lies on its boundary"

@@ -81,6 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             from qbound.extras import explained
 
             complain(explained(error))
+            if isinstance(error, ValueError) and _is_undecided(error):
+                return 3
         except MemoryError:
             complain("this asks for more memory than there is")
         except KeyboardInterrupt:
@@ -92,6 +94,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for line in traceback.format_exc().splitlines():
                 complain(line)
         return 2
+
+
+def _is_undecided(error: ValueError) -> bool:
+    """Tell whether nothing was wrong with what was asked, but a region could not be decided."""
+    from qbound.region import UnresolvedError  # slow, and few commands fail
+
+    return isinstance(error, UnresolvedError)
 
 
 @contextmanager

@@ -36,7 +36,7 @@ def add_to(commands: Any) -> None:
         "region",
         help="all regions of two joints",
         epilog="exit status: 0 home is in a component, 1 it is in none (with --strip: every slice\n"
-        "is empty); 2 bad input\n"
+        "is empty); 3 the structure could not be decided; 2 bad input\n"
         "example: qbound region minervabot-v2 --json -",
     )
     add_robot(parser)
@@ -65,15 +65,17 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find the region; 1 if the home pose is in none of its components.
+    """Find the region; 1 if the home pose is in none of its components, 3 if it is unresolved.
 
-    Of a strip: 1 if every slice is empty.
+    Of a strip: 1 if every slice is empty, 3 if one is unresolved.
     """
     robot = load_robot(options.robot)
     if options.strip is not None:
         return _strip(robot, options)
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
+    if region.unresolved:
+        return 3
     return 0 if region.home is not None else 1
 
 
@@ -92,6 +94,8 @@ def _strip(robot: Robot, options: argparse.Namespace) -> int:
         (options.json, lambda: json_text(slices_document(slices))),
     ]
     deliver(outputs, _strip_lines(slices))
+    if any(region.unresolved for region in slices.regions):
+        return 3
     return 0 if slices.areas.any() else 1
 
 
@@ -99,6 +103,9 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
     unit = slices.regions[0].area_unit
     for k, (value, region) in enumerate(zip(slices.values, slices.regions, strict=True)):
         where = joint_text(slices.robot, [value], [slices.along])
+        if region.unresolved:
+            yield f"{where}: unresolved: {'; '.join(region.unresolved)}"
+            continue
         home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
         if region.components:
             parts = counted(len(region.components), "component")
@@ -121,6 +128,9 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 def _lines(region: Region) -> Iterator[str]:
     unit = region.area_unit
+    if region.unresolved:
+        yield f"this region is unresolved: {'; '.join(region.unresolved)}"
+        return
     yield from home_lines(region)
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"

@@ -137,8 +137,11 @@ def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
     ------
     Unproved
         With the first thing that is not proved: curves that touch or coincide, a vertex that is
-        none, a piece of boundary that was not proposed. The region may still be right.
+        none, a piece of boundary that was not proposed. The region may still be right. Also where
+        the region is unresolved: nothing is proposed then.
     """
+    if region.unresolved:
+        raise Unproved(f"it is unresolved: {region.unresolved[0]}")
     if problem.bodies:
         prove_structure(problem, region)
         found = [ProvedComponent(None, (), c.contains_home, ()) for c in region.components]
