@@ -28,7 +28,9 @@ LINKS: dict[str, dict[str, Any]] = {
 
 
 def square(x: float, y: float, side: float) -> dict[str, Any]:
-    return {"polygon": [[x, y], [x + side, y], [x + side, y + side], [x, y + side]]}
+    """Corners are the doubles of short decimals: what touches in decimals touches exactly."""
+    far, top = round(x + side, 9), round(y + side, 9)
+    return {"polygon": [[x, y], [far, y], [far, top], [x, top]]}
 
 
 BENT = [[0.4, 0.2], [0.8, 0.2], [0.8, 0.6], [0.7, 0.6], [0.7, 0.3], [0.4, 0.3]]
@@ -107,7 +109,8 @@ def test_both_bases_find_the_same_components(kinds: str, links: str, scene: str)
 @pytest.mark.parametrize("scene", ["square on square", "four round the base", "not convex"])
 def test_a_scene_that_is_turned_with_the_arm_has_the_same_region(scene: str) -> None:
     straight, turned = (solve(problem("rr", "bars", scene, angle)) for angle in (0.0, 0.7))
-    areas = [[component.area for component in region.components] for region in (straight, turned)]
+    # Corners that are turned in doubles do not touch exactly: what opens there is that narrow.
+    areas = [[c.area for c in region.components if c.area > 1e-12] for region in (straight, turned)]
     np.testing.assert_allclose(*areas, rtol=0, atol=1e-9)
 
 

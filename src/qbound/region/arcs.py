@@ -56,7 +56,7 @@ class Pieces:
     end: Floats
     turns: Floats
 
-    def __getitem__(self, chosen: slice) -> Pieces:
+    def __getitem__(self, chosen: slice | Ints) -> Pieces:
         """Return some of the pieces."""
         return Pieces(
             self.plane,

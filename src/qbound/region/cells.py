@@ -346,7 +346,7 @@ class CellComplex:
         line = self.elements.line[element]
         count = np.maximum(self._count[line], 1)
         spot = self._spot[element]
-        start = np.where(self._place[cell, side, 0] >= 0, self._place[cell, side, 0], spot)
+        start = np.where(self.whole[cell], self._begin[line], self._place[cell, side, 0])
         return np.asarray((spot - start) % count)
 
     @cached_property

@@ -376,7 +376,8 @@ class _Contacts:
         c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
         values, errors, real = plane.roots_and_errors(row, c)
         over, lift_slopes = _sides_over(plane, feature, t, values)
-        side_doubt = 16 * plane.side_eps[feature][:, None, :] + errors.T[:, :, None] * lift_slopes
+        off = np.minimum(errors.T, 8 * plane.lift_unit)
+        side_doubt = 16 * plane.side_eps[feature][:, None, :] + off[:, :, None] * lift_slopes
         held = over > side_doubt
         missed = over < -side_doubt
         constant = ~plane.sides.reshape(-1, SIDES, 9)[feature][:, :, 1:].any(axis=2)

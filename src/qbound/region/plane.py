@@ -262,6 +262,7 @@ class Plane:
             error = np.where(beside < 0.25, 2 * beside / part + beside, np.inf) + 16 * UNIT
             gap = d - np.abs(c[0])
             real = np.where(gap > 2 * doubt, 1, np.where(gap < -2 * doubt, -1, 0))
+            error = np.minimum(error, TURN)
             return np.array([theta - alpha, theta + alpha]), np.array([error, error]), real
         unit = self.lift_unit
         c0, c1, c2 = c[0], c[1] * unit, c[2] * unit**2
@@ -272,7 +273,9 @@ class Plane:
         size = doubt * (1 + (np.abs(values) / unit)) ** 2
         steep = np.maximum(np.sqrt(np.maximum(square, 0)), np.sqrt(np.abs(c2) * size))
         steep = np.where(c2 == 0, np.abs(c1), steep)
-        error = unit * (2 * size / np.maximum(steep, TINY) + 16 * UNIT) + 16 * UNIT * np.abs(values)
+        off = np.minimum(2 * size, 1e6 * steep) / np.maximum(steep, TINY)
+        off = np.where(2 * size > 1e6 * steep, 1e6, off)
+        error = unit * (off + 16 * UNIT) + 16 * UNIT * np.abs(values)
         real = np.where(square > wide, 1, np.where(square < -wide, -1, 0))
         real = np.where(c2 == 0, np.where(c1 != 0, 1, -1), real)
         return values, error, real

@@ -500,12 +500,10 @@ class Precise:
         height = arb(0) if rest < 0 else rest.nonnegative_part().sqrt()
         if rest.contains(0):
             height = _around_root(rest)
-        theta = (
-            arb.atan2(c2, c1)
-            if not (c2.contains(0) and c1 < 0)
-            else (arb.pi() - arb.atan2(c2, -c1))
-        )
-        return theta + branch * arb.atan2(height, -c0)
+        # Beside the negative axis the angle is taken from the other one, which has no cut there.
+        theta = arb.atan2(c2, c1) if not c1 < 0 else arb.atan2(-c2, -c1) + _half_turn(c2)
+        alpha = arb.atan2(height, -c0) if not c0 > 0 else arb.pi() - arb.atan2(height, c0)
+        return theta + branch * alpha
 
     def _on_line(self, c: Sequence[Ball], branch: int) -> Ball | None:
         c0, c1, c2 = c
@@ -554,6 +552,13 @@ def _at(x: Any, bits: int) -> Ball:
 
 def _sign(x: Ball) -> int:
     return 1 if x > 0 else -1 if x < 0 else 0
+
+
+def _half_turn(c2: Ball) -> Ball:
+    """Return half a turn, to the side that makes an angle one between minus and plus half a turn."""
+    from flint import arb
+
+    return -arb.pi() if c2 < 0 else arb.pi()
 
 
 def _around_root(rest: Ball) -> Ball:

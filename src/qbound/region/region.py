@@ -25,6 +25,7 @@ from qbound.region.precise import Precise, UndecidedError
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
 from qbound.region.verified import faults
+from qbound.tolerances import UNIT
 from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
@@ -542,8 +543,9 @@ def _differences(one: Region, other: Region) -> tuple[str, ...]:
             found.append(f"{counts[0]} {what} over one joint, {counts[1]} over the other")
     areas = [sorted(c.area for c in region.components) for region in (one, other)]
     if not found and areas[0]:
-        off = np.abs(np.subtract(*areas)).max()
-        if off > SAME_AREA * max(one.area, other.area):
+        plane, off = one.cells.plane, np.abs(np.subtract(*areas)).max()
+        rounding = 64 * UNIT * plane.base_unit * plane.lift_unit
+        if off > SAME_AREA * max(one.area, other.area) + rounding:
             found.append(f"an area differs by {off:.2g} between the joints")
     return tuple(found)
 

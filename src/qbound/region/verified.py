@@ -58,21 +58,30 @@ def _off(region: Region) -> Iterator[str]:
     if not arcs:
         return
     column = {name: k for k, name in enumerate(region.boundaries)}
-    middles = np.array([(len(arc.pieces.roots) - 1) // 2 for arc in arcs])
-    places = [
-        arc.pieces[k : k + 1].places(np.array(PLACES))[0]
-        for arc, k in zip(arcs, middles.tolist(), strict=True)
-    ]
-    starts = [arc.start[None] for arc in arcs]
-    q = np.concatenate([*places, *starts])
-    rows = np.repeat([column[arc.boundary] for arc in arcs], len(PLACES))
-    rows = np.concatenate([rows, [column[arc.boundary] for arc in arcs]])
-    margins = np.abs(region.problem.evaluator.margins(q))[np.arange(len(q)), rows]
-    allowed = ON_ARC * region.problem.evaluator.sizes[rows]
-    for k in which(margins > allowed).tolist():
-        name = region.boundaries[rows[k]]
-        place = ", ".join(f"{x:.9g}" for x in q[k])
-        yield f"an arc of {name} is {margins[k]:.2g} off it at ({place})"
+    laid = arcs[0].laid  # all arcs are laid behind one another
+    first, end = np.array([arc.span for arc in arcs]).T
+    starts = ordered(laid.start[first], laid.base)[:, None]
+    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), starts], axis=1)
+    limited = np.array([arc.row < 0 for arc in arcs])
+    rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
+    margins = np.abs(region.problem.evaluator.margins(q))
+    off = np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0]
+    if limited.any():
+        off[limited] = _to_limits(region, q[limited])
+    allowed = ON_ARC * np.where(limited, 1.0, region.problem.evaluator.sizes[rows])
+    for k, place in np.argwhere(off > allowed[:, None]).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+        yield f"an arc of {arcs[k].boundary} is {off[k, place]:.2g} off it at ({at})"
+
+
+def _to_limits(region: Region, q: Floats) -> Floats:
+    """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
+    plane, found = region.cells.plane, []
+    units = plane.base_unit, plane.lift_unit
+    for j, limits in enumerate(region.problem.ranges):
+        unit = units[0] if j == region.base else units[1]
+        found += [(q[..., j] - end) / unit for end in limits or ()]
+    return np.asarray(np.abs(found).min(axis=0))
 
 
 class _Cells:
