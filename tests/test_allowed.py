@@ -337,7 +337,9 @@ def test_the_command(tmp_path, monkeypatch, capsys) -> None:
     save_robot(wheel(0.1, 0.25), "wheel.toml")
     assert main(["allowed", "wheel.toml", "--json", "a.json", "--srdf", "a.srdf"]) == 0
     out, err = capsys.readouterr()
-    assert (out.splitlines()[-1], err) == ("1 pair of links: 1 never in contact", "")
+    counts, written = out.splitlines()[-2:]
+    assert (counts, err) == ("1 pair of links: 1 never in contact", "")
+    assert written == "written: a.json, a.srdf"
     assert "0.125 m apart at least (proved); 0.25 m found" in out
     document = json.loads((tmp_path / "a.json").read_text())
     file = resources.files("qbound") / "schemas" / "allowed.schema.json"

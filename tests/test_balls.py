@@ -139,7 +139,7 @@ def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
 @pytest.mark.parametrize(
     ("module", "command"),
     [
-        ("scipy", ["connected", "minervabot-v2", "0", "0", "11", "143"]),
+        ("scipy", ["why", "two-links-on-a-table", "100", "-60", "-72.1", "-27.83"]),
         ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
     ],
 )

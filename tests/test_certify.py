@@ -763,10 +763,18 @@ def test_certify_tells_of_its_way_from_nought_to_one():
     assert told == sorted(told)
 
 
+def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
+    """It said "scale 0.000000001863: refuted", and no more."""
+    assert cli.main(["certify", "rp-telescopic-boom", "--largest-scale"]) == 3
+    said = capsys.readouterr().out
+    assert "no scale is proved: the centroid of home's vertices seems to be unsafe" in said
+    assert "--region" in said
+
+
 STOPPED = {
     "certify": (SCALED, "qbound.cli.certify.certify"),
     "pave": (["pave", "minervabot-v2"], "qbound.cli.pave.pave"),
-    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.connected.connection"),
+    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.why.why"),
 }
 
 

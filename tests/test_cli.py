@@ -242,7 +242,7 @@ def test_a_bad_place_or_pose_is_one_sentence_and_status_2(capsys, arguments, wor
 @pytest.mark.parametrize(
     ("robot", "values", "wanted"),
     [
-        ("pp-portal", ("10mm", "20"), "such as 0.2, a plain number of mm"),
+        ("pp-portal", ("10deg", "20"), "such as 0.2, a plain number of mm, or 20cm"),
         ("minervabot-v2", ("20cm", "0"), "such as 20deg or 0.35rad"),
     ],
 )

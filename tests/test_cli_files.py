@@ -26,7 +26,7 @@ from shapely.geometry import Polygon, shape
 
 import qbound
 from qbound import find_region, load_robot
-from qbound.cli import command_parsers, main, progress
+from qbound.cli import COMMANDS, command_parsers, main, progress
 from qbound.cli.files import write_all
 from qbound.files import write_whole
 from support.oracles import packaged_table, point_seen_from
@@ -116,8 +116,14 @@ EXAMPLES = [
 
 
 def test_every_help_ends_with_an_example() -> None:
-    for name, parser in command_parsers().items():
-        assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: qbound {name}")
+    for parser in command_parsers().values():
+        assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: {parser.prog}")
+
+
+def test_every_help_says_what_the_exit_status_means() -> None:
+    ours = [command_parsers()[name] for name in COMMANDS]
+    for parser in ours:
+        assert "exit status: 0 " in parser.format_help()
 
 
 SWEEP = """
@@ -468,7 +474,9 @@ def test_a_link_stays_a_link_and_its_target_is_written() -> None:
         ("traverse nobody 1 2", "nobody"),
         ("sample minervabot-v2 -n 0 --seed 1", "one configuration or more"),
         ("sample minervabot-v2 -n 5 --seed -1", "0 or above"),
-        ("sample minervabot-v2 -n 5", "--seed"),
+        ("sample minervabot-v2 -n 1.5", "-n"),
+        ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg:20deg: the low end"),
+        ("reach ur5 --voxel 5kg", "--voxel: '5kg' is no value"),
         ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
         ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
@@ -780,6 +788,32 @@ def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypa
     assert err.endswith("\r\033[K")
 
 
+def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatch) -> None:
+    """None of `draw`, `workspace` or `contains` did: of an imported arm they take many seconds."""
+    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.0005)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    status, _, err = run(capsys, "workspace two-links-on-a-table")
+    assert status == 0
+    assert "qbound workspace: 0 s" in err
+    assert err.endswith("\r\033[K")
+
+
+def test_a_paving_of_many_joints_says_what_memory_it_takes_before_it_begins(capsys) -> None:
+    status, out, err = run(capsys, "pave ur5 --memory 1")
+    assert (status, out) == (2, "")
+    assert "about 1.5 GB" in err
+    assert "--slice" in err
+    assert "--memory 2" in err
+    assert run(capsys, "pave minervabot-v2 --memory 0 --tolerance 0.5")[0] == 2
+
+
+def test_a_paving_ends_when_its_time_is_over(capsys) -> None:
+    for option in ("", " --columns"):
+        line = f"pave minervabot-v2 --tolerance 1e-9 --seconds 0.05{option}"
+        assert run(capsys, line)[0] == 3
+    assert "above 0" in run(capsys, "pave minervabot-v2 --seconds 0")[2]
+
+
 # --- sentences -----------------------------------------------------------------------------------
 
 
@@ -787,6 +821,64 @@ def test_one_is_counted_as_one(capsys) -> None:
     assert "1 component, area" in run(capsys, "region rp-telescopic-boom")[1]
     assert run(capsys, "traverse minervabot-v2 1 2 --scale 0.5")[1].startswith("1 leg: ")
     assert "1 value for 2 joints" in run(capsys, "contains minervabot-v2 0")[2]
+
+
+def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
+    plain, with_units = (
+        run(capsys, f"contains rp-telescopic-boom {values}") for values in ("-60 1.5", "-60° 150cm")
+    )
+    assert plain == with_units
+    assert run(capsys, "contains rp-telescopic-boom -60deg 1500mm") == plain
+    assert run(capsys, "sample minervabot-v2 -n 1e2") == run(
+        capsys, "sample minervabot-v2 -n 100 --seed 0"
+    )
+
+
+def test_every_file_that_is_written_is_named(capsys) -> None:
+    assert "written: a.svg, a.csv" in run(capsys, "region minervabot-v2 --svg a.svg --csv a.csv")[1]
+    assert run(capsys, "explore minervabot-v2 -o a.html")[1] == "written: a.html\n"
+
+
+def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys) -> None:
+    pose = "0 -90 90 -90 -90 0"
+    few, every = (run(capsys, f"contains ur5 {pose}{more}")[1] for more in ("", " --all"))
+    assert len(few.splitlines()) < 20
+    assert len(every.splitlines()) > 200
+    assert "the nearest of 205 boundaries and limits; --all lists every one" in few
+    assert "/" not in few  # links, no balls
+    amounts = [float(line.split()[1]) for line in few.splitlines() if line.startswith("  margin")]
+    assert amounts == sorted(amounts)
+    folded = run(capsys, "contains ur5 0 -90 180 -90 -90 0")
+    assert folded[0] == 1
+    assert len(folded[1].splitlines()) < 20
+
+
+def test_commands_that_take_no_bodies_say_which_do(capsys) -> None:
+    for line in ("fibre two-links-on-a-table shoulder", "reach two-links-on-a-table",
+                 "allowed two-links-on-a-table"):  # fmt: skip
+        status, _, err = run(capsys, line)
+        assert status == 2
+        assert "qbound region" in err
+
+
+def test_home_in_collision_is_told_with_what_it_violates(capsys, arm) -> None:
+    """It was told that home is in no component, and not why."""
+    Path("unsafe.toml").write_text(ARM.replace("a = 0, b = 20", "a = 150, b = 45"))
+    for line in ("explore unsafe.toml -o x.html", "workspace unsafe.toml"):
+        status, _, err = run(capsys, line)
+        assert status == 1
+        assert "home violates a.upper, margin -30 deg" in err
+    assert "opens with an arm that is not safe" in run(capsys, "explore unsafe.toml -o x.html")[2]
+
+
+def test_a_slice_beyond_a_limit_is_not_laid_on_home(capsys) -> None:
+    """Home is at 90 deg; it is the slice that holds the elbow at 400 deg."""
+    rest = "shoulder_pan_joint=0 wrist_1_joint=0 wrist_2_joint=0"
+    status, out, _ = run(capsys, f"region ur5 --slice elbow_joint=400deg {rest}")
+    assert status == 1
+    said = "the slice holds elbow_joint = 400 deg, which violates elbow_joint.upper, margin -40 deg"
+    assert said in out
+    assert "home violates" not in out
 
 
 def test_a_unit_stands_beside_every_number(capsys, arm) -> None:

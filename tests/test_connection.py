@@ -1,6 +1,5 @@
 """Connected or not: against the float engine's components, round the torus, through narrow gaps."""
 
-import json
 from itertools import combinations
 
 import numpy as np
@@ -10,13 +9,9 @@ from hypothesis import strategies as st
 from scipy.ndimage import label
 
 from qbound import find_region, load_robot
-from qbound.boundary.evaluator import evaluator
-from qbound.cli import main
 from qbound.proofs.connection import connection, outer_groups, separated, separating_cells
 from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import pave, start
-from qbound.proofs.straight import along_straight_line
-from qbound.proofs.verdict import Verdict
+from qbound.proofs.paving import pave
 from qbound.region import solve
 from support.exact import stated
 from support.forms import RR
@@ -149,93 +144,3 @@ def test_groups_close_round_the_torus():
     paving = pave(stated(RR, [STRIP]), 0.02)
     (labels,) = {frozenset(np.concatenate(outer_groups(paving).label).tolist())}
     assert len(labels) == 1
-
-
-@pytest.mark.parametrize(
-    ("values", "status", "word"),
-    [
-        (["0", "0", "20", "30"], 0, "connected"),
-        (["0deg", "0deg", "92deg", "226.65deg"], 1, "separated"),
-        (["0", "0", "0", "180"], 1, "infeasible"),
-        (["0", "0", "0"], 2, "two poses of 2 joints"),
-        (["0", "0", "0", "nan"], 2, "no value"),
-    ],
-)
-def test_the_command_says_it_and_its_status_too(values, status, word, capsys):
-    assert main(["connected", "minervabot-v2", *values]) == status
-    said = capsys.readouterr()
-    assert word in said.out + said.err
-
-
-def test_the_command_writes_its_evidence(capsys):
-    main(["connected", "minervabot-v2", "0", "0", "92", "226.65", "--json", "-"])
-    content = json.loads(capsys.readouterr().out)
-    assert content["answer"] == "separated"
-    assert len(content["wall"]) > 100
-    forms = REGION.problem.forms
-    for box in content["wall"][::50]:
-        assert (forms([box["from"], box["to"]]) < 0).any(axis=-1).all()
-
-
-# --- the straight line ----------------------------------------------------------------------------
-
-
-def test_a_straight_line_is_proved_where_and_only_where_it_is_safe():
-    rng = np.random.default_rng(622)
-    paving, found = start(PAPER), []
-    for one, other in rng.uniform(-3, 3, (120, 2, 2)):
-        proof = along_straight_line(paving, one, other)
-        values = REGION.problem.forms(one + np.linspace(0, 1, 3000)[:, None] * (other - one))
-        least = values.min()
-        assert proof is None or least > 0
-        assert proof is not None or least < 1
-        found.append(proof is not None)
-        if proof is not None:  # each place of it lies in a feasible cell
-            for s in np.linspace(0, 1, 7):
-                assert Verdict.PROVED in proof.verdicts(one + s * (other - one))
-    assert 5 < sum(found) < 60
-    assert connection(PAPER, [0.0, 0.0], [0.1, -0.4], line=True).path.tolist() == [
-        [0.0, 0.0],
-        [0.1, -0.4],
-    ]
-
-
-def test_a_straight_line_goes_round_the_joint_and_stays_within_its_limits():
-    free = stated(RR, [STRIP])
-    there = connection(free, [-2.5, 0.2], [2.5, 3.0], line=True)
-    assert there.path.shape == (2, 2)
-    assert np.allclose(there.path[1], [2.5 - 2 * np.pi, 3.0])
-    assert connection(free, [2.5 + 8 * np.pi, 0.2], [-2.5, 3.0], line=True).path.shape == (2, 2)
-    held = stated(RR, [STRIP], ((-3.1, 3.1), None))
-    assert connection(held, [-2.5, 0.2], [-2.0, 3.0], line=True).path.shape == (2, 2)
-    assert along_straight_line(start(held), np.array([-1.2, 0]), np.array([1.2, 0])) is None
-    same = connection(free, [2.0, 0.0], [2.0, 0.0], line=True)
-    assert (same.answer, len(same.path)) == ("connected", 2)
-
-
-def test_an_angle_that_rounds_turns_off_has_no_straight_line():
-    for huge in (1e300, -1e12):
-        assert connection(PAPER, [0.0, 0.0], [huge, 0.0], most=500, line=True).answer == "undecided"
-
-
-def test_a_straight_line_along_the_border_is_not_claimed():
-    saddle = stated(RR, [{"11": 1}])  # cos q1 cos q2 > 0: 0 where q1 is a quarter turn
-    edge = np.pi / 2
-    for one, other in ([[edge, -1], [edge, 1]], [[0, 0], [edge, 0]], [[-1, -2], [-1, 2]]):
-        assert along_straight_line(start(saddle), np.array(one), np.array(other)) is None
-    inner = along_straight_line(start(saddle), np.array([edge - 1e-3, -1]), np.array([0, 0]))
-    assert inner is not None
-    assert not len(inner.undecided)
-
-
-def test_a_straight_line_between_bodies_keeps_them_apart():
-    robot = load_robot("two-links-on-a-table")
-    problem, compiled = exact_problem(exact_robot("two-links-on-a-table")), evaluator(robot)
-    low, high = np.array([[float(x) for x in r] if r else [-3, 3] for r in problem.ranges]).T
-    rng, found = np.random.default_rng(623), 0
-    for one, other in rng.uniform(low, high, (25, 2, 2)):
-        way = one + np.linspace(0, 1, 500)[:, None] * (other - one)
-        proof = along_straight_line(start(problem), one, other)
-        assert proof is None or compiled.feasible(way).all()
-        found += proof is not None
-    assert found > 1

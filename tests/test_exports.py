@@ -20,19 +20,15 @@ from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson
 from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.geometry.bisection import last_before
-from qbound.proofs.connection import connection
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.paving import pave
 from qbound.proofs.points import joint_decimal, limits_as_decimals, read_points
-from qbound.proofs.reports import (
-    connection_document,
-    connection_line,
-    paving_document,
-    paving_lines,
-)
+from qbound.proofs.reports import paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.report import workspace_report
+from support.exact import stated
+from support.forms import RR
 
 MINERVA = load_robot("minervabot-v2")
 BOOM = load_robot("rp-telescopic-boom")
@@ -187,14 +183,12 @@ def test_a_paving_is_told_alike_as_json_and_in_words():
     assert f"{content['volume']['inner']:.9g}" in volume
 
 
-def test_a_connection_is_told_alike_as_json_and_in_words():
-    problem = exact_problem(exact_robot("minervabot-v2"))
-    for goal, answer in (([0.1, -0.1], "connected"), ([np.radians(80), 0.0], "infeasible")):
-        found = connection(problem, [0.0, 0.0], goal)
-        content = connection_document(MINERVA, [[0.0, 0.0], goal], found)
-        assert content["answer"] == answer
-        assert connection_line(found).startswith(f"{answer}: ")
-        assert (content["path"] is not None) == (answer == "connected")
+def test_of_an_empty_region_no_volume_is_told():
+    """It was "between 0 rad^2 and 4.94e-324 rad^2"."""
+    below = {"00": -1}
+    volume, undecided, _ = paving_lines(MINERVA, pave(stated(RR, [below]), 0.5))
+    assert volume == "volume 0 rad^2: nothing is feasible, proved"
+    assert undecided == "0 % of the range is undecided"
 
 
 # --- points of statements -------------------------------------------------------------------------

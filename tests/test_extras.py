@@ -27,6 +27,7 @@ LINES = [line for kind, text in BLOCKS if kind == "shell" for line in text.split
 COMMANDS = [shlex.split(line, comments=True)[1:] for line in LINES if line.startswith("qbound ")]
 [PYTHON] = [text for kind, text in BLOCKS if kind == "python"]
 [ROBOT] = [text for kind, text in BLOCKS if kind == "toml"]
+CONSOLE = [line for kind, text in BLOCKS if kind == "console" for line in text.splitlines()]
 [INSTALL] = [shlex.split(line)[2:] for line in LINES if line.startswith("pip install ")]
 
 
@@ -158,6 +159,43 @@ def test_a_command_of_readme_runs_after_the_install_of_readme(
     files = [word for word in command if word.endswith((".svg", ".html"))]
     for file in files:
         assert (as_readme_says.work / file).stat().st_size > 1000
+
+
+COARSER = {"0.1": "0.25"}
+"""Values that are exchanged: an edge of voxels, which only takes longer where it is short."""
+
+SAYS = {
+    "import": (0, "29 balls, 193 pairs"),
+    "why": (1, "falls into 3 ranges"),
+    "check": (0, "proved: no path from (0, -90, 90, -90, -90, 0) to (0, -90, 270, -90, -90, 0)"),
+    "region": (0, "3 components"),
+    "fibre": (0, "wrist_1_joint with shoulder_pan_joint = 0 deg"),
+    "allowed": (0, "base_link, upper_arm_link      never"),
+    "reach": (0, "exact along"),
+    "surface": (0, "triangles"),
+}
+"""Exit status of each command about an arm of six joints, and what it says."""
+
+
+def test_the_commands_about_six_joints_run_after_their_install_beside_the_arm_above(
+    wheel: Path, tmp_path: Path
+) -> None:
+    """In the folder where the reader has saved `arm.toml`, which stays as it was."""
+    install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
+    chosen = sorted(Requirement(f"qbound{install[2].removeprefix('.')}").extras)
+    environment = Environment(tmp_path / "six", wheel, chosen)
+    (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
+    assert [words[1] for words in commands] == list(SAYS)
+    for program, *words in commands:
+        status, says = SAYS[words[0]]
+        done = environment.run(program, *(COARSER.get(word, word) for word in words))
+        assert (done.returncode, done.stderr) == (status, "")
+        assert says in done.stdout
+        for word in words:
+            if re.fullmatch(r"\w+\.(svg|json|toml|html|srdf)", word) and word != "ur5.srdf":
+                assert (environment.work / word).stat().st_size > 500
+    assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
+    assert "Its travel falls into three ranges" in " ".join(README.split())
 
 
 def test_the_python_of_readme_needs_no_extra(plain: Environment) -> None:

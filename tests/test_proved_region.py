@@ -12,7 +12,8 @@ from qbound import find_region, load_robot
 from qbound.proofs.balls import precision
 from qbound.proofs.exact import exact_problem, exact_robot
 from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.proofs.proved_region import Unproved, prove_region
+from qbound.proofs.proved_region import prove_region, proved_component
+from qbound.proofs.verdict import Unproved
 from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS
@@ -122,7 +123,7 @@ def test_random_robots_are_proved_as_the_float_engine_finds_them(seed):
 def changed(**fields) -> Region:
     """The region with the home component changed."""
     home, *others = REGION.components
-    return replace(REGION, components=(replace(home, **fields), *others))
+    return replace(REGION, found=(replace(home, **fields), *others))
 
 
 @dataclass(frozen=True)
@@ -136,13 +137,13 @@ class Proposed:
 HOME = REGION.components[0]
 ARCS = tuple(Proposed(arc.boundary, arc.points) for arc in HOME.loops[0])
 FAULTS = {
-    "a component is missing": (replace(REGION, components=REGION.components[:-1]), "proved"),
-    "home is missing": (replace(REGION, components=REGION.components[1:]), "proved"),
+    "a component is missing": (replace(REGION, found=REGION.components[:-1]), "proved"),
+    "home is missing": (replace(REGION, found=REGION.components[1:]), "proved"),
     "a component comes twice": (
-        replace(REGION, components=(*REGION.components, HOME)),
+        replace(REGION, found=(*REGION.components, HOME)),
         "vertices are proposed",
     ),
-    "nothing is proposed": (replace(REGION, components=()), "proved|without a boundary"),
+    "nothing is proposed": (replace(REGION, found=()), "proved|without a boundary"),
     "a loop is missing": (changed(loops=()), "vertices are proposed|positive"),
     "an arc is missing": (changed(loops=(ARCS[1:],)), "no crossing|graph|short|run"),
     "the arcs run backwards": (
@@ -178,4 +179,40 @@ def test_a_hole_that_is_not_proposed_is_found():
     (whole,) = region.components
     outer = max(whole.loops, key=lambda loop: max(np.abs(a.points).max() for a in loop))
     with pytest.raises(Unproved, match="not proposed"):
-        prove_region(exact, replace(region, components=(replace(whole, loops=(outer,)),)))
+        prove_region(exact, replace(region, found=(replace(whole, loops=(outer,)),)))
+
+
+# --- where a configuration lies -------------------------------------------------------------------
+
+
+def configurations(robot, count=12):
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+    return np.random.default_rng(4).uniform(*ends.T, size=(count, 2))
+
+
+@pytest.mark.parametrize("robot", [MINERVA, *map(random_robot, range(4, 10))])
+def test_a_configuration_lies_in_the_component_that_the_float_engine_says(robot):
+    problem, region = exact_problem(exact_robot(robot)), find_region(robot)
+    proved = prove_region(problem, region)
+    for q in configurations(robot):
+        owner = region.component_of(q)
+        if owner is None:
+            with pytest.raises(Unproved, match="not proved to be feasible"):
+                proved_component(problem, proved, q)
+        else:
+            assert proved_component(problem, proved, q) == owner
+
+
+def test_on_the_boundary_nothing_is_said():
+    vertex = REGION.components[1].vertices[0].q
+    with pytest.raises(Unproved):
+        proved_component(CLEARANCE, prove_region(CLEARANCE, REGION), vertex)
+
+
+def test_of_bodies_the_components_are_proved_and_no_area_and_no_place_in_them():
+    robot = load_robot("two-links-on-a-table")
+    problem = exact_problem(exact_robot(robot))
+    proved = prove_region(problem, find_region(robot))
+    assert [component.area for component in proved.components] == [None, None]
+    with pytest.raises(ValueError, match="bodies"):
+        _ = proved.area

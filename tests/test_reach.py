@@ -264,10 +264,16 @@ def test_a_joint_may_be_named_by_its_index(tmp_path, capsys):
 
 
 def test_the_error_of_a_volume_is_called_an_estimate():
-    found = reach(load_robot("pr-gantry-arm"), 0.5, points=64, scrambles=2)
+    found = reach(load_robot("ur5"), 0.5, points=64, scrambles=2)
     volume, said, *_ = reach_lines(found)
     assert "+-" in volume
     assert "an estimate, no bound" in said
+
+
+def test_a_tool_that_stays_in_a_plane_has_no_volume():
+    said = " ".join(reach_lines(reach(load_robot("pr-gantry-arm"), 0.5, points=64, scrambles=2)))
+    assert "stays in a plane" in said
+    assert "+-" not in said
 
 
 def test_a_fibre_names_what_blocks_it(capsys):

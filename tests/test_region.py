@@ -449,3 +449,46 @@ def test_a_boundary_function_of_no_number_is_refused(q) -> None:
     for function in (form, form.gradient, components(MINERVA, MINERVA.boundary("B1"))):
         with pytest.raises(ValueError, match="NaN or infinite"):
             function(q)
+
+
+# --- what is no question -------------------------------------------------------------------------
+
+
+def question(**changed):
+    """Two forms of two joints that turn, with one thing changed."""
+    table = np.zeros((2, 3, 3))
+    table[:, 0, 0], table[0, 1, 0], table[1, 0, 2] = 0.5, 1.0, 1.0
+    for place, value in changed.pop("numbers", {}).items():
+        table[place] = value
+    forms = HarmonicForm(table, changed.pop("kinds", ("revolute", "revolute")))
+    rest = {
+        "names": ("f0", "f1"),
+        "ranges": (None, None),
+        "limits": (("a", "b"), ("c", "d")),
+    }
+    return solve(Problem(forms, **(rest | changed)))
+
+
+NO_QUESTION = {
+    "a coefficient that is NaN": ({"numbers": {(0, 0, 0): np.nan}}, r"\[0, 0, 0\] is nan"),
+    "an infinite one": ({"numbers": {(1, 1, 0): np.inf}}, r"\[1, 1, 0\] is inf"),
+    "a kind that is none": ({"kinds": ("rev", "revolute")}, r"kinds\[0\]: 'rev' is none of"),
+    "a name too few": ({"names": ("f0",)}, "names: 1 for 2 forms"),
+    "an open slide": ({"kinds": ("revolute", "prismatic")}, r"ranges\[1\]: a joint that slides"),
+    "a range that is swapped": ({"ranges": ((1, -1), None)}, r"ranges\[0\]: the low end 1 is"),
+    "a range without end": ({"ranges": ((-np.inf, 1), None)}, r"ranges\[0\]: two finite"),
+    "three ranges": ({"ranges": (None, None, None)}, "ranges: two are wanted"),
+}
+
+
+@pytest.mark.parametrize("name", NO_QUESTION)
+def test_what_is_no_question_about_two_joints_is_refused_with_its_place(name) -> None:
+    assert question().components
+    changed, words = NO_QUESTION[name]
+    with pytest.raises(ValueError, match=words):
+        question(**changed)
+
+
+def test_complex_coefficients_are_refused() -> None:
+    with pytest.raises(ValueError, match="complex"):
+        HarmonicForm(np.zeros((3, 3), dtype=complex), ("revolute", "revolute"))

@@ -615,9 +615,14 @@ def test_a_file_that_is_no_table_is_named(tmp_path: Path, content, says) -> None
 
 
 def test_a_file_that_is_missing_says_which_robots_there_are(tmp_path: Path) -> None:
-    for source in (tmp_path / "none.toml", tmp_path, "minervabot-v3"):
+    for source in (tmp_path / "none.toml", "minervabot-v3"):
         with pytest.raises(RobotFileError, match=r": .*; packaged robots are .*minervabot-v2"):
             load_robot(source)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe")
+    for source, reason in ((tmp_path, "directory"), (tmp_path / "binary.toml", "not UTF-8 text")):
+        with pytest.raises(RobotFileError, match=reason) as error:
+            load_robot(source)
+        assert "packaged" not in str(error.value)
 
 
 def test_nothing_in_a_file_is_evaluated(tmp_path: Path) -> None:
@@ -784,9 +789,9 @@ def test_what_is_no_robot_is_not_written(tmp_path: Path) -> None:
     path = tmp_path / "arm.toml"
     path.write_text("kept", encoding="utf-8")
     with pytest.raises(RobotFileError, match=r"arm\.toml: not written: home\.q1: inf is not a fin"):
-        save_robot(replace(robot, home=np.array([np.inf, 0])), path)
+        save_robot(replace(robot, home=np.array([np.inf, 0])), path, force=True)
     with pytest.raises(RobotFileError, match="no point '99'"):
-        save_robot(replace(robot, tool="99"), path)
+        save_robot(replace(robot, tool="99"), path, force=True)
     assert path.read_text("utf-8") == "kept"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -802,7 +807,7 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monke
 
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space"):
-        save_robot(load_robot("minervabot-v2"), path)
+        save_robot(load_robot("minervabot-v2"), path, force=True)
     assert path.read_text("utf-8") == "kept"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -141,3 +141,18 @@ def test_a_robot_without_boundaries_is_free_everywhere(predicate) -> None:
     drawn = sample(parse_robot(table), 7, predicate, seed=1)
     assert drawn.free.shape == (7,)
     assert drawn.free.all()
+
+
+def test_of_many_joints_fewer_configurations_are_judged_at_once(monkeypatch) -> None:
+    """Each takes 3^n products: 50,000 of seven joints took more than a gigabyte."""
+    monkeypatch.setattr("qbound.sampling.NUMBERS", 3**6 * 100)
+    sizes = []
+
+    def judged(robot, q):
+        sizes.append(len(q))
+        return keeps_clear(robot, q)
+
+    few = sample(load_robot("ur5"), 450, judged, seed=3)
+    assert sizes == [100, 100, 100, 100, 50]
+    monkeypatch.undo()
+    assert_array_equal(few.free, sample(load_robot("ur5"), 450, keeps_clear, seed=3).free)

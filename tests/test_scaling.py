@@ -1,5 +1,6 @@
 """The largest safe scale: closed forms, brute force over the paper's polygon, refusals."""
 
+from functools import partial
 from math import sqrt
 
 import numpy as np
@@ -160,14 +161,14 @@ def test_numbers_that_are_not_finite_are_refused(bad, place) -> None:
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
 def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
     """Not even what is too large on the way: the least of NaN was infinite, and so safe."""
-    p, wide = SQUARE.copy(), slides(one=1, x=bad, yy=bad)
+    p = SQUARE.copy()
     p[0, 0] = bad
-    for form, corners in ((DISC, p), (wide, 3 * SQUARE)):
+    for form, corners in ((lambda: DISC, p), (partial(slides, one=1, x=bad, yy=bad), 3 * SQUARE)):
         with np.errstate(all="ignore"):
             for asks in (
-                lambda f=form, v=corners: least(f, v, [0, 0]),
-                lambda f=form, v=corners: least_along_edges(f, v),
-                lambda f=form, v=corners: first_exit(stack(f), [0, 0], v),
+                lambda f=form, v=corners: least(f(), v, [0, 0]),
+                lambda f=form, v=corners: least_along_edges(f(), v),
+                lambda f=form, v=corners: first_exit(stack(f()), [0, 0], v),
             ):
                 with pytest.raises(ValueError, match="finite numbers"):
                     asks()

@@ -453,10 +453,10 @@ BAD = {
     ),
     "corner off the plane": (
         put(f"{POLYGON}.2", [0.7, -0.25, 0.1]),
-        "obstacle[1].polygon (crate): [0.7, -0.25, 0.1] lies 0.1 off the plane of body",
+        "obstacle[1].polygon (crate): [0.7, -0.25, 0.1] lies 0.1 m off the plane of body",
     ),
     "link off the plane": (
-        put("joint.1.origin", [0.4, 0, 0.1]), "body[0].capsule: [0.0, 0.0, 0.0] lies 0.1 off the",
+        put("joint.1.origin", [0.4, 0, 0.1]), "body[0].capsule: [0.0, 0.0, 0.0] lies 0.1 m off the",
     ),
 }  # fmt: skip
 

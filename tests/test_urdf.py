@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from qbound import RobotFileError, load_robot
+from qbound import RobotFileError, load_robot, save_robot
 from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
@@ -324,7 +324,8 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
     for more, says in (
         (["--to", "tool1"], "ur5.urdf: no link 'tool1'"),
         (["--limits", "knee=0..1"], "ur5.urdf: limits of 'knee'"),
-        (["--srdf", "panda.urdf", "--home", "folded"], "no state 'folded'"),
+        (["--srdf", "panda.urdf"], "panda.urdf: no group, no state"),
+        (["--srdf", "panda.srdf", "--home", "folded"], "no state 'folded'"),
     ):
         assert main(["import", "ur5.urdf", *more, "-o", "-"]) == 2
         said = capsys.readouterr().err
@@ -350,3 +351,29 @@ def test_links_named_like_balls_of_another_keep_names_of_their_own(tmp_path) -> 
 def test_a_packaged_file_is_found_by_its_name() -> None:
     assert packaged_or_path("ur5.urdf").is_file()
     assert packaged_or_path("./ur5.urdf") == Path("ur5.urdf")
+
+
+def test_a_robot_file_that_somebody_wrote_is_not_replaced(tmp_path, capsys) -> None:
+    """README's second part wrote over the reader's own `arm.toml`."""
+    own = tmp_path / "arm.toml"
+    own.write_text("# my arm\n")
+    words = ["import", "scara.urdf", "-o", str(own)]
+    assert main(words) == 2
+    assert "qbound did not make this file" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="did not make this file"):
+        save_robot(load_robot("minervabot-v2"), own)
+    assert own.read_text() == "# my arm\n"
+    assert main([*words, "--force"]) == 0
+    assert main(words) == 0  # this one qbound made
+    save_robot(load_robot("minervabot-v2"), own)
+    assert own.read_text().startswith("# Made by qbound")
+    assert load_robot(own).name == load_robot("minervabot-v2").name
+
+
+def test_what_touches_at_home_is_told_by_links_not_by_balls(tmp_path, capsys) -> None:
+    """Of an imported arm it named balls: "base/1, l7/1 and 170 more"."""
+    words = ["import", "ur5.urdf", "--clearance", "30cm", "-o", str(tmp_path / "ur5.toml")]
+    assert main(words) == 0
+    [said] = [line for line in capsys.readouterr().out.splitlines() if "not feasible" in line]
+    assert "forearm_link" in said
+    assert "/" not in said

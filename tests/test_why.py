@@ -3,6 +3,7 @@
 import json
 import math
 import tomllib
+from functools import partial
 from importlib import resources
 from itertools import pairwise
 
@@ -19,6 +20,7 @@ from qbound.figures.why import why_picture
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb, statements
 from qbound.proofs.certify import certify
+from qbound.proofs.connection import connection
 from support import brute_force
 from support.elbow import arm
 from support.planar import caged
@@ -144,7 +146,7 @@ def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file)
     assert valid(found)["answer"] == "infeasible"
 
 
-def test_boundaries_about_bodies_are_left_to_the_search(monkeypatch):
+def test_of_bodies_a_paving_decides_what_no_search_finds(monkeypatch):
     from qbound.arms import why as module
 
     robot = load_robot(BODIES)
@@ -152,11 +154,67 @@ def test_boundaries_about_bodies_are_left_to_the_search(monkeypatch):
     found = why(BODIES, robot.home, goal)
     assert found.answer == "connected"
     assert check_arb.verify(found.certificate.text) == "proved"
+    apart = why(BODIES, [1.74532925, -1.04719755], [-1.2584, -0.4858])
+    assert (apart.answer, apart.certificate) == ("separated", None)
+    assert apart.held.paving.cells > 1000
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
-    found = why(BODIES, robot.home, goal)
+    again = why(BODIES, robot.home, goal)
+    assert again.answer == "connected"
+    assert check_arb.verify(again.certificate.text) == "proved"
+
+
+WALLS = ["two-joint-arm-with-walls", "20deg", "60deg", "-134.26deg", "-130.08deg"]
+TABLE = [BODIES, "1.74532925rad", "-1.04719755rad", "-1.2584rad", "-0.4858rad"]
+
+
+@pytest.mark.parametrize(("words", "status"), [(WALLS, 3), (TABLE, 1)])
+def test_both_names_of_the_command_give_one_answer(words, status, capsys, monkeypatch):
+    from qbound.arms import why as module
+
+    given = partial(module.connection, most=4_000)  # of the first no number of cells decides
+    monkeypatch.setattr(module, "connection", lambda *args: given(*args[:3]))
+    documents = []
+    for name in ("why", "connected"):
+        assert main([name, *words, "--json", "-"]) == status
+        documents.append(json.loads(capsys.readouterr().out))
+    assert documents[0] == documents[1]
+    assert documents[0]["schema"] == "qbound/why/1"
+
+
+def test_what_is_not_proved_of_a_region_is_suggested_by_floating_point(monkeypatch):
+    from qbound.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    found = why(WALLS[0], *np.radians([[20, 60], [-134.26, -130.08]]))
     assert found.answer == "undecided"
-    assert "pavings know no boundaries about bodies" in found.tried
-    assert "bodies were not looked at" in found.tried[0]
+    said = " ".join(why_lines(found))
+    assert "the region is not proved (no crossing of tip, floor and tip, column" in said
+    assert "in floating point start and goal lie in components 0 and 1 of it" in said
+
+
+def undecided_paving(problem, one, other, most=0):
+    return connection(problem, one, other, most=10)
+
+
+def test_a_region_that_is_proved_separates_where_no_paving_does(monkeypatch):
+    from qbound.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
+    assert (found.answer, found.certificate) == ("separated", None)
+    assert "in components 3 and 4" in next(why_lines(found))
+
+
+def test_a_region_that_is_proved_joins_where_no_path_is_found(monkeypatch):
+    from qbound.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    found = why("minervabot-v2", [0.0, 0.0], [0.2, -0.5])
+    assert (found.answer, found.path) == ("connected", None)
+    (said,) = why_lines(found)
+    assert said.endswith("start and goal lie in component 0 of it; no path was found")
+    valid(found)
+    assert why_picture(found).startswith(b"<?xml")
 
 
 def test_what_nothing_decides_is_not_decided(file, monkeypatch):
@@ -235,6 +293,12 @@ def test_the_command_says_it_and_its_status_too(file, capsys, values, status, sa
     assert main(["why", str(file), "0", *values, "0"]) == status
     found = capsys.readouterr()
     assert said in found.out + found.err
+
+
+def test_the_length_of_a_path_has_a_number_for_each_unit(capsys):
+    """It was "3.14 rad and m long"."""
+    assert main(["why", "rp-telescopic-boom", "-60", "1.5", "-50", "1.7"]) == 0
+    assert "0.175 rad and 0.2 m long" in capsys.readouterr().out
 
 
 def test_the_command_writes_certificate_document_and_picture(file, tmp_path, capsys):

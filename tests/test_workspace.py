@@ -15,10 +15,13 @@ from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
 
 from qbound import load_robot
+from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
 from qbound.region import NoHomeError, Problem, clearance_problem, paper_rule
+from qbound.workspace import layers
 from qbound.workspace.areas import area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
+from qbound.workspace.image_crossings import crossing_distances
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
 from support.robots import in_centimetres, mirror, random_robot, turned
@@ -505,6 +508,41 @@ def test_the_straight_path_leaves_where_a_form_changes_sign():
     form = region.problem.forms[region.problem.names.index(left.boundary)]
     step = 1e-6 * (b - a)
     assert form(left.q - step) > 0 > form(left.q + step)
+
+
+# --- many boundaries -----------------------------------------------------------------------------
+
+
+def among_idle_forms(count: int) -> Problem:
+    """The paper's robot with forms more that bound nothing: 2 + cos(q1 + phase) cos q2 / 2."""
+    problem = clearance_problem(MINERVA)
+    table = np.zeros((count, 3, 3))
+    table[:, 0, 0] = 2
+    phases = np.linspace(0, 2, count)
+    table[:, 1, 1], table[:, 2, 1] = np.cos(phases) / 2, np.sin(phases) / 2
+    forms = HarmonicForm(np.concatenate([problem.forms.coefficients, table]), problem.forms.kinds)
+    return replace(problem, forms=forms, names=(*problem.names, *map(str, range(count))))
+
+
+def test_boundaries_that_bound_nothing_are_not_crossed_with_each_other(monkeypatch):
+    """A seven-joint arm has thousands; each two of them took their part of 15 GB."""
+    given = []
+
+    def crossed(arm, forms, *others):
+        given.append(len(forms.coefficients))
+        return crossing_distances(arm, forms, *others)
+
+    monkeypatch.setattr(layers, "crossing_distances", crossed)
+    arm, home = planar_arm(MINERVA), MINERVA.home
+    alone, among = (find_workspace(arm, among_idle_forms(n), home) for n in (0, 300))
+    assert_allclose([among.area, among.covered_twice], [alone.area, alone.covered_twice])
+    assert given[1] <= given[0] <= 8
+
+
+def test_a_region_with_too_many_boundaries_has_no_workspace_and_says_so(monkeypatch):
+    monkeypatch.setattr(layers, "MOST_BOUNDING", 1)
+    with pytest.raises(NoPlanarWorkspaceError, match=r"bound the region, .* 1 are"):
+        find_workspace(planar_arm(MINERVA), clearance_problem(MINERVA), MINERVA.home)
 
 
 if __name__ == "__main__":

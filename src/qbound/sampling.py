@@ -52,7 +52,10 @@ class Sample:
 
 
 BATCH = 50_000
-"""Configurations that are judged at once, enough to be fast, few enough for any memory."""
+"""Configurations that are judged at once, enough to be fast."""
+
+NUMBERS = 2**24
+"""Products of :math:`3^n` factors that are held at once: 128 MB."""
 
 
 def sample(
@@ -92,8 +95,9 @@ def sample(
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
     tool, free = np.empty((n, 3)), np.empty(n, dtype=bool)
     where = position(robot, robot.tool)
-    for start in range(0, n, BATCH):
-        batch = slice(start, min(start + BATCH, n))
+    step = max(1, min(BATCH, NUMBERS // 3 ** len(robot.joints)))
+    for start in range(0, n, step):
+        batch = slice(start, min(start + step, n))
         tool[batch], free[batch] = where(q[batch]), predicate(robot, q[batch])
         if progress is not None:
             progress(batch.stop)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,28 +23,75 @@ def file_units(robot: Robot) -> list[str]:
     return [joint.unit(robot.length_unit, robot.angle_unit) for joint in robot.joints]
 
 
+MILLIMETRES: Final = {"mm": 1, "cm": 10, "m": 1000}
+"""Of each unit of length that people type."""
+
+
 def parse_joint_value(robot: Robot, j: int, text: str) -> float:
-    """Read a joint value: with deg or rad, or a plain number in the robot file's own unit.
+    """Read a joint value: with deg, °, rad, mm, cm or m, or a plain number in the file's own unit.
 
     Raises
     ------
     ValueError
         If the text is no finite number with a unit of that joint.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> boom = load_robot("rp-telescopic-boom")  # lengths in m
+    >>> parse_joint_value(boom, 0, "180°"), parse_joint_value(boom, 1, "30cm")
+    (3.141592653589793, 0.3)
     """
-    number, unit = text.strip(), file_units(robot)[j]
-    for suffix in ("deg", "rad"):
-        if robot.joints[j].turns and number.endswith(suffix):
-            number, unit = number.removesuffix(suffix), suffix
+    joint = robot.joints[j]
+    if not joint.turns:
+        return parse_length(text, robot.length_unit, joint.name)
+    number, unit = text.strip(), robot.angle_unit
+    for suffix, meant in (("deg", "deg"), ("°", "deg"), ("rad", "rad")):
+        if number.endswith(suffix):
+            number, unit = number.removesuffix(suffix), meant
             break
-    try:
-        value = float(number)
-    except ValueError:
-        value = math.nan
+    value = _number(number)
     if not math.isfinite(value):
-        name, turns = robot.joints[j].name, robot.joints[j].turns
-        wanted = "20deg or 0.35rad" if turns else f"0.2, a plain number of {robot.length_unit}"
-        raise ValueError(f"{name}: {text.strip()!r} is no value, such as {wanted}")
+        raise ValueError(f"{joint.name}: {text.strip()!r} is no value, such as 20deg or 0.35rad")
     return math.radians(value) if unit == "deg" else value
+
+
+def parse_length(text: str, unit: str, what: str) -> float:
+    """Read a length into a unit, mm, cm or m: with a unit of its own, or a plain number of that.
+
+    Parameters
+    ----------
+    what : str
+        What the length is of; it begins the sentence of the error.
+
+    Raises
+    ------
+    ValueError
+        If the text is no finite number, with or without such a unit.
+
+    Examples
+    --------
+    >>> parse_length("300mm", "m", "--voxel"), parse_length("0.3", "m", "--voxel")
+    (0.3, 0.3)
+    """
+    number, own = text.strip(), unit
+    for suffix in MILLIMETRES:  # m last: every other one ends in it
+        if number.endswith(suffix):
+            number, own = number.removesuffix(suffix), suffix
+            break
+    value = _number(number)
+    if not math.isfinite(value):
+        wanted = f"0.2, a plain number of {unit}, or 20cm"
+        raise ValueError(f"{what}: {text.strip()!r} is no value, such as {wanted}")
+    return value if own == unit else value * MILLIMETRES[own] / MILLIMETRES[unit]
+
+
+def _number(text: str) -> float:
+    """Read a number; NaN where it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def joint_text(robot: Robot, q: ArrayLike, joints: Iterable[int] | None = None) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from qbound.arms.links import link_pair
 from qbound.arms.separations import Block, JointTravel, Separation
@@ -15,6 +16,8 @@ from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
+
+Floats = NDArray[np.float64]
 
 DIGITS = {"deg": 2}
 """Decimals of what is shown; of lengths six."""
@@ -33,6 +36,8 @@ def why_lines(found: Why) -> Iterator[str]:
         yield f"separated{_held(found)}: {found.tried[-1]}"
     elif found.path is not None:
         yield from _connected(found)
+    elif found.answer == "connected":
+        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
     else:
         yield "not decided whether a path joins start and goal; what was tried:"
         yield from (f"- {said}" for said in found.tried)
@@ -121,20 +126,22 @@ def _connected(found: Why) -> Iterator[str]:
     robot, path = found.robot, found.path
     assert path is not None
     legs = len(path) - 1
-    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     kind = "a straight line" if legs == 1 else f"a path of {legs} legs"
     margin = amount(float(found.margin), robot.length_unit)
     least = amount(found.least, robot.length_unit, digits=3)
     clear = f"every boundary keeps {margin} on it, proved (least margin seen: {least})"
     if not robot.used:
         clear = "there is no boundary"
-    yield f"connected{_held(found)}: {kind}, {length:.3g} {_length_unit(robot)} long; {clear}"
+    yield f"connected{_held(found)}: {kind}, {_length(robot, path)} long; {clear}"
     if legs > 1:
         yield from (f"  {joint_text(robot, q)}" for q in path)
 
 
-def _length_unit(robot: Robot) -> str:
-    return " and ".join(dict.fromkeys(joint_units(robot)))
+def _length(robot: Robot, path: Floats) -> str:
+    """Write how long a path is: in angles, and in lengths."""
+    units, steps = np.array(joint_units(robot)), np.diff(path, axis=0)
+    parts = {u: np.linalg.norm(steps[:, units == u], axis=1).sum() for u in dict.fromkeys(units)}
+    return " and ".join(f"{length:.3g} {unit}" for unit, length in parts.items())
 
 
 def _held_joints(found: Why) -> list[int]:

@@ -62,7 +62,10 @@ def links(robot: Robot) -> tuple[Link, ...]:
     """
     if robot.bodies:
         names = ", ".join(body.name for body in robot.bodies)
-        raise ValueError(f"links are made of balls here; these bodies are none: {printable(names)}")
+        raise ValueError(
+            f"links are made of balls here; these bodies are none: {printable(names)};"
+            " qbound region finds what they forbid"
+        )
     found: dict[str, list[Point]] = {}
     for point in robot.points:
         if point.radius > 0:

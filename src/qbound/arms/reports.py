@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 
 from qbound.arms.fibres import Fibres, Interval
+from qbound.arms.links import link_pair
 from qbound.arms.reach import Reach
 from qbound.boundary.balls import Balls
 from qbound.export.formats import heading, npz_bytes
 from qbound.model.robot import Robot
 from qbound.units import amount, counted, joint_text
+
+MOST_SHOWN = 10
+"""Pairs of links that a sentence names."""
 
 
 def fibre_document(found: Fibres, q: Sequence[float]) -> dict[str, Any]:
@@ -39,8 +43,16 @@ def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
     for interval in found[0]:
         yield f"  {_interval_text(found, interval)}"
     if not found[0]:
-        names = blocking(robot, found.joint, q)
+        names = by_links(robot, blocking(robot, found.joint, q))
         yield "  nowhere" + (f"; whatever its value, violated: {', '.join(names)}" if names else "")
+
+
+def by_links(robot: Robot, names: Sequence[str]) -> list[str]:
+    """Sum up boundaries by pair of links, a few of them, and count the others."""
+    pairs = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
+    found = list(dict.fromkeys(pairs.get(name, name) for name in names))
+    more = len(found) - MOST_SHOWN
+    return found if more <= 0 else [*found[:MOST_SHOWN], f"{more} more"]
 
 
 def blocking(robot: Robot, joint: int, q: Sequence[float]) -> list[str]:
@@ -104,8 +116,11 @@ def reach_lines(found: Reach) -> Iterator[str]:
     low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in box)
     times = found.chance / found.standard_error if found.standard_error else 0.0
     chance = f"chance alone: {found.chance:.2g}, {times:.3g} standard errors"
-    yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 ({chance})"
-    yield "  an estimate, no bound: chance, places that are not found yet, and the voxels' edge"
+    if (box[1] - box[0]).min() < 1.5 * found.grid.edge:  # one layer of voxels
+        yield "the tool stays in a plane: it has an area there, which qbound workspace measures"
+    else:
+        yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 ({chance})"
+        yield "  an estimate, no bound: chance, places that are not found yet, and the voxels' edge"
     yield f"{counted(int(found.reached.sum()), 'voxel')} of {found.grid.edge:g} {unit}"
     yield f"  from ({low}) to ({high}) {unit}"
     if found.index is not None:

@@ -7,10 +7,10 @@ held, prove that there is none. What none of these decides is not decided.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -23,17 +23,19 @@ from qbound.arms.separations import Block, JointTravel, Separation, separation, 
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot, robot_text, written_text
+from qbound.model.robotfile import load_robot, robot_text, written_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.disconnected import certify_disconnected
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.no_path import certify_no_path
 from qbound.proofs.paving import Paving
-from qbound.proofs.verdict import Verdict
-from qbound.region import violated
+from qbound.proofs.proved_region import prove_region, proved_component
+from qbound.proofs.structure import Structure
+from qbound.proofs.verdict import Unproved, Verdict
+from qbound.region import Region, find_region, violated
 
 Floats = NDArray[np.float64]
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
@@ -48,6 +50,12 @@ SEEDS = 3
 
 MOST_PAVED = 3
 """Joints that a paving takes."""
+
+MOST_PROVED = 40
+"""Boundaries of a region that is proved: any two may cross, and are looked at."""
+
+FEW_CELLS = 50_000
+"""Undecided cells of a paving that is made for a certificate alone, of what is proved before."""
 
 KEPT = 0.8
 """Part of the least margin seen along a path for which a proof is tried first."""
@@ -82,7 +90,8 @@ class Why:
     separation : Separation or None
         The joint that cannot pass.
     path : ndarray, shape (k, n), or None
-        Corners, proved feasible with all that lies between; as the certificate has them.
+        Corners, proved feasible with all that lies between; as the certificate has them. None, too,
+        where a proved region has both ends in one component and no path was found.
     margin : str
         Length that the path is proved to keep from every boundary: a decimal.
     least : float
@@ -93,7 +102,8 @@ class Why:
         Of the path, of what separates (a joint, or a paving), or of a violated boundary; what
         `check` reads.
     tried : tuple of str
-        What was tried, in sentences.
+        What was tried, in sentences; the last one proves the answer, where something does that is
+        neither a path nor a joint.
     """
 
     robot: Robot
@@ -183,49 +193,87 @@ def why(
         text, robot = written_text(source), source
     else:
         text, _ = robot_text(source)
-        robot = parse_robot(tomllib.loads(text))
+        robot = load_robot(source)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
         with during("a proof that an end is infeasible"):
             return _infeasible(text, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
     with during("ranges that nothing passes"):
-        travels = separations(source)
-        found = _separated(text, robot, ends, hold, travels)
-    if found is not None:
-        return found
-    asked = _Asked(text, robot, ends, hold, travels)
-    with during("a path"):
-        path = _joined(asked, seed, 1, QUICK)
-    if path is not None:
-        return path
-    with during("a paving of the joints in which both ends differ"):
-        paved = _paved(asked, source)
-    if paved.answer != "undecided":
-        return paved
-    with during("a path, for longer"):
-        path = _joined(asked, seed, SEEDS, TRIES)
-    if path is not None:
-        return path
-    none = f"a search for a path ({SEEDS} times two growing trees) found none"
-    if no_certificate(robot):
-        none = f"no path was searched for, because none could be proved: {no_certificate(robot)}"
-    return replace(paved, tried=(_said_of_separations(robot), *paved.tried, none))
+        asked = _Asked(source, text, robot, ends, hold, seed, separations(source))
+    tried = []
+    for what, attempt in _ATTEMPTS.items():
+        with during(what):
+            found = attempt(asked)
+        if isinstance(found, Why):
+            return found
+        tried += [found] if found else []
+    return asked.answer("undecided", tried=tuple(tried))
 
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
     """What is asked, and what is blocked."""
 
+    source: str | Path | Robot
     text: str
     robot: Robot
     ends: Floats
     hold: bool
+    seed: int
     travels: tuple[JointTravel, ...]
 
     def answer(self, answer: Answer, **found: Any) -> Why:
         """Return an answer to it."""
         return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+
+    @cached_property
+    def moving(self) -> list[int]:
+        """Joints that may move; where they are many, those in which the ends differ."""
+        n = len(self.robot.joints)
+        return list(range(n)) if n <= MOST_PAVED and not self.hold else differing(self.ends)
+
+    @property
+    def all_move(self) -> bool:
+        """Whether what is proved of the moving joints answers the question."""
+        return self.hold or len(self.moving) == len(self.robot.joints)
+
+    @cached_property
+    def problem(self) -> ExactProblem:
+        """The clearance rule of the moving joints, the others held, in exact numbers.
+
+        Raises
+        ------
+        Unproved
+            If its bodies are not exactly in one plane, or an outline has no convex parts.
+        """
+        try:
+            return exact_problem(exact_robot(self.source), self._held)
+        except ValueError as error:
+            raise Unproved(str(error)) from None
+
+    @cached_property
+    def region(self) -> Region | None:
+        """The region of two moving joints, in floating point; None of more or fewer."""
+        both = len(self.moving) == 2 and self.all_move
+        return find_region(self.robot, self._held) if both else None
+
+    @property
+    def _held(self) -> dict[int, float]:
+        joints = range(len(self.robot.joints))
+        return {j: float(self.ends[0, j]) for j in joints if j not in self.moving}
+
+    @cached_property
+    def components(self) -> list[int | None]:
+        """Number of the component that each end lies in, in floating point; empty if unknown."""
+        if self.region is None or self.region.unresolved:
+            return []
+        return [self.region.component_of(q) for q in self.ends[:, self.moving]]
+
+    @property
+    def seems_separated(self) -> bool:
+        """Whether the region in floating point has the ends in different components."""
+        return len(set(self.components)) == 2
 
 
 def differing(ends: Floats) -> list[int]:
@@ -251,44 +299,50 @@ def _infeasible(
 # --- a joint that cannot pass ---------------------------------------------------------------------
 
 
-def _separated(
-    text: str, robot: Robot, ends: Floats, hold: bool, travels: tuple[JointTravel, ...]
-) -> Why | None:
-    parted = separation(travels, *ends.tolist())
+def _separated(asked: _Asked) -> Why | str:
+    parted = separation(asked.travels, *asked.ends.tolist())
     if parted is None:
-        return None
+        return _said_of_separations(asked.robot)
     proved = None
-    if not no_certificate(robot):
+    if not no_certificate(asked.robot):
         ranges = [_widest(block) for block in parted.blocks]
-        certificate = certify_no_path(text, ends[0], ends[1], ranges)
+        certificate = certify_no_path(asked.text, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
-    return Why(robot, ends, "separated", hold, travels, separation=parted, certificate=proved)
+    return asked.answer("separated", separation=parted, certificate=proved)
 
 
 def _widest(block: Block) -> BlockedRange:
     return max(block.ranges, key=lambda each: each.high - each.low)
 
 
+def _of_bodies(robot: Robot) -> bool:
+    """Tell whether a boundary is about bodies."""
+    return any(bounds_bodies(boundary) for boundary in robot.used)
+
+
 def _said_of_separations(robot: Robot) -> str:
     said = "no joint has a range between both ends that one boundary blocks by itself"
-    bodies = any(bounds_bodies(boundary) for boundary in robot.used)
-    return f"{said} (boundaries about bodies were not looked at)" if bodies else said
+    return f"{said} (boundaries about bodies were not looked at)" if _of_bodies(robot) else said
 
 
 # --- a path ---------------------------------------------------------------------------------------
 
 
-def _joined(asked: _Asked, seed: int, seeds: int, tries: int) -> Why | None:
+def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
     """Search a path and prove all its legs; what cannot be proved is no answer."""
     if no_certificate(asked.robot):
-        return None
+        reason = no_certificate(asked.robot)
+        return f"no path was searched for, because none could be proved: {reason}"
+    if asked.seems_separated:
+        return ""
+    start, goal = asked.ends
     for k in range(seeds):
-        start, goal = asked.ends
-        path = find_path(asked.robot, start, goal, SEEDS * seed + k, tries=tries, hold=asked.hold)
+        seed = SEEDS * asked.seed + k
+        path = find_path(asked.robot, start, goal, seed, tries=tries, hold=asked.hold)
         found = None if path is None else _connected(asked, path)
         if found is not None:
             return found
-    return None
+    return f"a search for a path ({SEEDS} times two growing trees) found none"
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
@@ -343,20 +397,81 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
     return s, np.asarray(margins.min(axis=1, initial=np.inf))
 
 
+# --- a proved region ------------------------------------------------------------------------------
+
+
+def _by_region(asked: _Asked) -> Why | str:
+    """Prove the region of two joints, and in which of its components the ends lie."""
+    if asked.region is None:
+        return ""
+    try:
+        one, other = _proved_components(asked, asked.region)
+    except Unproved as reason:
+        return f"the region is not proved ({reason}); {_said_of_components(asked)}"
+    what, where = "boundary", f"component {one} of it"
+    if one != other:
+        where = f"components {one} and {other} of it"
+    if asked.problem.bodies:  # whose components nothing but the proof numbers
+        what, where = "structure", f"{'one component' if one == other else 'two components'} of it"
+    said = f"the {what} of the region is proved, and start and goal lie in {where}"
+    if one != other:
+        return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
+    found = _joined(asked, SEEDS, TRIES)
+    return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+
+
+def _proved_components(asked: _Asked, region: Region) -> tuple[int, int]:
+    """Return the component that each end is proved to lie in; of bodies by cells (`structure`).
+
+    Raises
+    ------
+    Unproved
+        If the components of the region are not proved, or in which one an end lies.
+    """
+    problem, (start, goal) = asked.problem, asked.ends[:, asked.moving]
+    if problem.bodies:
+        structure = Structure(problem)
+        one, other = structure.part_of(start), structure.part_of(goal)
+        if -1 in (one, other):
+            raise Unproved("an end is not proved to be feasible")
+        return one, other
+    if len(problem.names) > MOST_PROVED:
+        raise Unproved(f"{len(problem.names)} boundaries; {MOST_PROVED} are the most")
+    proved = prove_region(problem, region)
+    return proved_component(problem, proved, start), proved_component(problem, proved, goal)
+
+
+def _for_file(asked: _Asked) -> Certificate | None:
+    """Return a certificate that two ends are separated, where a paving of few cells gives one."""
+    if no_certificate(asked.robot) or _of_bodies(asked.robot):
+        return None
+    start, goal = asked.ends[:, asked.moving]
+    found = connection(asked.problem, start, goal, FEW_CELLS)
+    return _disconnected(asked, found.paving) if found.answer == "separated" else None
+
+
+def _said_of_components(asked: _Asked) -> str:
+    if not asked.components:
+        return "floating point does not decide it"
+    one, other = asked.components
+    if one is None or other is None:
+        return "in floating point an end lies on its boundary"
+    where = f"components {one} and {other}" if one != other else f"component {one}"
+    return f"in floating point start and goal lie in {where} of it"
+
+
 # --- a paving -------------------------------------------------------------------------------------
 
 
-def _paved(asked: _Asked, source: str | Path | Robot) -> Why:
+def _paved(asked: _Asked) -> Why | str:
     """Pave the joints in which the ends differ, the others held; all of them where they are few."""
-    robot, ends, n = asked.robot, asked.ends, len(asked.robot.joints)
-    moving = list(range(n)) if n <= MOST_PAVED and not asked.hold else differing(ends)
-    if any(bounds_bodies(boundary) for boundary in robot.used):
-        return asked.answer("undecided", tried=("pavings know no boundaries about bodies",))
+    robot, ends, moving = asked.robot, asked.ends, asked.moving
     if not 0 < len(moving) <= MOST_PAVED:
-        said = f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
-        return asked.answer("undecided", tried=(said,))
-    still = {j: float(ends[0, j]) for j in range(n) if j not in moving}
-    found = connection(exact_problem(exact_robot(source), still), *ends[:, moving])
+        return f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
+    try:
+        found = connection(asked.problem, *ends[:, moving])
+    except Unproved as reason:
+        return f"no paving was made: {reason}"
     if found.path is not None:
         path = np.tile(ends[0], (len(found.path), 1))
         path[:, moving] = found.path
@@ -364,15 +479,15 @@ def _paved(asked: _Asked, source: str | Path | Robot) -> Why:
         if connected is not None:
             return connected
     said = _said_of_paving(robot, moving, found)
-    if found.answer == "separated" and (asked.hold or len(moving) == n):
+    if found.answer == "separated" and asked.all_move:
         proved = _disconnected(asked, found.paving)
         return asked.answer("separated", held=found, certificate=proved, tried=(said,))
-    return asked.answer("undecided", held=found, tried=(said,))
+    return said
 
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
-    if no_certificate(asked.robot):
+    if no_certificate(asked.robot) or _of_bodies(asked.robot):
         return None
     certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
@@ -387,3 +502,13 @@ def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
     if found.answer == "connected":
         return f"{cells} proves that a path joins both ends{others}"
     return f"{cells} does not decide it{others}"
+
+
+_ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
+    "a joint that cannot pass": _separated,
+    "a path": lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
+    "a proof of the region": _by_region,
+    "a paving of the joints in which both ends differ": _paved,
+    "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
+}
+"""What is tried in turn: each gives an answer, or says in a sentence why it has none."""

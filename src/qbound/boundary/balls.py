@@ -329,7 +329,10 @@ def blocks(q: Floats) -> Iterator[tuple[slice, Floats]]:
 def _refuse_bodies(boundary: Boundary) -> None:
     if not isinstance(boundary, Pair | HalfSpace) or getattr(boundary, "body", None) is not None:
         name = printable(boundary.name)
-        raise ValueError(f"{name}: balls are pairs and half-spaces of points; this is about bodies")
+        raise ValueError(
+            f"{name}: balls are pairs and half-spaces of points; this is about bodies,"
+            " of which qbound region, workspace and why know the way"
+        )
 
 
 def _indices(numbers: Iterator[int]) -> Indices:

@@ -42,7 +42,9 @@ def refuse_off_plane(robot: Robot, boundaries: Sequence[Boundary]) -> None:
         If one does, or the robot leaves every plane.
     """
     bodies = {body.name: body for b in boundaries for body in bounded_bodies(robot, b)}
-    for body, text in off_plane(robot.plane, list(bodies.values())) if bodies else ():
+    for body, text in (
+        off_plane(robot.plane, list(bodies.values()), robot.length_unit) if bodies else ()
+    ):
         raise ValueError(f"{printable(body.name)}: {text}")
     for wall in boundaries:
         if isinstance(wall, HalfSpace) and bounds_bodies(wall) and is_oblique(wall, robot.plane):

@@ -1,8 +1,8 @@
 """What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
 
-- commands: `region`, `workspace`, `contains`, `connected`, `why`, `traverse`, `fibre`, `reach`,
-  `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`, `import`
-  (`import_urdf`), `robots`;
+- commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
+  `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
+  `import` (`import_urdf`), `robots`;
 - `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
   type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
   `progress` (a line while work is long).
@@ -22,6 +22,7 @@ from itertools import chain, pairwise
 from typing import Any, NoReturn
 
 from qbound.cli.files import check_targets
+from qbound.cli.progress import waiting
 from qbound.cli.terminal import complain, finish_output, plain_terminal, say
 from qbound.printable import printable
 
@@ -29,8 +30,8 @@ COMMANDS = {
     "region": "region",
     "workspace": "workspace",
     "contains": "contains",
-    "connected": "connected",
     "why": "why",
+    "connected": "why",
     "traverse": "traverse",
     "fibre": "fibre",
     "reach": "reach",
@@ -80,6 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             from qbound.extras import explained
 
             complain(explained(error))
+            if isinstance(error, ValueError) and _is_undecided(error):
+                return 3
         except MemoryError:
             complain("this asks for more memory than there is")
         except KeyboardInterrupt:
@@ -91,6 +94,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for line in traceback.format_exc().splitlines():
                 complain(line)
         return 2
+
+
+def _is_undecided(error: ValueError) -> bool:
+    """Tell whether nothing was wrong with what was asked, but a region could not be decided."""
+    from qbound.region import UnresolvedError  # slow, and few commands fail
+
+    return isinstance(error, UnresolvedError)
 
 
 @contextmanager
@@ -120,7 +130,8 @@ def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -
         options = command_line(words[0] if words else None).parse_args(words)
         _check_files(vars(options))
         before_work()
-        return int(options.run(options))
+        with waiting(f"qbound {words[0]}"):
+            return int(options.run(options))
     finally:
         finish_output()
 
@@ -166,7 +177,7 @@ def _parsers(
     parser = _Parser(prog="qbound", description="Feasible workspaces of robots.")
     parser.add_argument("--version", action=_Version)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for name in (COMMANDS if chosen is None else chosen).values():
+    for name in dict.fromkeys((COMMANDS if chosen is None else chosen).values()):
         import_module(f"qbound.cli.{name}").add_to(commands)
     if chosen is None:
         _add_others(commands)

@@ -42,9 +42,9 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "certify",
         help="prove that every configuration of a set is safe",
-        description="Prove that every configuration of a set keeps every boundary, or refute it."
-        " Certificates take robots of at most 6 joints, none of them a parallelogram.",
-        epilog="exit status: 0 proved, 1 refuted, 3 undecided, 2 bad input\n"
+        description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
+        "Certificates take robots of at most 6 joints, none of them a parallelogram.",
+        epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
         "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
     add_robot(parser)
@@ -100,6 +100,8 @@ def run(options: argparse.Namespace) -> int:
         say(
             *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
         )
+        if answer.verdict == "undecided":
+            say("a smaller set takes less work: a larger --inset, a lower --scale, or a --box")
     return STATUS[answer.verdict]
 
 
@@ -205,5 +207,8 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
             say(f"scale {safe}: proved", *lines, *_how_to_check(options, proof))
     if refutation is not None and refutation.verdict == "refuted" and options.output != "-":
         say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
+    if proof is None and options.output != "-":
+        centre = "the centroid of home's vertices seems to be unsafe itself"
+        say(f"no scale is proved: {centre}; try --region")
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Iterator
+from typing import Final
 
+from qbound.boundary.evaluator import limit_names
 from qbound.cli.progress import working
 from qbound.model.robot import Robot
 from qbound.region import Region, Rule, find_region
+from qbound.units import joint_text, margin_text
+
+MEMORY: Final = 2
+"""Gigabytes that a command takes without being asked to."""
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -43,3 +51,65 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
     count = len(robot.used)
     with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
         return find_region(robot, values, rule)
+
+
+def add_memory(parser: argparse.ArgumentParser) -> None:
+    """Add the most memory that a command may take."""
+    parser.add_argument(
+        "--memory",
+        type=float,
+        default=MEMORY,
+        metavar="GB",
+        help=f"most memory to use, as it is estimated before the work (default {MEMORY})",
+    )
+
+
+def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) -> None:
+    """Refuse work that would take more memory than `--memory` allows.
+
+    Parameters
+    ----------
+    estimate : float
+        Bytes.
+    instead : str
+        What to do, in an imperative.
+
+    Raises
+    ------
+    ValueError
+        If the estimate is more, or `--memory` is no positive number.
+    """
+    if not options.memory > 0:
+        raise ValueError(f"--memory {options.memory}: a number of GB above 0 is wanted")
+    needed = estimate / 1e9
+    if needed > options.memory:
+        raise ValueError(
+            f"this takes about {needed:.1f} GB of memory, and --memory allows {options.memory:g};"
+            f" {instead}, or allow it with --memory {math.ceil(needed)}"
+        )
+
+
+def home_lines(region: Region) -> Iterator[str]:
+    """Say what the home pose violates, or touches where it is feasible and in no component."""
+    from qbound.export.document import home_content  # with the workspace: slow to import
+
+    robot, limited = region.robot, region.limited
+    home = home_content(region)
+    beyond = {n: j for j in region.problem.held for n in limit_names(robot.joints[j].name)}
+    violates = "home's values of these joints violate" if is_elsewhere(region) else "home violates"
+    for item in home["violated"]:
+        name = item["boundary"]
+        margin = margin_text(robot, name, item["margin"], limited)
+        if name in beyond:
+            held = joint_text(robot, [region.problem.held[beyond[name]]], [beyond[name]])
+            yield f"the slice holds {held}, which violates {name}, margin {margin}"
+        else:
+            yield f"{violates} {name}, margin {margin}"
+    if region.components and "touches" in home:
+        yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
+
+
+def is_elsewhere(region: Region) -> bool:
+    """Tell whether a joint is held away from home."""
+    home = region.robot.home
+    return any(value != home[j] for j, value in region.problem.held.items())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from qbound.boundary.evaluator import evaluator
@@ -17,13 +17,20 @@ from qbound.model.robotfile import load_robot
 from qbound.tolerances import SAME_POINT
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
+Row = tuple[str, dict[str, Any]]
+"""A boundary, or a pair of links, and what is known of it."""
+
+MOST_SHOWN = 12
+"""Margins that are listed unless all of them are asked for."""
+
 
 def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "contains",
         help="is a configuration safe, and by how much?",
-        epilog="example: qbound contains minervabot-v2 20deg -45deg",
+        epilog="exit status: 0 feasible, 1 a margin is negative; 2 bad input\n"
+        "example: qbound contains minervabot-v2 20deg -45deg",
     )
     add_robot(parser)
     parser.add_argument(
@@ -40,6 +47,12 @@ def add_to(commands: Any) -> None:
         metavar="W",
         help="weights of the two joints in the distance to the boundary (default 1 1)",
     )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help=f"list every boundary and limit; by default, of more than {MOST_SHOWN}, each pair of"
+        " links once, the nearest first",
+    )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.set_defaults(run=run)
 
@@ -48,25 +61,45 @@ def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = load_robot(options.robot)
     content = configuration_facts(robot, configuration(robot, options.values), options.weights)
-    deliver(
-        [(options.json, lambda: json_text(with_version(robot, content)))], _lines(robot, content)
-    )
+    document = (options.json, lambda: json_text(with_version(robot, content)))
+    deliver([document], _lines(robot, content, everything=options.all))
     return 0 if content["feasible"] else 1
 
 
-def _lines(robot: Robot, content: dict[str, Any]) -> Iterator[str]:
+def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterator[str]:
     amounts = dict(_margins(robot, content))
-    features = {item["boundary"]: _features(item) for item in content["margins"]}
-    violated = [item["boundary"] for item in content["margins"] if item["margin"] < 0]
-    for name in violated:
-        yield f"violated: {name}, margin {amounts[name]}{features[name]}"
+    rows = [(item["boundary"], item) for item in content["margins"]]
+    shown = rows if everything or len(rows) <= MOST_SHOWN else _nearest_of_links(robot, rows)
+    violated = [row for row in shown if row[1]["margin"] < 0]
+    for label, item in violated:
+        yield f"violated: {label}, margin {amounts[item['boundary']]}{_features(item)}"
     if not violated:
         yield "feasible" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
-    for name in (name for name in amounts if name not in violated):
-        yield f"  margin {amounts[name]}: {name}{features[name]}"
+    for label, item in shown:
+        if item["margin"] >= 0:
+            yield f"  margin {amounts[item['boundary']]}: {label}{_features(item)}"
+    if len(shown) < len(rows):
+        yield f"  the nearest of {len(rows)} boundaries and limits; --all lists every one"
+    for reason in content.get("unresolved", ()):
+        yield f"  its component and the nearest boundary are not known: {reason}"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
+
+
+def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
+    """Return the least margin of each pair of links, called by them: what is violated, the nearest.
+
+    Limits come after lengths, because their margins are of another unit.
+    """
+    from qbound.arms.links import link_pair  # for arms of many boundaries alone
+
+    links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
+    limited = limited_joints(robot)
+    found = dict[str, dict[str, Any]]()
+    for name, item in sorted(rows, key=lambda row: (row[0] in limited, row[1]["margin"])):
+        found.setdefault(links.get(name, name), item)
+    return sorted(found.items(), key=lambda row: row[1]["margin"] >= 0)[:MOST_SHOWN]
 
 
 def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
-from qbound.cli.files import write_text
+from qbound.cli.chosen import add_robot, add_rule, add_slice, home_lines, region_by_rule
+from qbound.cli.files import deliver
 from qbound.cli.progress import progress
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, strip
@@ -25,7 +25,8 @@ def add_to(commands: Any) -> None:
         description="Write one HTML file, for any browser, without a network. Of more than two\n"
         "joints, those that --slice does not hold move, and the others have sliders; without\n"
         "--slice every joint after the second is held at home.",
-        epilog="example: qbound explore minervabot-v2 -o minervabot.html",
+        epilog="exit status: 0 made, 1 home is in no component; 2 bad input\n"
+        "example: qbound explore minervabot-v2 -o minervabot.html",
     )
     add_robot(parser)
     parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
@@ -45,9 +46,11 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     row = None if options.strip is None else _row(robot, options, values)
     region = region_by_rule(robot, options.rule, values)
-    write_text(options.output, explorer_page(region, row=row))
+    deliver([(options.output, lambda: explorer_page(region, row=row))], [])
     if region.home is None:
-        complain("the home pose is in no component")
+        for line in home_lines(region):
+            complain(line)
+        complain("home is in no component, so the page opens with an arm that is not safe")
     return 0 if region.home is not None else 1
 
 

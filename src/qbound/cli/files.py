@@ -18,10 +18,14 @@ Output = tuple[str | None, Callable[[], Content]]
 
 
 def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
-    """Make and write what was asked for; print the lines unless standard output is taken by it."""
+    """Make and write what was asked for; print the lines unless standard output is taken by it.
+
+    The last line names the files.
+    """
     write_all([(file, make()) for file, make in outputs if file is not None])
-    if "-" not in (file for file, _ in outputs):
-        say(*lines)
+    files = [file for file, _ in outputs if file is not None]
+    if "-" not in files:
+        say(*lines, *([f"written: {', '.join(files)}"] if files else []))
 
 
 def write_all(outputs: Sequence[tuple[str, Content]]) -> None:

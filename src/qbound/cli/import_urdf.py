@@ -7,14 +7,14 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from qbound.arms.reports import by_links
 from qbound.boundary.margins import violated
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
+from qbound.model.robotfile import RobotFileError, refuse_replacing
+from qbound.units import parse_length
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
 from qbound.urdf.robot_text import robot_text
-
-MOST_SHOWN = 5
-"""Pairs that touch at home that are named."""
 
 
 def add_to(commands: Any) -> None:
@@ -22,7 +22,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "import",
         help="make a robot file of a URDF, its links covered by balls",
-        epilog="example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o arm.toml",
+        epilog="exit status: 0 imported, whether home is feasible or not; 2 bad input\n"
+        "example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o ur5.toml",
     )
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
     parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
@@ -38,13 +39,13 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument(
         "--excess",
-        type=float,
-        default=EXCESS,
+        default=str(EXCESS),
         metavar="LENGTH",
-        help=f"how far a ball may stick out of a link, m (default {EXCESS})",
+        help=f"how far a ball may stick out of a link: 2cm, or a plain number of m"
+        f" (default {EXCESS})",
     )
     parser.add_argument(
-        "--clearance", type=float, default=0.0, metavar="LENGTH", help="kept by every pair, m"
+        "--clearance", default="0", metavar="LENGTH", help="kept by every pair: 1cm, or 0.01 (m)"
     )
     parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
     parser.add_argument(
@@ -58,20 +59,28 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="- is standard output"
     )
+    parser.add_argument(
+        "--force", action="store_true", help="replace a robot file that qbound did not make"
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Import; 0, also where home is not feasible: that is an answer, and is said."""
+    if not options.force and options.output != "-":
+        try:
+            refuse_replacing(options.output)
+        except RobotFileError as error:
+            raise ValueError(f"{error}, or give --force") from None
     with working("covering links"):
         imported = import_urdf(
             options.urdf,
             chain=(options.first, options.last),
             srdf=options.srdf,
             limits=limits(options.limits),
-            excess=options.excess,
+            excess=parse_length(options.excess, "m", "--excess"),
             packages=options.package,
-            clearance=options.clearance,
+            clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
         )
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
@@ -111,7 +120,5 @@ def _lines(imported: Imported) -> Iterable[str]:
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."
     if touching := [name for name, _ in violated(robot, robot.home)]:
-        named = "; ".join(touching[:MOST_SHOWN])
-        more = f" and {len(touching) - MOST_SHOWN} more" if len(touching) > MOST_SHOWN else ""
-        yield f"The home pose is not feasible: {named}{more}."
+        yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
         yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."

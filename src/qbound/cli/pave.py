@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_slice
+from qbound.cli.chosen import add_memory, add_robot, add_slice, refuse_memory
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
 from qbound.proofs.columns import pave_columns
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact import exact_problem, exact_robot, paving_bytes
 from qbound.proofs.paving import pave
 from qbound.proofs.reports import (
     columns_document,
@@ -24,13 +24,20 @@ from qbound.proofs.reports import (
 STEPS = 1000
 """Of the progress that is shown."""
 
+SECONDS = 300
+"""Time after which a paving stops, unless another is asked for."""
+
 
 def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "pave",
         help="bracket a region of any number of joints by cells, each proved",
-        epilog="example: qbound pave minervabot-v2 --tolerance 0.001",
+        description="Halve cells of joint space until those that are undecided are few, or there\n"
+        "are too many, or the time is over. What is proved until then holds. Each joint more\n"
+        "takes three times the memory and more: hold joints with --slice.",
+        epilog="exit status: 0 the tolerance is met, 3 it is not; 2 bad input\n"
+        "example: qbound pave minervabot-v2 --tolerance 0.001",
     )
     add_robot(parser)
     parser.add_argument(
@@ -45,17 +52,30 @@ def add_to(commands: Any) -> None:
         action="store_true",
         help="solve for one joint over cells of the others: many times as fast, not for bodies",
     )
+    parser.add_argument(
+        "--seconds",
+        type=float,
+        default=SECONDS,
+        metavar="S",
+        help=f"time of halving cells after which to stop (default {SECONDS})",
+    )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    add_memory(parser)
     add_slice(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Pave; 0 if the tolerance is met, 3 if cells ran out before."""
+    """Pave; 0 if the tolerance is met, 3 if cells or time ran out before."""
     if not 0 < options.tolerance < 1:
         raise ValueError(f"--tolerance {options.tolerance}: a part between 0 and 1 is wanted")
+    if not options.seconds > 0:
+        raise ValueError(f"--seconds {options.seconds}: a time above 0 is wanted")
     robot = load_robot(options.robot)
     values = held(robot, options.slice)
+    free = [j for j in range(len(robot.joints)) if j not in values]
+    estimate = paving_bytes(len(robot.used), len(free))
+    refuse_memory(options, estimate, "hold some of the joints with --slice")
     problem = exact_problem(exact_robot(options.robot), values)
     shown = progress("paving", STEPS)
 
@@ -63,12 +83,11 @@ def run(options: argparse.Namespace) -> int:
         shown(int(part * STEPS))
 
     if options.columns:
-        free = [j for j in range(len(robot.joints)) if j not in values]
-        columns = pave_columns(problem, options.tolerance, tell=tell)
+        columns = pave_columns(problem, options.tolerance, tell=tell, seconds=options.seconds)
         document = (options.json, lambda: json_text(columns_document(robot, columns, free)))
         deliver([document], columns_lines(robot, columns))
         return 0 if columns.undecided_fraction <= options.tolerance else 3
-    paving = pave(problem, options.tolerance, tell=tell)
+    paving = pave(problem, options.tolerance, tell=tell, seconds=options.seconds)
     document = (options.json, lambda: json_text(paving_document(robot, paving)))
     deliver([document], paving_lines(robot, paving))
     return 0 if paving.undecided_fraction <= options.tolerance else 3

@@ -13,6 +13,7 @@ from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
+from qbound.units import parse_length
 
 
 def add_to(commands: Any) -> None:
@@ -20,14 +21,18 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "reach",
         help="where does the tool get to? a map of voxels, and its volume",
-        description="Map the places of the tool over all feasible configurations. One joint's "
-        "travel is exact, the others are drawn: a voxel that is marked is reached. "
-        "The same seed gives the same map.",
-        epilog="example: qbound reach pr-gantry-arm --voxel 0.2 --svg reach.svg",
+        description="Map the places of the tool over all feasible configurations. One joint's\n"
+        "travel is exact, the others are drawn: a voxel that is marked is reached. The same\n"
+        "seed gives the same map. Of arms of points and balls; of bodies in a plane, qbound\n"
+        "workspace measures two joints.",
+        epilog="exit status: 0 mapped, 1 nothing feasible was found; 2 bad input\n"
+        "example: qbound reach ur5 --voxel 25cm --svg reach.svg",
     )
     add_robot(parser)
     parser.add_argument(
-        "--voxel", type=float, metavar="LENGTH", help="edge of a voxel, in the file's unit"
+        "--voxel",
+        metavar="LENGTH",
+        help="edge of a voxel: 5cm; a plain number is in the file's unit",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="0 or above (default 0)")
     parser.add_argument(
@@ -52,8 +57,11 @@ def run(options: argparse.Namespace) -> int:
     check_targets([options.svg], ("svg", "png"))
     robot, plane = load_robot(options.robot), _plane(options.section)
     axis = None if options.axis is None else _numbers(options.axis)
+    edge = None
+    if options.voxel is not None:
+        edge = parse_length(options.voxel, robot.length_unit, "--voxel")
     with working("mapping"):
-        found = reach(robot, options.voxel, seed=options.seed, axis=axis)
+        found = reach(robot, edge, seed=options.seed, axis=axis)
     outputs: list[Output] = [
         (options.svg, lambda: _picture(found, plane, options.svg)),
         (options.npz, lambda: reach_npz(found)),

@@ -10,17 +10,24 @@ from collections.abc import Iterator
 from functools import cache, partial
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.chosen import (
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    is_elsewhere,
+    region_by_rule,
+)
 from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
 from qbound.cli.values import held, strip
-from qbound.export.document import home_content, slices_document
+from qbound.export.document import slices_document
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.region import Region, Slices, find_slices
-from qbound.units import counted, joint_text, margin_text
+from qbound.units import counted, joint_text
 
 
 def add_to(commands: Any) -> None:
@@ -28,7 +35,9 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "region",
         help="all regions of two joints",
-        epilog="example: qbound region minervabot-v2 --json -",
+        epilog="exit status: 0 home is in a component, 1 it is in none (with --strip: every slice\n"
+        "is empty); 3 the structure could not be decided; 2 bad input\n"
+        "example: qbound region minervabot-v2 --json -",
     )
     add_robot(parser)
     add_rule(parser)
@@ -56,15 +65,17 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find the region; 1 if the home pose is in none of its components.
+    """Find the region; 1 if the home pose is in none of its components, 3 if it is unresolved.
 
-    Of a strip: 1 if every slice is empty.
+    Of a strip: 1 if every slice is empty, 3 if one is unresolved.
     """
     robot = load_robot(options.robot)
     if options.strip is not None:
         return _strip(robot, options)
     region = region_by_rule(robot, options.rule, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
+    if region.unresolved:
+        return 3
     return 0 if region.home is not None else 1
 
 
@@ -83,6 +94,8 @@ def _strip(robot: Robot, options: argparse.Namespace) -> int:
         (options.json, lambda: json_text(slices_document(slices))),
     ]
     deliver(outputs, _strip_lines(slices))
+    if any(region.unresolved for region in slices.regions):
+        return 3
     return 0 if slices.areas.any() else 1
 
 
@@ -90,6 +103,9 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
     unit = slices.regions[0].area_unit
     for k, (value, region) in enumerate(zip(slices.values, slices.regions, strict=True)):
         where = joint_text(slices.robot, [value], [slices.along])
+        if region.unresolved:
+            yield f"{where}: unresolved: {'; '.join(region.unresolved)}"
+            continue
         home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
         if region.components:
             parts = counted(len(region.components), "component")
@@ -111,15 +127,13 @@ def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
 
 
 def _lines(region: Region) -> Iterator[str]:
-    unit, robot, limited = region.area_unit, region.robot, region.limited
-    home = home_content(region)
-    for item in home["violated"]:
-        margin = margin_text(robot, item["boundary"], item["margin"], limited)
-        yield f"home violates {item['boundary']}, margin {margin}"
+    unit = region.area_unit
+    if region.unresolved:
+        yield f"this region is unresolved: {'; '.join(region.unresolved)}"
+        return
+    yield from home_lines(region)
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
-    elif "touches" in home:
-        yield f"home is feasible, but in no component: it touches {', '.join(home['touches'])}"
     parts = counted(len(region.components), "component")
     yield f"{parts}, area {region.area:.9g} {unit} in all"
     for component in region.components:
@@ -129,10 +143,8 @@ def _lines(region: Region) -> Iterator[str]:
 
 
 def _home(region: Region) -> str:
-    """Name what of the home pose a slice holds: all of it if its other joints are at home."""
-    problem, home = region.problem, region.robot.home
-    elsewhere = any(value != home[j] for j, value in problem.held.items())
-    return "home's values of these joints" if elsewhere else "the home pose"
+    """Name what of the home pose a slice holds."""
+    return "home's values of these joints" if is_elsewhere(region) else "the home pose"
 
 
 def _draw(region: Region) -> bytes:

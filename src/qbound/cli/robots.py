@@ -13,7 +13,9 @@ from qbound.model.robotfile import packaged_robots
 def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
-        "robots", help="the packaged robots", epilog="example: qbound robots show minervabot-v2"
+        "robots",
+        help="the packaged robots",
+        epilog="exit status: 0 printed; 2 bad input\nexample: qbound robots show minervabot-v2",
     )
     parser.add_argument("show", nargs="?", choices=("show",))
     parser.add_argument("name", nargs="?")

@@ -24,11 +24,12 @@ def add_to(commands: Any) -> None:
         "sample",
         help="random configurations and whether they are free",
         description="Draw configurations evenly and judge each. The same seed draws the same ones.",
-        epilog="example: qbound sample minervabot-v2 -n 1000 --seed 1 --csv sample.csv",
+        epilog="exit status: 0 drawn: a sample proves nothing; 2 bad input\n"
+        "example: qbound sample minervabot-v2 -n 1000 --seed 1 --csv sample.csv",
     )
     add_robot(parser)
-    parser.add_argument("-n", type=int, required=True, metavar="N", help="how many")
-    parser.add_argument("--seed", type=int, required=True, metavar="S", help="0 or above")
+    parser.add_argument("-n", type=_count, required=True, metavar="N", help="how many: 1000, 1e6")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="0 or above (default 0)")
     add_rule(parser)
     parser.add_argument(
         "--csv", metavar="FILE", help="write configurations, tool places, free or not"
@@ -36,6 +37,17 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--npz", metavar="FILE", help="the same as NumPy arrays q, tool, free")
     parser.add_argument("--json", metavar="FILE", help="the same as JSON; - for standard output")
     parser.set_defaults(run=run)
+
+
+def _count(text: str) -> int:
+    """Read a whole number, as 1000 or 1e6."""
+    try:
+        return int(text)
+    except ValueError:
+        number = float(text)
+    if not number.is_integer():
+        raise ValueError(text)
+    return int(number)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -30,7 +30,8 @@ def add_to(commands: Any) -> None:
         "named by the links that touch there. The ending of the file says what is made: .html (a\n"
         "page to turn by hand), .svg or .png, .ply or .glb. Joints that are neither an axis nor\n"
         "held are at home. What is smaller than a step of the grid may be missing.",
-        epilog="example: qbound surface ur5 --joints shoulder_lift_joint elbow_joint"
+        epilog="exit status: 0 made, 1 nothing is feasible within the ranges; 2 bad input\n"
+        "example: qbound surface ur5 --joints shoulder_lift_joint elbow_joint"
         " wrist_1_joint --resolution 20 -o ur5.html",
     )
     add_robot(parser)

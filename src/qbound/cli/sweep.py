@@ -25,7 +25,8 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "sweep",
         help="measures of many arms that differ in some numbers, on many processes",
-        epilog="example: qbound sweep reach.toml -o reach --workers 2 --svg reach.svg",
+        epilog="exit status: 0 every arm has every measure, 1 some lack one; 2 bad input\n"
+        "example: qbound sweep reach.toml -o reach --workers 2 --svg reach.svg",
     )
     parser.add_argument("specification", help="a TOML file: robot, vary, measure")
     parser.add_argument(

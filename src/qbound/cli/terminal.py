@@ -24,7 +24,9 @@ BLANK_LINE = "\r\033[K"
 
 
 def say(*lines: str) -> None:
-    """Print lines to standard output."""
+    """Print lines to standard output, in place of progress that stands there."""
+    if lines and is_terminal() and sys.stdout is not None and sys.stdout.isatty():
+        print(BLANK_LINE, end="", file=sys.stderr, flush=True)
     for line in lines:
         print(printable(line))
 

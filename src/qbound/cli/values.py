@@ -129,4 +129,7 @@ def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:
     if len(texts) != 2:
         raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
     low, high = (joint_decimal(robot, j, text) for text in texts)
+    if float(low) > float(high):
+        name, given = robot.joints[j].name, ":".join(texts)
+        raise ValueError(f"--box {name}={given}: the low end comes first")
     return low, high

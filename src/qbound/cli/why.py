@@ -1,4 +1,4 @@
-"""``qbound why``: tell whether the arm can get from start to goal, and why or why not."""
+"""``qbound why``, or ``connected``: whether the arm gets from start to goal, and why."""
 
 from __future__ import annotations
 
@@ -23,12 +23,14 @@ def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "why",
-        help="why does my plan fail? a path, proved, or what separates start and goal",
-        description="Can the arm get from START to GOAL? First: does either violate a boundary?"
-        " Then: can one joint not pass a range, whatever the others do? Then a path is searched"
-        " and proved. Else up to three joints are paved, the others held."
-        " Of more than 6 joints, or a parallelogram, the answer has no certificate.",
-        epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided, 2 bad input\n"
+        aliases=["connected"],
+        help="can the arm get from start to goal? a path, proved, or what separates them",
+        description="Can the arm get from START to GOAL? First: does either violate a boundary?\n"
+        "Then: can one joint not pass a range, whatever the others do? Then a path is searched\n"
+        "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
+        "others held, a paving is made. Of more than 6 joints, or a parallelogram, the answer\n"
+        "has no certificate.",
+        epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
         "example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)
@@ -81,4 +83,4 @@ def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:
-        yield f"{file}: the certificate; check it with qbound check"
+        yield f"{file} is a certificate; check it with qbound check"

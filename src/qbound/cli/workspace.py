@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.chosen import add_robot, add_rule, add_slice, home_lines, region_by_rule
 from qbound.cli.files import Output, deliver
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, place, pose
@@ -21,7 +21,9 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "workspace",
         help="the exact geometric workspace",
-        epilog="example: qbound workspace minervabot-v2 --rule paper --at=-20,40",
+        epilog="exit status: 0 done, 1 home, a place or the passage asked for is not safe;\n"
+        "2 bad input\n"
+        "example: qbound workspace minervabot-v2 --rule paper --at=-20,40",
     )
     add_robot(parser)
     add_rule(parser)
@@ -47,7 +49,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         found = workspace_report(region, places, poses)
     except NoHomeError as reason:
-        complain(reason)
+        for line in home_lines(region):
+            complain(line)
+        complain(f"{reason}; qbound draw shows both, and a robot file may name another home")
         return 1
     outputs: list[Output] = [
         (options.svg, lambda: _picture(found)),

@@ -72,6 +72,8 @@ def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) 
 
 
 def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> dict[str, Any]:
+    if region.unresolved:
+        return {"unresolved": list(region.unresolved)}
     where = region.component_of(q)
     nearest = None
     if any(component.loops for component in region.components):

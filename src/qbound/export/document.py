@@ -14,9 +14,9 @@ from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
 def region_document(region: Region) -> dict[str, Any]:
-    """Return a region as JSON holds it, schema qbound/region/2: rad, lengths, the robot's unit."""
+    """Return a region as JSON holds it, schema qbound/region/3: rad, lengths, the robot's unit."""
     content = {
-        **heading("qbound/region/2", region.robot),
+        **heading("qbound/region/3", region.robot),
         "rule": region.problem.rule,
         "joints": list(region.problem.joint_names),
     }
@@ -24,12 +24,12 @@ def region_document(region: Region) -> dict[str, Any]:
 
 
 def slices_document(slices: Slices) -> dict[str, Any]:
-    """Return a row of slices as JSON holds it, schema qbound/slices/1; units as for a region."""
+    """Return a row of slices as JSON holds it, schema qbound/slices/2; units as for a region."""
     joints, first = slices.robot.joints, slices.regions[0].problem
     held = {joints[j].name: value for j, value in first.held.items() if j != slices.along}
     rows = zip(slices.values.tolist(), slices.regions, strict=True)
     return {
-        **heading("qbound/slices/1", slices.robot),
+        **heading("qbound/slices/2", slices.robot),
         "joints": list(first.joint_names),
         "held": held,
         "along": joints[slices.along].name,
@@ -39,11 +39,17 @@ def slices_document(slices: Slices) -> dict[str, Any]:
 
 def _region_content(region: Region) -> dict[str, Any]:
     content: dict[str, Any] = {
-        "home_component": None if region.home is None else 0,
-        "feasible_area": region.area,
+        "home_component": None,
+        "feasible_area": None,
         "home": home_content(region),
-        "components": [_component_content(component) for component in region.components],
+        "components": [],
+        "unresolved": list(region.unresolved),
     }
+    if region.unresolved:
+        return content
+    content["home_component"] = None if region.home is None else 0
+    content["feasible_area"] = region.area
+    content["components"] = [_component_content(component) for component in region.components]
     because = {"empty_because": list(region.empty_because)} if region.empty_because else {}
     return content | because
 
@@ -60,6 +66,7 @@ def _arc_content(arc: Arc) -> dict[str, Any]:
         "branch": arc.branch,
         "from": arc.start.tolist(),
         "to": arc.end.tolist(),
+        **({"also": [list(pair) for pair in arc.also]} if arc.also else {}),
     }
 
 
@@ -71,6 +78,8 @@ def vertex_content(vertex: Vertex) -> dict[str, Any]:
 def workspace_content(region: Region) -> dict[str, Any]:
     """Return the workspace of the home component, or the reason why there is none."""
     robot, problem = region.robot, region.problem
+    if region.unresolved:
+        return {"workspace": None, "workspace_reason": "the region is unresolved"}
     try:
         arm = planar_arm(robot, problem.held)
         found = find_workspace(arm, problem, robot.home[list(problem.joints)])
@@ -89,7 +98,9 @@ def home_content(region: Region) -> dict[str, Any]:
         "feasible": all(margin >= 0 for _, margin in found),
         "violated": [{"boundary": name, "margin": m} for name, m in found if m < 0],
     }
-    if content["feasible"] and region.home is None:  # no room, and this is why
+    if (
+        content["feasible"] and not region.unresolved and region.home is None
+    ):  # no room, and this is why
         content["touches"] = [name for name, margin in found if margin == 0]
     return content
 

@@ -1,4 +1,4 @@
-"""Workspaces as others read them: as JSON (schema qbound/workspace/1), the same in words."""
+"""Workspaces as others read them: as JSON (schema qbound/workspace/2), the same in words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
     workspace, region = found.workspace, found.workspace.region
     return {
-        **heading("qbound/workspace/1", region.robot),
+        **heading("qbound/workspace/2", region.robot),
         "rule": region.problem.rule,
         "joints": list(region.problem.joint_names),
         "length_unit": region.robot.length_unit,

@@ -44,6 +44,12 @@ class HarmonicForm:
     kinds : tuple of {"revolute", "prismatic"}
         The factor of each joint: (1, cos q, sin q) or (1, q, q²), a row of `factors.FACTORS`.
 
+    Raises
+    ------
+    ValueError
+        If a joint has no axis of its own, a kind is unknown, or a coefficient is NaN, infinite or
+        complex; the place is named.
+
     Examples
     --------
     The form :math:`2 + \cos q_1 - 3 \sin q_1\, q_2` of a joint that turns and one that slides:
@@ -74,11 +80,21 @@ class HarmonicForm:
     kinds: tuple[Kind, ...]
 
     def __post_init__(self) -> None:
-        """Refuse an array whose joint axes do not match the kinds."""
+        """Refuse what is no array of a form: its axes, its kinds or its numbers."""
         n = len(self.kinds)
+        for j, kind in enumerate(self.kinds):
+            if kind not in FACTORS:
+                raise ValueError(f"kinds[{j}]: {kind!r} is none of {', '.join(FACTORS)}")
         if self.coefficients.shape[self._first :] != (3,) * n:
             raise ValueError(
                 f"{n} joints need {n} last axes of length 3, found {self.coefficients.shape}"
+            )
+        if self.coefficients.dtype.kind == "c":
+            raise ValueError("coefficients: complex numbers, where real ones are wanted")
+        if self.coefficients.dtype.kind == "f" and not np.isfinite(self.coefficients).all():
+            place = tuple(np.argwhere(~np.isfinite(self.coefficients))[0].tolist())
+            raise ValueError(
+                f"coefficients{list(place)} is {self.coefficients[place]}; finite numbers only"
             )
 
     @property

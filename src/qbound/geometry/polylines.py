@@ -65,7 +65,7 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
 
 def too_fine(deviation: float, cost: float, most: int) -> str:
     """Say what a deviation costs in points."""
-    return f"a deviation of {deviation:g} takes some {cost:.1g} points where {most} are the most"
+    return f"a deviation of {deviation:g} takes some {cost:.0f} points where {most} are the most"
 
 
 def deviations(curve: Curve, s: Floats) -> Floats:

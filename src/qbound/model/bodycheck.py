@@ -84,7 +84,7 @@ def _check_plane(robot: Robot, table: Table, part: Mapping[str, Boundary]) -> No
         where = _place_of(robot, boundary)
         raise fault(table, where, f"bodies keep apart in one plane only; {error}") from None
     places = {body.name: path for path, body in _placed(robot)}
-    for body, text in off_plane(plane, [robot.body(name) for name in part]):
+    for body, text in off_plane(plane, [robot.body(name) for name in part], robot.length_unit):
         raise fault(table, (*places[body.name], body.shape.key), text)
     for i, wall in enumerate(robot.boundaries):
         if isinstance(wall, HalfSpace) and wall.body and is_oblique(wall, plane):
@@ -93,21 +93,23 @@ def _check_plane(robot: Robot, table: Table, part: Mapping[str, Boundary]) -> No
             raise fault(table, ("boundary", i, "normal"), text)
 
 
-def off_plane(plane: PlaneOfMotion, bodies: Sequence[Body]) -> Iterator[tuple[Body, str]]:
+def off_plane(
+    plane: PlaneOfMotion, bodies: Sequence[Body], unit: str
+) -> Iterator[tuple[Body, str]]:
     """Yield each body that lies off the plane of the first one, and say how far."""
     height = plane.height(bodies[0].frame, bodies[0].shape.places)[0]
     rounding = ZERO_AMPLITUDE * _size(plane, bodies)
-    taken = ""
+    cure = "bodies share one plane: change the third number, or the frame's origin"
     if plane.chosen:
         two = "two numbers, or " if np.abs(plane.normal).max() > 1 - ZERO_AMPLITUDE else ""
-        taken = "; all joints slide along one line, and of the planes that hold it"
-        taken += f" {plane.name} was taken: give places {two}three in one plane parallel to it"
+        cure = "all joints slide along one line, and of the planes that hold it"
+        cure += f" {plane.name} was taken: give places {two}three in one plane parallel to it"
     for body in bodies:
         off = np.abs(plane.height(body.frame, body.shape.places) - height)
         if off.max() > rounding:
             place = shown(body.shape.places[np.argmax(off)].tolist())
-            first = shown(bodies[0].name)
-            yield body, f"{place} lies {off.max():.6g} off the plane of body {first}{taken}"
+            far = f"{place} lies {off.max():.6g} {unit} off the plane of body"
+            yield body, f"{far} {shown(bodies[0].name)}; {cure}"
 
 
 def is_oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:

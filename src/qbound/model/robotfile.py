@@ -35,6 +35,7 @@ __all__ = [
     "load_robot",
     "packaged_robots",
     "parse_robot",
+    "refuse_replacing",
     "robot_table",
     "robot_text",
     "save_robot",
@@ -43,6 +44,9 @@ __all__ = [
 
 ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
 """Where packaged robots are. `importlib.resources` takes 10 ms to load, and `pathlib` three."""
+
+MADE: Final = "# Made by qbound"
+"""Begins the first line of every robot file that qbound writes."""
 
 
 def load_robot(
@@ -119,16 +123,27 @@ def is_urdf(source: str | Path) -> bool:
     return os.path.splitext(source)[1].lower() == ".urdf"  # noqa: PTH122
 
 
-def save_robot(robot: Robot, path: str | Path) -> None:
+def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
     """Write a robot file, complete or not at all.
+
+    A file that is there is replaced only if its first line says that qbound made it: what somebody
+    wrote by hand, with its comments, would be gone.
 
     Angles are written in the robot's angle unit. Read again, every number is the same to one unit
     in its last place; the mount of a joint, written as roll, pitch and yaw, to a few.
 
+    Parameters
+    ----------
+    robot : Robot
+    path : str or Path
+    force : bool
+        Whether to replace any file.
+
     Raises
     ------
     RobotFileError
-        If the robot is none that a file may hold (an infinite offset, say); nothing is written.
+        If the robot is none that a file may hold (an infinite offset, say), or the file is there
+        and qbound did not make it; nothing is written.
     ModuleNotFoundError
         If there is no tomlkit; it comes with ``qbound[files]``.
 
@@ -149,12 +164,33 @@ def save_robot(robot: Robot, path: str | Path) -> None:
     require("tomlkit")
     import tomlkit
 
+    if not force:
+        refuse_replacing(path)
     table = robot_table(robot)
     try:
         check_bodies(_built(read_table(table)), table)
     except RobotFileError as error:
         raise RobotFileError(f"{path}: not written: {error}") from None
-    write_whole(path, tomlkit.dumps(table).encode())
+    write_whole(path, f"{MADE} (save_robot).\n{tomlkit.dumps(table)}".encode())
+
+
+def refuse_replacing(path: str | Path) -> None:
+    """Refuse to replace a file, unless its first line says that qbound made it.
+
+    Raises
+    ------
+    RobotFileError
+        If it is there, holds something, and does not begin with `MADE`.
+    """
+    try:
+        with open(path, "rb") as file:  # noqa: PTH123
+            start = file.read(len(MADE))
+    except OSError:  # it is not there, or writing it will say why it cannot be
+        return
+    if start and start != MADE.encode():
+        raise RobotFileError(
+            f"{path}: not replaced, because qbound did not make this file; choose another name"
+        )
 
 
 def written_text(robot: Robot) -> str:
@@ -231,10 +267,12 @@ def robot_text(source: str | Path) -> tuple[str, str]:
         return _read(f"{ROBOTS}/{name}", "utf-8"), name
     try:
         return _read(source, "utf-8-sig"), str(source)
-    except (OSError, UnicodeDecodeError) as error:
+    except FileNotFoundError as error:
         known = ", ".join(packaged_robots())
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise RobotFileError(f"{source}: {reason}; packaged robots are {known}") from None
+        raise RobotFileError(f"{source}: {error.strerror}; packaged robots are {known}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text, so no robot file"
+        raise RobotFileError(f"{source}: {reason}") from None
 
 
 def _read(path: str | Path, encoding: str) -> str:

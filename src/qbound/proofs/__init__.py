@@ -11,8 +11,8 @@
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
   `columns` (pavings of which one joint is solved for), `sectors` (of that joint, over cells),
   `trigonometry` (cosines and sines of arrays, with a proved error),
-  `straight` (a line), `connection` (what is joined, and what is not), `blocked` (ranges of one
-  joint that nothing passes);
+  `connection` (what is joined, and what is not), `blocked` (ranges of one joint that nothing
+  passes);
 - bodies: `parts` (of outlines), `features` (what separates them), `separating` (the search for one
   on each cell), `overlap` (places that refute);
 - certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of

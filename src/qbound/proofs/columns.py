@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import BITS, BoxBounds
 from qbound.proofs.exact import ExactProblem
-from qbound.proofs.paving import part_done
+from qbound.proofs.paving import Clock, part_done
 from qbound.proofs.sectors import Sectors, covered, hidden, pieces, sectors_of
 from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
 from qbound.proofs.verdict import Verdict
@@ -152,6 +152,7 @@ def pave_columns(
     lift: int | None = None,
     most: int = MOST_COLUMNS,
     tell: Callable[[float], None] = lambda part: None,
+    seconds: float = math.inf,
 ) -> ColumnPaving:
     """Halve cells until the undecided parts of the columns over them fill no more than asked.
 
@@ -167,6 +168,8 @@ def pave_columns(
         Cells at which to stop early; `ColumnPaving.undecided_fraction` tells.
     tell : callable
         Told how far it is, from 0 to 1.
+    seconds : float
+        Time at which to stop early, as `paving.pave`.
 
     Raises
     ------
@@ -184,8 +187,8 @@ def pave_columns(
     """
     if not tolerance > 0:
         raise ValueError(f"a tolerance of {tolerance} cannot be met; it has to be positive")
-    paving = _start(problem, _lift(problem, lift))
-    while paving.undecided_fraction > tolerance and len(paving.columns) < most:
+    paving, clock = _start(problem, _lift(problem, lift)), Clock(seconds)
+    while paving.undecided_fraction > tolerance and len(paving.columns) < most and clock.has_time():
         finer = _refined(paving)
         if len(finer.columns) == len(paving.columns):
             break

@@ -1,10 +1,10 @@
 """Proofs that two configurations are joined, or that nothing joins them.
 
-Joined: the straight line from one to the other lies in cells that are proved feasible throughout
-(`straight`), or a chain of such cells, each sharing a face with the next, leads over. Separated:
-the cells that are not proved infeasible fall into groups that do not touch, not even in a corner,
-and the two configurations lie in different groups; every path between them meets a cell on which
-some boundary is violated throughout. Joints that turn all the way round close the range on itself.
+Joined: a chain of cells that are proved feasible throughout, each sharing a face with the next,
+leads over. Separated: the cells that are not proved infeasible fall into groups that do not touch,
+not even in a corner, and the two configurations lie in different groups; every path between them
+meets a cell on which some boundary is violated throughout. Joints that turn all the way round close
+the range on itself.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from qbound.forms.angles import nearest_turn
 from qbound.proofs.dyadic import DEEPEST, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.paving import Paving, start
-from qbound.proofs.straight import along_straight_line
 from qbound.proofs.verdict import Verdict
 
 Floats = NDArray[np.float64]
@@ -31,9 +30,6 @@ Answer = Literal["connected", "separated", "infeasible", "undecided"]
 
 MOST_CELLS = 200_000
 """Undecided cells at which a search for a connection gives up."""
-
-MOST_ANGLE = 1e4
-"""Largest value of a joint, in its unit, from which a straight line is tried."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +41,10 @@ class Connection:
     verdict : Verdict
         Whether they are connected.
     paving : Paving
-        The cells that prove it; where the straight line does, those that it meets alone.
+        The cells that prove it.
     path : ndarray, shape (k, n), or None
         Where connected: corners of a path, the two configurations first and last, unrolled. Each
-        leg lies in one feasible cell, but for a path of one leg, which lies in several.
+        leg lies in one feasible cell.
     infeasible : tuple of int
         Which of the two (0, 1) lies in a cell that is proved infeasible.
     """
@@ -94,12 +90,7 @@ class Groups:
 
 
 def connection(
-    problem: ExactProblem,
-    one: ArrayLike,
-    other: ArrayLike,
-    most: int = MOST_CELLS,
-    *,
-    line: bool = False,
+    problem: ExactProblem, one: ArrayLike, other: ArrayLike, most: int = MOST_CELLS
 ) -> Connection:
     """Prove that two configurations are connected, or that they are not.
 
@@ -110,8 +101,6 @@ def connection(
         Joint values, rad or length; each double counts as it is.
     most : int
         Undecided cells at which to give up.
-    line : bool
-        Whether the straight line is tried first: a path of one leg, in several cells.
 
     Raises
     ------
@@ -137,9 +126,6 @@ def connection(
     paving = start(problem)
     for q in (one, other):
         _verdicts(paving, q)  # refuses what lies outside of the limits
-    ends = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
-    if line and (straight := _straight(paving, *ends)):
-        return straight
     while True:
         said = [_verdicts(paving, q) for q in (one, other)]
         bad = tuple(k for k, words in enumerate(said) if words == {Verdict.REFUTED})
@@ -187,15 +173,6 @@ def separating_cells(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
     ends = np.cumsum([len(c) for c in everything])[:-1]
     chosen = np.split(met & ~inside, ends)[len(groups.cells) :]
     return tuple(c[k] for c, k in zip(paving.infeasible, chosen, strict=True) if k.any())
-
-
-def _straight(paving: Paving, one: Floats, other: Floats) -> Connection | None:
-    """Try the straight line, the shorter way round; not from angles that a turn more rounds off."""
-    if max(np.abs(one).max(), np.abs(other).max()) > MOST_ANGLE:
-        return None
-    ends = one, _near(other, one, all_round(paving))
-    proof = along_straight_line(paving, *ends)
-    return None if proof is None else Connection(Verdict.PROVED, proof, np.array(ends))
 
 
 def _verdicts(paving: Paving, q: ArrayLike) -> set[Verdict]:

@@ -234,7 +234,7 @@ def pair_zeros(
         which, cells = np.tile(which, 2), cells.halves()
     zeros: list[tuple[int, Balls]] = []
     for p, pair in enumerate(work):
-        placed = [_placed(problem, point) for point, _ in pair.zeros]
+        placed = [within_ranges(problem, point) for point, _ in pair.zeros]
         zeros += [(p, point) for point in placed if point]
         undecided |= {p} if None in placed else set()
     return zeros, undecided
@@ -294,7 +294,7 @@ def _vanishes(coefficients: Array) -> bool:
 # --- places and signs -----------------------------------------------------------------------------
 
 
-def _placed(problem: ExactProblem, point: Sequence[arb]) -> Balls | tuple[()] | None:
+def within_ranges(problem: ExactProblem, point: Sequence[arb]) -> Balls | tuple[()] | None:
     """Return a point if it is within the ranges, () if it is outside, None if neither is proved."""
     inside = [
         True if r is None else _between(q, *r) for q, r in zip(point, problem.ranges, strict=True)

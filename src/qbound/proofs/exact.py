@@ -104,6 +104,20 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
         return replace(problem, bodies=exact_separations(robot, robot.used, held))
 
 
+def paving_bytes(boundaries: int, joints: int) -> int:
+    """Estimate the memory of exact forms of many joints with their first and second derivatives.
+
+    Each form has :math:`3^n` coefficients, and so has each derivative: these are measured, about
+    250 bytes each.
+
+    Examples
+    --------
+    >>> paving_bytes(114, 7) // 10**6, paving_bytes(193, 3) // 10**6  # megabytes
+    (3552, 16)
+    """
+    return int(250 * boundaries * 3**joints * (1 + joints + joints**2))
+
+
 def exact_state(
     robot: Robot,
     used: Sequence[Boundary],

@@ -9,6 +9,7 @@ outer one (feasible and undecided cells); the undecided volume is measured. Any 
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -193,6 +194,7 @@ def pave(
     tolerance: float,
     most: int = MOST_CELLS,
     tell: Callable[[float], None] = lambda part: None,
+    seconds: float = math.inf,
 ) -> Paving:
     """Halve undecided cells until they fill no more than a part of the range.
 
@@ -206,6 +208,8 @@ def pave(
         Undecided cells at which to stop early; `Paving.undecided_fraction` tells.
     tell : callable
         Told how far it is, from 0 to 1: by the undecided fraction, which falls as a power.
+    seconds : float
+        Time that is not passed: no halving begins that would take longer, at twice the last one's.
 
     Raises
     ------
@@ -224,14 +228,27 @@ def pave(
     """
     if not tolerance > 0:
         raise ValueError(f"a tolerance of {tolerance} cannot be met; it has to be positive")
-    paving = start(problem)
+    paving, clock = start(problem), Clock(seconds)
     while paving.undecided_fraction > tolerance and 2 * len(paving.undecided) <= most:
-        if paving.level >= DEEPEST:
+        if paving.level >= DEEPEST or not clock.has_time():
             break
         paving = paving.refined()
         tell(part_done(float(paving.undecided_fraction), tolerance))
     tell(1.0)
     return paving
+
+
+class Clock:
+    """A limit of time for work in steps, each of which takes at most twice as long as the last."""
+
+    def __init__(self, seconds: float) -> None:
+        self._end = time.monotonic() + seconds
+        self._asked = time.monotonic()
+
+    def has_time(self) -> bool:
+        """Tell whether one more step is likely to end in time."""
+        before, self._asked = self._asked, time.monotonic()
+        return self._asked + 2 * (self._asked - before) <= self._end
 
 
 def part_done(undecided: float, tolerance: float) -> float:

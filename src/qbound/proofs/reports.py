@@ -1,4 +1,4 @@
-"""What was proved, as others read it: pavings and connections as JSON, certificates in words."""
+"""What was proved, as others read it: pavings as JSON, certificates in words."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from qbound.model.robot import Robot
 from qbound.proofs.balls import above, below
 from qbound.proofs.certify import Certificate
 from qbound.proofs.columns import ColumnPaving
-from qbound.proofs.connection import Connection, separating_cells
 from qbound.proofs.paving import Paving
 from qbound.proofs.verdict import Verdict
 from qbound.proofs.witness import Witness
@@ -22,6 +21,9 @@ from qbound.units import counted, file_units
 
 COLUMN = ("low", "high", "feasible", "undecided")
 """What a document tells of each column."""
+
+SMALLEST = 1e-300
+"""A volume rounded up from zero is below it."""
 
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
@@ -92,7 +94,10 @@ def columns_lines(robot: Robot, paving: ColumnPaving) -> Iterator[str]:
 
 
 def _bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
-    yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
+    if not undecided and outer < SMALLEST:
+        yield f"volume 0 {unit}: nothing is feasible, proved"
+    else:
+        yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
     yield f"{100 * undecided:.3g} % of the range is undecided"
 
 
@@ -108,48 +113,6 @@ def _groups(paving: Paving) -> dict[str, tuple[Any, ...]]:
         "infeasible": paving.infeasible,
         "undecided": (paving.undecided,),
     }
-
-
-def connection_document(
-    robot: Robot, poses: list[list[float]], found: Connection
-) -> dict[str, Any]:
-    """Return the JSON form of an answer about two poses, schema qbound/connection/1."""
-    return {
-        **heading("qbound/connection/1", robot),
-        "joints": [joint.name for joint in robot.joints],
-        "poses": poses,
-        "answer": found.answer,
-        "infeasible_poses": list(found.infeasible),
-        "wall": _separating_cells(found, poses[0]) if found.answer == "separated" else None,
-        "path": None if found.path is None else found.path.tolist(),
-        "cells": found.paving.cells,
-        "level": found.paving.level,
-    }
-
-
-def connection_line(found: Connection) -> str:
-    """Say in a sentence what is proved about two poses."""
-    cells = f"{found.paving.cells} cells"
-    if found.path is not None and len(found.path) == 2:
-        return f"connected: the straight line lies in cells proved feasible ({cells})"
-    if found.path is not None:
-        return f"connected: a path of {len(found.path) - 1} legs, each in a cell proved feasible"
-    if found.answer == "separated":
-        return f"separated: every path meets a cell proved infeasible ({cells})"
-    if found.answer == "infeasible":
-        which = " and ".join(("first", "second")[k] for k in found.infeasible)
-        return f"infeasible: the {which} pose violates a boundary, proved"
-    return f"undecided: {cells} are too few to prove a path, or that there is none"
-
-
-def _separating_cells(found: Connection, pose: list[float]) -> list[dict[str, Any]]:
-    """Return the infeasible cells around the first pose, as boxes of joint values."""
-    places = [found.paving.bounds.places(cells) for cells in separating_cells(found.paving, pose)]
-    return [
-        {"from": low.tolist(), "to": high.tolist()}
-        for lows, highs in places
-        for low, high in zip(lows, highs, strict=True)
-    ]
 
 
 def folded(text: str) -> Iterator[str]:

@@ -45,6 +45,10 @@ OFF = 0.02
 """Largest distance of a proved place of the boundary from the legs of a proposed arc: legs are
 chords, up to this far from a curve."""
 
+MOST_TURNS = 10
+"""Full turns from zero within which a configuration is looked up: taking them off errs by less than
+2^-46 rad, because a double of a turn is right to 2^-51 and rounding takes 2^-48."""
+
 
 @dataclass(frozen=True, eq=False)
 class ProvedPart:
@@ -220,10 +224,16 @@ class Structure:
         return found
 
     def part_of(self, q: Floats) -> int:
-        """Return the component of a configuration, shape (2,); -1 if it is not proved free."""
+        """Return the component of a configuration, shape (2,); -1 if it is not proved free.
+
+        Cells are proved with a rim as wide as rounding (`stars.ROUNDING`). What full turns lose has
+        to stay within it, so nothing is proved of a configuration more than `MOST_TURNS` away.
+        """
         stars, cells = self.stars, self.cells
         for joint, circle in enumerate(stars.circles):
             if circle:
+                if abs(q[joint]) > MOST_TURNS * TURN:
+                    return -1
                 q = q.copy()
                 q[joint] = stars.first[joint] + (q[joint] - stars.first[joint]) % TURN
         low, high = stars.places(cells.low), stars.places(cells.high)

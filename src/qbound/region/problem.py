@@ -30,7 +30,7 @@ from qbound.boundary.evaluator import (
 from qbound.boundary.functions import term_size
 from qbound.boundary.parts import bounds_bodies
 from qbound.boundary.separation import Separation
-from qbound.forms.harmonic import HarmonicForm
+from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.robot import Boundary, Held, Robot
 from qbound.printable import printable
 from qbound.tolerances import ROUNDING
@@ -69,6 +69,11 @@ class Problem:
     origins : tuple of (Boundary or None)
         Whose form each is, one a form; None where its doubles are exact as they are, as those of
         all forms after the last that is given.
+
+    Raises
+    ------
+    ValueError
+        If there is not one name for each form, or a range is no range; the place is named.
     """
 
     forms: HarmonicForm
@@ -83,6 +88,21 @@ class Problem:
     bodies: tuple[Boundary, ...] = ()
     contacts: Contacts = NO_CONTACTS
     origins: tuple[Boundary | None, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what is no question about two joints."""
+        if len(self.forms.kinds) != 2 or len(self.forms.shape) != 1:
+            raise ValueError(
+                f"forms: a stack of forms of two joints is wanted, shape (m, 3, 3); found"
+                f" {self.forms.coefficients.shape}"
+            )
+        if len(self.names) != len(self.forms.coefficients):
+            raise ValueError(f"names: {len(self.names)} for {len(self.forms.coefficients)} forms")
+        for what, pairs in (("ranges", self.ranges), ("limits", self.limits)):
+            if len(pairs) != 2:
+                raise ValueError(f"{what}: two are wanted, one a joint; found {len(pairs)}")
+        for j, (ends, kind) in enumerate(zip(self.ranges, self.forms.kinds, strict=True)):
+            _refuse_range(f"ranges[{j}]", ends, kind)
 
     def __repr__(self) -> str:
         """Say in a line whose joints these are, and by which rule."""
@@ -190,6 +210,17 @@ class Problem:
         values = self.forms.coefficients[fixed, 0, 0]
         values = np.where(np.abs(values) <= rounding[fixed], 0.0, values)
         return dict(zip(fixed.tolist(), values.tolist(), strict=True))
+
+
+def _refuse_range(where: str, ends: Range, kind: Kind) -> None:
+    """Refuse ends that are no numbers, or swapped, and a slide without an end."""
+    if ends is None:
+        if kind == "prismatic":
+            raise ValueError(f"{where}: a joint that slides needs a range; None is a full turn")
+    elif not np.isfinite(np.asarray(ends, dtype=float)).all():
+        raise ValueError(f"{where}: two finite numbers are wanted, found {ends}")
+    elif ends[0] > ends[1]:
+        raise ValueError(f"{where}: the low end {ends[0]:g} is above the high end {ends[1]:g}")
 
 
 def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:

@@ -434,14 +434,14 @@ class Region:
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the region as plain data, schema qbound/region/2: what `--json` writes.
+        """Return the region as plain data, schema qbound/region/3: what `--json` writes.
 
         Examples
         --------
         >>> from qbound import find_region, load_robot
         >>> document = find_region(load_robot("minervabot-v2")).to_dict()
         >>> document["schema"], document["joints"], len(document["components"])
-        ('qbound/region/2', ['q1', 'q2'], 5)
+        ('qbound/region/3', ['q1', 'q2'], 5)
         >>> document["home"]
         {'q': [0.0, 0.0], 'feasible': True, 'violated': []}
         """

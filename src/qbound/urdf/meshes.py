@@ -59,6 +59,8 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     content = path.read_bytes()
     try:
         corners, closed = _loaded(content, kind, mesh.scale)
+    except ImportError:  # a parser asked for a library that guesses which letters these are
+        element.fault(f"{shown(mesh.filename)}: not read: damaged, or no UTF-8 text")
     except Exception as error:  # what a parser of strangers' files makes of them
         element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
     if not 0 < len(corners) <= MOST_TRIANGLES:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from qbound.extras import require
-from qbound.model.robotfile import robot_table
+from qbound.model.robotfile import MADE, robot_table
 from qbound.printable import printable
 from qbound.urdf.arm import Imported
 
@@ -43,7 +43,7 @@ def robot_text(imported: Imported) -> str:
 def _header(imported: Imported) -> list[str]:
     chain = imported.chain
     texts = [
-        "Made by qbound import, lengths in metres, from",
+        f"{MADE.removeprefix('# ')} import, lengths in metres, from",
         *(f"  {source.name}, SHA-256 {source.sha256}" for source in imported.sources),
         f"Chain: from {chain.frames[0]} to {chain.tip}.",
         *(f"{note[0].upper()}{note[1:]}." for note in imported.notes),

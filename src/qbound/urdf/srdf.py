@@ -5,10 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from qbound.urdf.xml import Element, Source, read_xml
+from qbound.model.robotcheck import RobotFileError
+from qbound.urdf.xml import Element, Source, called, read_xml
 
 HOMES = ("home", "ready")
 """States that are taken for the home pose where nothing else is asked for, in this order."""
+
+OWN = (
+    "group", "group_state", "disable_collisions", "disable_default_collisions", "enable_collisions",
+    "virtual_joint", "end_effector", "passive_joint",
+)  # fmt: skip
+"""Elements of which an SRDF has some; a URDF has none of them."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +66,10 @@ def read_srdf(path: Path) -> Srdf:
         With the first fault and its line.
     """
     root, source = read_xml(path, "robot")
+    if not any(root.children(tag) for tag in OWN):
+        raise RobotFileError(
+            f"{called(path)}: no group, no state, no pair of links left out; is it an SRDF?"
+        )
     states: dict[str, dict[str, float]] = {}
     for state in root.children("group_state"):
         values = states.setdefault(state.text("name"), {})

@@ -70,7 +70,8 @@ class Element:
     def fault(self, text: str) -> NoReturn:
         """Refuse the file because of this element."""
         line = self._node.sourceline
-        raise RobotFileError(f"{self._file}, line {line}: {one_line(self.path)}: {text}")
+        where = f"{one_line(self.path)}: " if self.path else ""
+        raise RobotFileError(f"{self._file}, line {line}: {where}{text}")
 
     def children(self, tag: str | None = None) -> list[Element]:
         """Return the elements in it, all or those of one name."""

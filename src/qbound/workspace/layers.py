@@ -9,7 +9,7 @@ tell how long a part of the circle is reached in one posture, in both, safely or
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import pairwise
@@ -25,7 +25,7 @@ from qbound.tolerances import CHORD, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.image_crossings import crossing_distances
-from qbound.workspace.planar import PlanarArm, Range, turns_within
+from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, turns_within
 
 Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]
@@ -34,6 +34,9 @@ Measure = Callable[[Cover], Floats]
 
 MEETING = 1e-3
 """Ends that are no nearer than this, in rad or beside the largest, do not meet there."""
+
+MOST_BOUNDING = 300
+"""Forms on the region's boundary above which no workspace is computed: each two cost 0.2 ms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +69,38 @@ class Layers:
             u = _apart(np.concatenate([u, [0, farthest]]))
             problem = next(iter(self.sides.values())).problem
             ends = {*(problem.ranges[0] or ()), *(self.square[0] or ())}
-            forms = _with_features(problem, self.sides.values())
+            forms = self._bounding(problem)
             crossing = crossing_distances(self.arm, forms, sorted(ends), farthest)
             u = np.concatenate([u, *self._met(u, np.sort(crossing))])
         return _apart(u)
+
+    def _bounding(self, problem: Problem) -> HarmonicForm:
+        """Return the forms, of boundaries and of features of bodies, that end any interval.
+
+        Raises
+        ------
+        NoPlanarWorkspaceError
+            If they are more than `MOST_BOUNDING`.
+        """
+        forms, features = set[int](), set[int]()
+        for part in self.sides.values():
+            left_out = {problem.names.index(name) for name in part.irrelevant}.union(
+                part.problem.constants
+            )
+            kept = [k for k in range(len(problem.names)) if k not in left_out]
+            for cell in part.cells.cells:
+                for row in (cell.lower.form, cell.upper.form):
+                    if row >= len(kept):
+                        features.add(row - len(kept))
+                    elif row >= 0:
+                        forms.add(kept[row])
+        if len(forms) + len(features) > MOST_BOUNDING:
+            raise NoPlanarWorkspaceError(
+                f"the workspace is not computed: {len(forms) + len(features)} boundaries bound the"
+                f" region, and any two may cross; {MOST_BOUNDING} are the most"
+            )
+        tables = problem.forms.coefficients[sorted(forms)], problem.contacts.forms[sorted(features)]
+        return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
 
     def _met(self, lines: Floats, crossing: Floats) -> Iterator[Floats]:
         """Yield of the distances of possible crossings those at which ends of both postures meet.
@@ -181,19 +212,6 @@ def _apart(u: Floats) -> Floats:
     """Return values ascending, without those that are the same but for rounding."""
     u = np.sort(u)
     return np.asarray(u[np.diff(u, prepend=-np.inf) > SAME_CRITICAL])
-
-
-def _with_features(problem: Problem, parts: Iterable[Fibres]) -> HarmonicForm:
-    """Return a problem's forms, and those of the features in which bodies touch on any fibre."""
-    touching = {
-        root.form - part.cells.plane.count
-        for part in parts
-        for cell in part.cells.cells
-        for root in (cell.lower, cell.upper)
-    }
-    rows = [row for row in sorted(touching) if row >= 0]
-    tables = [problem.forms.coefficients, problem.contacts.forms[rows]]
-    return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
 
 
 def _quadrature(density: Callable[[Floats, Slab], Floats], slab: Slab, n: int) -> Floats:
