@@ -83,17 +83,13 @@ def moved(stack: HarmonicForm, ranges: Ranges, rng) -> Moved:
             ends.append(side and tuple((arb(x) - by) / stretch for x in side))
             stretched *= float(stretch)
         one, other = matrices
-        tables = [
-            one.T @ [[arb(x) for x in row] for row in own] @ other for own in stack.coefficients
-        ]
+        tables = [one.T @ (own.astype(object) * arb(1)) @ other for own in stack.coefficients]
         exact = np.array(tables, dtype=object).reshape(-1, 3, 3)
         doubles = exact.astype(float)
-        off = [
-            float(abs(x - arb(y)).upper()) for x, y in zip(exact.flat, doubles.flat, strict=True)
-        ]
+        off = abs(exact - doubles.astype(object)).astype(float) * (1 + 1e-9)
     sides = tuple(side and tuple(map(float, side)) for side in ends)
-    found, errors = HarmonicForm(doubles, stack.kinds), np.reshape(off, doubles.shape)
-    return Moved(found, errors, sides, exact, tuple(ends), 1 / stretched)
+    found = HarmonicForm(doubles, stack.kinds)
+    return Moved(found, off, sides, exact, tuple(ends), 1 / stretched)
 
 
 def random_form(seed: int, joints: int) -> HarmonicForm:
