@@ -277,3 +277,26 @@ def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
     assert repr(region) == "<Region: unresolved: a seeded fault>"
     with pytest.raises(UnresolvedError):
         _ = region.components
+
+
+# --- what a region does not see of itself yet -----------------------------------------------------
+
+
+@pytest.mark.xfail(strict=True, reason="components are not compared with those of the cells")
+def test_a_component_that_is_lost_is_named(region):
+    assert faults(replace(region, found=region.found[:-1]))
+
+
+@pytest.mark.xfail(strict=True, reason="a vertex is looked at where its arc starts only")
+def test_a_vertex_that_is_not_where_its_arc_starts_is_named(region):
+    first, *others = region.found[0].vertices
+    moved = replace(first, q=first.q + 1e-3)
+    assert faults(with_component(region, 0, vertices=(moved, *others)))
+
+
+@pytest.mark.xfail(strict=True, reason="along an arc its own boundary is asked only")
+@pytest.mark.parametrize("boundary", ["chute", "gripper, crate", "gripper, bottle"])
+def test_an_arc_that_runs_where_another_boundary_is_violated_is_named(boundary):
+    problem = clearance_problem(load_robot("pp-portal"))
+    without = solve(problem.without([problem.names.index(boundary)]))
+    assert faults(replace(without, problem=problem))
