@@ -80,6 +80,21 @@ def test_squares_that_touch_at_corners_are_two_wherever_they_lie(base) -> None:
     assert [turn for turn in np.arange(-60, 60) / 20 if not two_squares(turn, base)] == []
 
 
+INFINITE = pytest.mark.xfail(strict=True, reason="a root's error there is infinite, and its turns")
+
+
+@pytest.mark.parametrize("base", [0, pytest.param(1, marks=INFINITE)])
+def test_a_fibre_on_which_a_form_vanishes_but_for_rounding_between_limits(base) -> None:
+    """cos q1 + cos(q1 + q2 + a) > 0: zero for every q1 where q2 = pi - a."""
+    for a in np.linspace(0.05, 3.1, 12):
+        c, s = np.cos(a), np.sin(a)
+        term = {"10": 1, "11": c, "12": -s, "21": -s, "22": -c}
+        found = pieces(forms(RR, term), ((-1.5, 1.5), None), base)
+        assert_allclose(
+            sum(piece[0] for piece in found), 6 * pi - 4.5, rtol=1e-6
+        )  # a kink is just missed
+
+
 def two_squares(turn: float, base: int) -> bool:
     either = ({"11": np.cos(turn), "12": np.sin(turn)}, {"11": np.cos(turn), "21": np.sin(turn)})
     found = [pieces(forms(RR, term), ROUND, base) for term in either]
@@ -118,8 +133,14 @@ def test_two_curves_that_touch_like_parabolas_pinch_what_lies_between(name, base
         assert_allclose(sum(piece[0] for piece in found), area * meant.part, rtol=1e-6)
 
 
-@both_bases
-@pytest.mark.parametrize("gap", [1e-2, 1e-3])
+SADDLES = [(gap, base) for gap in (1e-2, 1e-3, 1e-6, 1e-16) for base in (0, 1)]
+NOT_CONVERGED = pytest.mark.xfail(strict=True, reason="768 nodes leave 2e-6 of such an area")
+
+
+@pytest.mark.parametrize(
+    ("gap", "base"),
+    [*SADDLES[:5], *(pytest.param(*case, marks=NOT_CONVERGED) for case in SADDLES[5:])],
+)
 def test_areas_beside_a_saddle_that_is_just_missed_are_exact(gap, base) -> None:
     """x^2 - y^2 > gap: from y to y the width nearly has a kink, and 48 nodes leave 1e-5."""
     region = solve(stated(forms(PP, {"20": 1, "02": -1, "00": -gap}), SQUARE), (0.9, 0), base)
