@@ -20,8 +20,11 @@ from qbound.region.loops import behind
 from qbound.region.problem import Problem
 from qbound.tolerances import QUADRATURE, TOUCH
 
-CELL_NODES: Final = (NODES[0], 32, *NODES[1:])
+CELL_NODES: Final = (NODES[0], 32, *NODES[1:4])
 """Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
+
+HALVINGS: Final = 40
+"""Times a cell may be halved for its moments."""
 
 ROOM: Final = 1.25
 """No fibre of a cell is taller than so many times the tallest one at its nodes.
@@ -32,6 +35,7 @@ were taller, a sample would have a little less of it.
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,25 +224,46 @@ def _cell_moments(cells: CellComplex) -> Floats:
     """Return area and first moments about base and lift of each cell, shape (k, 3).
 
     Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n raised for
-    those cells whose moments still change.
+    those cells whose moments still change; what has not settled then, as beside a saddle that is
+    just missed, is halved.
     """
-    left = np.arange(len(cells.slabs))
-    before, now = _moments(cells, left, CELL_NODES[:2])
-    result: Floats = now.copy()
+    every = np.arange(len(cells.slabs))
+    found = np.zeros((len(every), 3))
+    of, spans = every, cells.spans(every)
+    for _ in range(HALVINGS):
+        moments, settled = _settled_moments(cells, of, spans)
+        np.add.at(found, of[settled], moments[settled])
+        of, spans = of[~settled], spans[~settled]
+        if not len(of):
+            return found
+        middle = spans.mean(axis=1)
+        first, second = spans.copy(), spans.copy()
+        first[:, 1] = second[:, 0] = middle
+        of, spans = np.concatenate([of, of]), np.concatenate([first, second])
+    np.add.at(found, of, _moments(cells, of, spans, CELL_NODES[-1:])[0])
+    return found
+
+
+def _settled_moments(cells: CellComplex, of: Ints, spans: Floats) -> tuple[Floats, Bools]:
+    """Return the moments of parts of cells, and which of them no longer change."""
+    left = np.arange(len(of))
+    before, now = _moments(cells, of, spans, CELL_NODES[:2])
+    result, done = now.copy(), np.zeros(len(of), dtype=np.bool_)
     for n in CELL_NODES[2:]:
-        settled = np.abs(now - before) <= QUADRATURE * (1 + np.abs(now))
-        left = left[~settled.all(axis=1)]
+        same = (np.abs(now - before) <= QUADRATURE * (1 + np.abs(now))).all(axis=1)
+        done[left[same]] = True
+        left = left[~same]
         if not len(left):
             break
-        before, (now,) = result[left], _moments(cells, left, (n,))
+        before, (now,) = result[left], _moments(cells, of[left], spans[left], (n,))
         result[left] = now
-    return result
+    return result, done
 
 
-def _moments(cells: CellComplex, chosen: Ints, nodes: tuple[int, ...]) -> Floats:
-    """Return the moments of cells by rules of some numbers of nodes, shape (rules, k, 3)."""
+def _moments(cells: CellComplex, chosen: Ints, spans: Floats, nodes: tuple[int, ...]) -> Floats:
+    """Return the moments of cells between base values by rules of some nodes, (rules, k, 3)."""
     sines, weights = _smooth_rules(nodes)
-    start, end = cells.spans(chosen).T[:, :, None]
+    start, end = spans.T[:, :, None]
     half = (end - start) / 2
     t = (start + end) / 2 + half * sines
     low, high = cells.interval(chosen, t)

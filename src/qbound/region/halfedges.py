@@ -7,14 +7,13 @@ sides, back along the upper root. Of a component those are left that lie where n
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import accumulate, chain
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.region.cells import CellComplex
 from qbound.region.plane import ranges, runs, which
-from qbound.tolerances import TOUCH
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -85,8 +84,7 @@ def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[Ints]]:
     """Return of each component the closed loops that bound it, the component on the left.
 
     Rows of half-edges. Where two cells are joined over an element of a line, each other's half-edge
-    is the way past it: what is left are the loops. A hole shorter round than TOUCH is a point at
-    which a form touches zero: it bounds nothing.
+    is the way past it: what is left are the loops.
     """
     left = dict.fromkeys(_bounding(cells, edges).tolist())
     after = _next_bounding(edges).tolist()
@@ -119,35 +117,9 @@ def _next_bounding(edges: HalfEdges) -> Ints:
 
 
 def _by_component(cells: CellComplex, edges: HalfEdges, loops: list[list[int]]) -> list[list[Ints]]:
-    """Sort loops by component, and leave out holes that are points."""
-    parts = cells.parts
-    found: list[list[Ints]] = [[] for _ in parts.cells]
-    if not loops:
-        return found
-    rows = np.array(list(chain(*loops)))
-    first = np.array(list(accumulate(map(len, loops[:-1]), initial=0)))
-    long = np.add.reduceat(_lengths(cells, edges)[rows], first) > TOUCH
-    owner = parts.of_cells()[edges.cell[rows[first]]]
-    for k, loop, kept in zip(owner.tolist(), loops, long.tolist(), strict=True):
-        if kept or (_sizes(cells, parts.cells[k]) <= TOUCH).all():
-            found[k].append(np.array(loop))
+    """Sort loops by component."""
+    found: list[list[Ints]] = [[] for _ in cells.parts.cells]
+    owner = cells.parts.of_cells()
+    for loop in loops:
+        found[int(owner[edges.cell[loop[0]]])].append(np.array(loop))
     return found
-
-
-def _sizes(cells: CellComplex, chosen: list[int]) -> Floats:
-    """Width or height of cells, whichever is more, in the units of base and lift."""
-    widths = np.diff(cells.spans(chosen))[:, 0] / cells.plane.base_unit
-    heights = np.diff(cells.ends[chosen], axis=2).max(axis=(1, 2)) / cells.plane.lift_unit
-    return np.asarray(np.maximum(widths, heights))
-
-
-def _lengths(cells: CellComplex, edges: HalfEdges) -> Floats:
-    """Length of each half-edge between its ends, in the units of base and lift together."""
-    plane, found = cells.plane, cells.elements
-    start, end = cells.spans(edges.cell).T
-    side = (edges.kind == UPPER).astype(int)
-    rise = np.abs(cells.ends[edges.cell, 1, side] - cells.ends[edges.cell, 0, side])
-    lengths = (end - start) / plane.base_unit + rise / plane.lift_unit
-    across = which(edges.element >= 0)
-    lengths[across] = (found.high - found.low)[edges.element[across]] / plane.lift_unit
-    return np.asarray(lengths)

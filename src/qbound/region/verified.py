@@ -89,14 +89,18 @@ def _off(found: Found) -> Iterator[str]:
     q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), starts], axis=1)
     limited = np.array([arc.row < 0 for arc in arcs])
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
-    margins = np.abs(found.problem.evaluator.margins(q))
-    off = np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0]
+    margins, sizes = found.problem.evaluator.margins(q), found.problem.evaluator.sizes
+    off = np.abs(np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0])
     if limited.any():
         off[limited] = _to_limits(found, q[limited])
-    allowed = ON_ARC * np.where(limited, 1.0, found.problem.evaluator.sizes[rows])
+    allowed = ON_ARC * np.where(limited, 1.0, sizes[rows])
     for k, place in np.argwhere(off > allowed[:, None]).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k, place])
         yield f"an arc of {arcs[k].boundary} is {off[k, place]:.2g} off it at ({at})"
+    for k, place, column_number in np.argwhere(margins < -ON_ARC * sizes).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+        name = found.problem.evaluator.names[column_number]
+        yield f"an arc of {arcs[k].boundary} runs where {name} is violated, at ({at})"
 
 
 def _to_limits(found: Found, q: Floats) -> Floats:
@@ -258,8 +262,8 @@ def _loops(found: Found) -> list[str]:
     """
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
-    wrong = []
-    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float))
+    wrong = [] if (part >= 0).all() else ["a cell is in no component"]
+    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.components))
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
     np.subtract.at(count, part[elements.cell[0, joined]], 1)
