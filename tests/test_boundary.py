@@ -12,12 +12,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import minimize_scalar
 
 from lizarraga2025 import printed as paper
-from qbound import clearance, components, load_robot, pair_vector
+from qbound import clearance, load_robot
 from qbound.boundary.functions import (
     closest_approach,
+    components,
     geometric_vector,
     moving_joints,
     observer,
+    pair_vector,
     position,
     squared_distance,
 )

@@ -225,13 +225,11 @@ def test_components_come_by_falling_area_after_homes():
 
 
 def test_one_configuration_is_asked_for_where_one_is_meant():
-    region = find_region(MINERVA)
-    for door in (region.component_of, region.components_of):
-        with pytest.raises(ValueError, match="one configuration"):
-            door([[0.0, 0.0], [1.0, 1.0]])
-    for robot_door in (margins, violated):
-        with pytest.raises(ValueError, match=r"one configuration.*Region\.margins"):
-            robot_door(MINERVA, [[0.0, 0.0], [1.0, 1.0]])
+    many = [[0.0, 0.0], [1.0, 1.0]]
+    with pytest.raises(ValueError, match="one configuration"):
+        find_region(MINERVA).components_of(many)
+    with pytest.raises(ValueError, match=r"one configuration.*margins and is_feasible"):
+        violated(MINERVA, many)
 
 
 def test_a_fixed_pair_that_must_keep_nothing_blocks_nothing():

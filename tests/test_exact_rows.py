@@ -143,6 +143,14 @@ def turned(body, turn):
     return replace(body, shape=Disc(places[0], shape.radius))
 
 
+def shrunk(body, scale):
+    """The same body with all its lengths shorter, radii too."""
+    found = turned(body, np.eye(3) * scale)
+    if isinstance(found.shape, Polygon):
+        return found
+    return replace(found, shape=replace(found.shape, radius=found.shape.radius * scale))
+
+
 @pytest.mark.parametrize("seed", [0, 1, 2, 19])
 @pytest.mark.parametrize("angles", [(0.3, -0.8, 2.0), (2.5, 0.1, -1.0)])
 def test_a_tilted_plane_of_motion(seed, angles):
@@ -504,8 +512,8 @@ def test_side_conditions_of_tiny_arms_are_not_taken_for_rounding():
         joints=tuple(
             replace(j, origin=j.origin * scale, limits=j.limits) for j in robot.joints
         ),
-        bodies=tuple(turned(b, np.eye(3) * scale) for b in robot.bodies),
-        obstacles=tuple(turned(b, np.eye(3) * scale) for b in robot.obstacles),
+        bodies=tuple(shrunk(b, scale) for b in robot.bodies),
+        obstacles=tuple(shrunk(b, scale) for b in robot.obstacles),
         clearance=0.0,
         boundaries=(),
     )  # fmt: skip

@@ -19,12 +19,14 @@ from qbound.model.frames import cross
 from qbound.region import critical, pieces
 from qbound.region.arcs import NODES, legendre
 from qbound.region.components import CELL_NODES, _smooth_rules
-from qbound.region.critical import base_values
-from qbound.region.decomposition import critical_values
+from qbound.region.critical import Events, Finder, _Request
+from qbound.region.decomposition import critical_lines
 from qbound.region.pieces import find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, runs
+from qbound.region.precise import Precise
 from qbound.region.problem import clearance_problem
 from support.forms import ROUND, RR, forms
+from support.regions import problem_of
 
 
 @pytest.mark.parametrize("n", [1, 2, 5, *CELL_NODES[:4]])
@@ -91,15 +93,19 @@ def test_products_of_polynomials_few_or_many(count):
 
 def test_events_solved_together_are_those_solved_alone():
     rng = np.random.default_rng(1)
-    plane = Plane(forms(RR, {(0, 0): 1.0, (1, 1): 2.0}), ROUND, 0)
+    precise = Precise.of(problem_of(forms(RR, {"00": 1.0, "11": 2.0}), ROUND), 0)
+    finder, kinds = Finder(precise.plane, precise), ("constant", "second", "resultant circle")
     stacks = [rng.normal(size=(4, n)) + 1j * rng.normal(size=(4, n)) for n in (3, 5, 9)]
     stacks = [stack + np.conj(stack[:, ::-1]) for stack in stacks]  # with roots on the circle
-    events = [(np.arange(4) + 4 * k, stack) for k, stack in enumerate(stacks)]
-    together = base_values(plane, iter(events))
-    alone = [base_values(plane, iter([event])) for event in events]
-    rows, t = (np.concatenate(x) for x in zip(*alone, strict=True))
-    assert len(t) > 3
-    one, other = (np.array(sorted(zip(*x, strict=True))) for x in (together, (rows, t)))
+    requests = [
+        _Request(kind, np.arange(4), np.arange(4), stack, np.full(4, 1e-14))
+        for kind, stack in zip(kinds, stacks, strict=True)
+    ]
+    together = finder.events(requests)
+    alone = [finder.events([request]) for request in requests]
+    assert len(together) == sum(map(len, alone)) > 3
+    rows = (np.column_stack([e.what, e.t]) for e in (together, Events.joined(alone)))
+    one, other = (np.array(sorted(own.tolist())) for own in rows)
     assert_allclose(one, other, atol=1e-12)
 
 
@@ -116,11 +122,15 @@ def test_several_roots_over_the_same_values_are_those_one_by_one():
 
 
 def test_pieces_are_paired_the_same_in_blocks_of_any_size(monkeypatch):
-    problem = clearance_problem(load_robot("two-links-on-a-table"))
-    plane = Plane(problem.forms, problem.ranges, 0, problem.contacts)
-    whole = critical_values(plane, find_pieces(plane))
+    precise = Precise.of(clearance_problem(load_robot("two-links-on-a-table")), 0)
+
+    def critical_values():
+        finder = Finder(precise.plane, precise)
+        return critical_lines(precise.plane, find_pieces(precise.plane, finder), finder).t
+
+    whole = critical_values()
     monkeypatch.setattr(pieces, "PAIRS", 50)
-    assert (critical_values(plane, find_pieces(plane)) == whole).all()
+    assert (critical_values() == whole).all()
 
 
 @pytest.mark.parametrize("kind", ["revolute", "prismatic"])

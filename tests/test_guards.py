@@ -15,7 +15,7 @@ from qbound.forms.circle import circle_roots
 from qbound.measures.nearest import moments, nearest_boundary
 from qbound.region.region import Problem, clearance_problem, solve
 from support.forms import EDGES, LIMITS, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
-from support.regions import pieces
+from support.regions import moved_pieces, pieces
 from support.robots import drawn_robot, random_robot
 
 both_bases = pytest.mark.parametrize("base", [0, 1])
@@ -50,10 +50,11 @@ def test_edge_cases_keep_their_pieces_when_joints_are_zeroed_elsewhere(name, bas
     """Double roots and fibres on which a form vanishes are then so only but for rounding."""
     kinds, ranges, terms, expected = EDGES[name]
     for seed in range(6):
-        stack, sides, part = moved(forms(kinds, *terms), ranges, np.random.default_rng(seed))
-        found = pieces(stack, sides, base)
+        meant = moved(forms(kinds, *terms), ranges, np.random.default_rng(seed))
+        found = moved_pieces(meant, base)
         assert [piece[1:] for piece in found] == [piece[1:] for piece in expected], seed
-        assert_allclose([p[0] for p in found], [p[0] * part for p in expected], rtol=1e-7)
+        areas = [piece[0] * meant.part for piece in expected]
+        assert_allclose([piece[0] for piece in found], areas, rtol=1e-7)
 
 
 @both_bases
@@ -111,10 +112,10 @@ def test_two_curves_that_touch_like_parabolas_pinch_what_lies_between(name, base
     kinds, ranges, term, area = PINCHED[name]
     count = 2 if kinds == PP else 1  # round a joint both ends of the piece meet in the pinch
     for seed in range(8, 28):
-        stack, sides, part = moved(forms(kinds, term), ranges, np.random.default_rng(seed))
-        found = pieces(stack, sides, base)
+        meant = moved(forms(kinds, term), ranges, np.random.default_rng(seed))
+        found = moved_pieces(meant, base)
         assert [piece[1] for piece in found] == [(False, False)] * count, seed
-        assert_allclose(sum(piece[0] for piece in found), area * part, rtol=1e-6)
+        assert_allclose(sum(piece[0] for piece in found), area * meant.part, rtol=1e-6)
 
 
 @both_bases

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
-from qbound import circle_arc, circle_roots, clearance
+from qbound import clearance
+from qbound.forms.circle import circle_arc, circle_roots
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lizarraga2025 import closed_form
-from qbound import circle_roots, clearance, find_region, load_robot
+from qbound import clearance, find_region, load_robot
+from qbound.forms.circle import circle_roots
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule

@@ -16,7 +16,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from qbound import RobotFileError, clearance, components, load_robot, save_robot
+from qbound import RobotFileError, clearance, load_robot, save_robot
+from qbound.boundary.functions import components
 from qbound.geometry.convex import convex_parts, polygon_fault
 from qbound.measures import bodies
 from qbound.model.robot import BodyPair, Capsule, Disc, HalfSpace, Polygon
@@ -246,7 +247,7 @@ def test_pairs_that_collisions_make_come_after_the_files_boundaries_in_chain_ord
     assert {b.clearance for b in robot.used} == {0.01, 0.005}
     assert robot.boundary("link 1, post").bodies == ("link 1", "post")
     assert robot.body("crate") is robot.obstacles[1]
-    assert repr(robot).endswith("7 boundaries>")
+    assert repr(robot).endswith("2 boundaries and 5 pairs of bodies>")
 
 
 def test_without_collisions_only_what_boundaries_name_keeps_apart() -> None:

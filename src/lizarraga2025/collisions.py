@@ -12,7 +12,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound import clearance, components
+from qbound import clearance
+from qbound.boundary.functions import components
 from qbound.model.robot import HalfSpace, Pair, Robot
 
 Floats = NDArray[np.float64]

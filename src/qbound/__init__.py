@@ -4,6 +4,8 @@ A robot file becomes a robot, the robot gives boundary functions, and these are 
 `find_region` solves them for every component of the safe region. The method is that of
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
+What most users need is here, in `__all__`. All else is in the subpackages.
+
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
 `sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
@@ -14,12 +16,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from qbound.boundary.functions import clearance, components, pair_vector
-    from qbound.forms.circle import circle_arc, circle_roots
+    from qbound.arms.fibres import fibres
+    from qbound.arms.reach import reach
+    from qbound.arms.why import why
+    from qbound.boundary.functions import clearance
+    from qbound.boundary.margins import is_feasible, margins, violated
     from qbound.forms.harmonic import HarmonicForm
     from qbound.model.robot import Robot
     from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
-    from qbound.region import Region, find_region, find_slices, margins, violated
+    from qbound.region import Region, find_region, find_slices
+    from qbound.sampling import keeps_clear, sample
 
     __version__: str
 
@@ -28,27 +34,33 @@ __all__ = [
     "Region",
     "Robot",
     "RobotFileError",
-    "circle_arc",
-    "circle_roots",
     "clearance",
-    "components",
+    "fibres",
     "find_region",
     "find_slices",
+    "is_feasible",
+    "keeps_clear",
     "load_robot",
     "margins",
     "packaged_robots",
-    "pair_vector",
+    "reach",
+    "sample",
     "save_robot",
     "violated",
+    "why",
 ]
 
 _PLACES = {
-    "boundary.functions": ("clearance", "components", "pair_vector"),
-    "forms.circle": ("circle_arc", "circle_roots"),
+    "arms.fibres": ("fibres",),
+    "arms.reach": ("reach",),
+    "arms.why": ("why",),
+    "boundary.functions": ("clearance",),
+    "boundary.margins": ("is_feasible", "margins", "violated"),
     "forms.harmonic": ("HarmonicForm",),
     "model.robot": ("Robot",),
     "model.robotfile": ("RobotFileError", "load_robot", "packaged_robots", "save_robot"),
-    "region": ("Region", "find_region", "find_slices", "margins", "violated"),
+    "region": ("Region", "find_region", "find_slices"),
+    "sampling": ("keeps_clear", "sample"),
     "version": ("__version__",),
 }
 """Where each name comes from when it is first asked for: a command loads only what it uses."""
@@ -81,4 +93,4 @@ if not TYPE_CHECKING:  # to a type checker an unknown name stays one
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "__version__", *_PARTS})
+    return [*__all__, "__version__"]

@@ -61,7 +61,7 @@ NUMBERS = 2**24
 def sample(
     robot: Robot,
     n: int,
-    predicate: Predicate,
+    predicate: Predicate | None = None,
     *,
     seed: int,
     limits: ArrayLike | None = None,
@@ -71,8 +71,9 @@ def sample(
 
     Parameters
     ----------
-    predicate : callable
-        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision.
+    predicate : callable, optional
+        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision;
+        default: `keeps_clear`.
     seed : int
         Of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
@@ -83,12 +84,13 @@ def sample(
     Examples
     --------
     >>> from qbound import load_robot
-    >>> drawn = sample(load_robot("minervabot-v2"), 1000, keeps_clear, seed=1)
+    >>> drawn = sample(load_robot("minervabot-v2"), 1000, seed=1)
     >>> drawn.fraction_free, round(drawn.standard_error, 3)
     (0.667, 0.015)
 
     The region's exact part of the square is 0.6546; a sample knows it to its standard error only.
     """
+    predicate = keeps_clear if predicate is None else predicate
     low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
     tool, free = np.empty((n, 3)), np.empty(n, dtype=bool)

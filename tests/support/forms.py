@@ -1,8 +1,12 @@
 """Forms of two joints, written as small tables, and the edge cases with what is right for each."""
 
+from dataclasses import dataclass
 from math import acos, log, pi, sqrt
+from typing import Any
 
 import numpy as np
+from flint import arb, ctx
+from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from qbound.forms.harmonic import HarmonicForm, Kind
@@ -29,26 +33,63 @@ def forms(kinds, *terms) -> HarmonicForm:
     return HarmonicForm(table, kinds)
 
 
-def moved(stack: HarmonicForm, ranges: Ranges, rng) -> tuple[HarmonicForm, Ranges, float]:
-    """The same forms with joints zeroed elsewhere and slides in another unit; areas shrink by it.
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Forms with joints zeroed elsewhere and slides in another unit: nothing is whole any more.
 
-    What was q is stretch q' + by: nothing in it is a whole number any more.
+    Attributes
+    ----------
+    forms : HarmonicForm
+        The nearest doubles.
+    errors : ndarray, shape (m, 3, 3)
+        How far these are off.
+    ranges : tuple of two (low, high) or None
+    exact : ndarray of arb, shape (m, 3, 3)
+    ends : tuple of two (arb, arb) or None
+        The ranges, exact.
+    part : float
+        Areas shrink by it.
     """
-    matrices, sides, stretched = [], [], 1.0
-    for kind, side in zip(stack.kinds, ranges, strict=True):
-        by = rng.uniform(-3, 3)
-        if kind == "revolute":
-            stretch, (c, s) = 1.0, (np.cos(by), np.sin(by))
-            matrices.append(np.array([[1, 0, 0], [0, c, -s], [0, s, c]]))
-        else:
-            stretch = rng.uniform(0.3, 3)
-            matrices.append(
-                np.array([[1, 0, 0], [by, stretch, 0], [by**2, 2 * by * stretch, stretch**2]])
-            )
-        sides.append(side and tuple((x - by) / stretch for x in side))
-        stretched *= stretch
-    table = np.einsum("mij,ia,jb->mab", stack.coefficients, *matrices)
-    return HarmonicForm(table, stack.kinds), tuple(sides), 1 / stretched
+
+    forms: HarmonicForm
+    errors: NDArray[np.float64]
+    ranges: Ranges
+    exact: NDArray[Any]
+    ends: tuple[Any, Any]
+    part: float
+
+    def form(self, row: int) -> NDArray[Any]:
+        """Exact coefficients, as the balls ask for them."""
+        return self.exact[row]
+
+    def range(self, joint: int) -> Any:
+        """Exact ends of the range of a joint, as the balls ask for them."""
+        return self.ends[joint]
+
+
+def moved(stack: HarmonicForm, ranges: Ranges, rng) -> Moved:
+    """What was q is stretch q' + by, in 1,280 bits."""
+    matrices, ends, stretched = [], [], 1.0
+    with ctx.workprec(1280):
+        for kind, side in zip(stack.kinds, ranges, strict=True):
+            by, stretch = arb(rng.uniform(-3, 3)), arb(1)
+            if kind == "revolute":
+                c, s = by.cos(), by.sin()
+                matrices.append(np.array([[1, 0, 0], [0, c, -s], [0, s, c]]))
+            else:
+                stretch = arb(rng.uniform(0.3, 3))
+                rows = [[1, 0, 0], [by, stretch, 0], [by**2, 2 * by * stretch, stretch**2]]
+                matrices.append(np.array(rows))
+            ends.append(side and tuple((arb(x) - by) / stretch for x in side))
+            stretched *= float(stretch)
+        one, other = matrices
+        tables = [one.T @ (own.astype(object) * arb(1)) @ other for own in stack.coefficients]
+        exact = np.array(tables, dtype=object).reshape(-1, 3, 3)
+        doubles = exact.astype(float)
+        off = abs(exact - doubles.astype(object)).astype(float) * (1 + 1e-9)
+    sides = tuple(side and tuple(map(float, side)) for side in ends)
+    found = HarmonicForm(doubles, stack.kinds)
+    return Moved(found, off, sides, exact, tuple(ends), 1 / stretched)
 
 
 def random_form(seed: int, joints: int) -> HarmonicForm:

@@ -14,7 +14,8 @@ from qbound.region.cells import CellComplex
 from qbound.region.decomposition import decompose
 from qbound.region.halfedges import find_loops, half_edges
 from qbound.region.plane import Plane
-from support.forms import Piece, Ranges
+from qbound.region.precise import Precise
+from support.forms import LIMITS, Moved, Piece, Ranges
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
 GRID = 160
@@ -184,9 +185,25 @@ def check_moments(region: Region, sure: np.ndarray, doubt: float, h, q) -> None:
 # --- pieces, and either joint as the base --------------------------------------------------------
 
 
+def problem_of(stack: HarmonicForm, ranges: Ranges) -> Problem:
+    """The problem of forms that stand for themselves: their doubles are exact."""
+    return Problem(stack, tuple(f"f{k}" for k in range(len(stack.coefficients))), ranges, LIMITS)
+
+
 def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
-    """Area, wraps (in the order of the joints) and number of loops, largest area first."""
-    cells = CellComplex(decompose(Plane(stack, ranges, base)))
+    """Area, wraps and number of loops of what forms leave free, largest area first."""
+    return pieces_of(Precise.of(problem_of(stack, ranges), base))
+
+
+def moved_pieces(moved: Moved, base: int) -> list[Piece]:
+    """The same of forms whose doubles are only near what is meant."""
+    plane = Plane(moved.forms, moved.ranges, base, errors=moved.errors)
+    return pieces_of(Precise(plane, moved))
+
+
+def pieces_of(precise: Precise) -> list[Piece]:
+    """The same of a plane; wraps are in the order of the joints."""
+    cells, base = CellComplex(decompose(precise)), precise.plane.base
     found = []
     rings = find_loops(cells, half_edges(cells))
     for own, wraps, loops in zip(cells.parts.cells, cells.parts.wraps, rings, strict=True):
@@ -230,5 +247,5 @@ def check_roles(region: Region) -> None:
     """Either joint may be the base."""
     problem = region.problem
     for base in (0, 1):
-        found = pieces(problem.forms, problem.ranges, base)
+        found = pieces_of(Precise.of(problem, base))
         same_pieces([row for row in found if row[0] > SMALL], summary(region))

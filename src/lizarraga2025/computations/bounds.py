@@ -15,9 +15,10 @@ from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
-from qbound import HarmonicForm, circle_roots, components, pair_vector
-from qbound.boundary.functions import closest_approach
+from qbound import HarmonicForm
+from qbound.boundary.functions import closest_approach, components, pair_vector
 from qbound.forms.angles import TURN, nearest_turn
+from qbound.forms.circle import circle_roots
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.symbols import joint_symbols, with_symbols
 

@@ -27,7 +27,7 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import pair_vector
+from qbound.boundary.functions import pair_vector
 from qbound.forms.angles import TURN
 from qbound.geometry import polygon
 from qbound.measures import scaling

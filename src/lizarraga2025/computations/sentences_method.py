@@ -38,7 +38,8 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound import components, find_region
+from qbound import find_region
+from qbound.boundary.functions import components
 from qbound.geometry import polygon
 from qbound.model.robot import HalfSpace, Pair
 from qbound.symbols import joint_symbols

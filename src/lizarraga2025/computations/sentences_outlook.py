@@ -25,8 +25,8 @@ from lizarraga2025.evidence.tool_paths import (
     structured_neighbours,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound import clearance, components
-from qbound.boundary.functions import closest_approach, position
+from qbound import clearance
+from qbound.boundary.functions import closest_approach, components, position
 from qbound.region import clearance_problem, solve
 from qbound.symbols import joint_symbols, with_symbols
 

@@ -39,8 +39,9 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import circle_roots, clearance, find_region, pair_vector
-from qbound.boundary.functions import closest_approach
+from qbound import clearance, find_region
+from qbound.boundary.functions import closest_approach, pair_vector
+from qbound.forms.circle import circle_roots
 from qbound.geometry import polygon
 from qbound.geometry.polylines import self_crossings
 from qbound.measures import bodies, scaling

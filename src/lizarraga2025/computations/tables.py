@@ -49,9 +49,10 @@ from lizarraga2025.verdicts import (
     judge,
     undetermined,
 )
-from qbound import HarmonicForm, circle_roots, clearance, components, pair_vector
-from qbound.boundary.functions import closest_approach, position
+from qbound import HarmonicForm, clearance
+from qbound.boundary.functions import closest_approach, components, pair_vector, position
 from qbound.forms.angles import TURN, first_from
+from qbound.forms.circle import circle_roots
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols

@@ -21,8 +21,7 @@ from lizarraga2025.evidence.proofs import (
 )
 from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound import components, pair_vector
-from qbound.boundary.functions import closest_approach
+from qbound.boundary.functions import closest_approach, components, pair_vector
 from qbound.model.frames import Frame, Frames
 from qbound.symbols import joint_symbols
 

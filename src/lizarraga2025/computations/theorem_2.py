@@ -13,8 +13,8 @@ from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
-from qbound import circle_arc, circle_roots, pair_vector
-from qbound.forms.circle import ALL
+from qbound.boundary.functions import pair_vector
+from qbound.forms.circle import ALL, circle_arc, circle_roots
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
 

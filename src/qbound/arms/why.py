@@ -23,7 +23,7 @@ from qbound.arms.separations import Block, JointTravel, Separation, separation, 
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot, robot_text
+from qbound.model.robotfile import load_robot, robot_text, written_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify, no_certificate
@@ -132,7 +132,7 @@ class Why:
 
 
 def why(
-    source: str | Path,
+    source: str | Path | Robot,
     start: ArrayLike,
     goal: ArrayLike,
     *,
@@ -144,8 +144,8 @@ def why(
 
     Parameters
     ----------
-    source : str or Path
-        A robot file, or the name of a packaged robot.
+    source : str, Path or Robot
+        A robot file, the name of a packaged robot, or a robot.
     start, goal : array_like, shape (n,)
         rad or length.
     seed : int
@@ -166,7 +166,9 @@ def why(
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
     and a paving that separates with one of "no path". An arm that certificates cannot hold has none
-    (`Why.no_certificate` says why): its paths are found by pavings alone.
+    (`Why.no_certificate` says why): its paths are found by pavings alone. Of a robot that was
+    changed, or not read from a robot file, the certificate is about the file that `save_robot`
+    writes.
 
     Examples
     --------
@@ -174,9 +176,10 @@ def why(
     >>> found.answer, found.path.shape, found.certificate.verdict.value
     ('connected', (2, 2), 'proved')
 
-    Of this robot, too, a joint has ranges that nothing passes:
+    Of this robot, too, a joint has ranges that nothing passes. A robot may be given as it is:
 
-    >>> found = why("minervabot-v2", [0.0, 0.0], [0.0, 2.3])
+    >>> from qbound import load_robot
+    >>> found = why(load_robot("minervabot-v2"), [0.0, 0.0], [0.0, 2.3])
     >>> found.answer, found.separation.travel.name
     ('separated', 'q2')
 
@@ -186,8 +189,11 @@ def why(
     >>> found.answer, found.separation, found.certificate.verdict.value
     ('separated', None, 'proved')
     """
-    text, _ = robot_text(source)
-    robot = load_robot(source)
+    if isinstance(source, Robot):
+        text, robot = written_text(source), source
+    else:
+        text, _ = robot_text(source)
+        robot = load_robot(source)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
@@ -209,7 +215,7 @@ def why(
 class _Asked:
     """What is asked, and what is blocked."""
 
-    source: str | Path
+    source: str | Path | Robot
     text: str
     robot: Robot
     ends: Floats

@@ -8,7 +8,8 @@
 - `evaluator`: all of them as one table, for one configuration or for millions; `monomials`: what
   its columns stand for; `screen`: most signs in single precision, with a bound of its error, by
   the rows that can decide (`binding`);
-- `lengths`: from the value of a form to a margin;
+- `lengths`: from the value of a form to a margin; `margins`: those of a robot, and whether it is
+  feasible;
 - `compiled`, `machine`: the same answers in machine code, for hundreds of millions;
 - `chain`, `balls`: the same for an arm of many joints, by places and distances in place of forms.
 """

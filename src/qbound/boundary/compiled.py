@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.machine import SINES, is_programmable, machine, program
 from qbound.model.robot import Robot, refuse_no_robot
+from qbound.model.values import real_numbers
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -83,7 +84,7 @@ def compiled_feasible(
             table.completed(q, safe, near[:count])
 
     def feasible(q: ArrayLike) -> Bools:
-        q = np.asarray(q, float, order="C")
+        q = np.ascontiguousarray(real_numbers(q))
         if q.shape == one and table.bodies is None:
             found = run_one(q, plan, numbers)
             return table.feasible(q) if found < 0 else ANSWERS[found]

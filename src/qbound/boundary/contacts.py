@@ -280,7 +280,7 @@ class Features:
     relative: Floats
     side_relative: Floats
     curves: tuple[Hashable, ...]
-    keys: tuple[tuple[Hashable, ...], ...]
+    keys: tuple[tuple[tuple[Any, ...], ...], ...]
     ends: tuple[tuple[Hashable, ...], ...]
     discs: Floats | None = None
 
@@ -340,7 +340,7 @@ def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
     squared = moved.squared - 2 * np.einsum("a,aij->ij", p, ahead)
     squared = squared + 2 * np.einsum("a,aij->ij", u, moved.back)
     squared[0, 0] += p @ p + u @ u - (one_reach + other_reach + keep) ** 2
-    return squared
+    return np.asarray(squared)
 
 
 def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any]:
@@ -585,23 +585,23 @@ class Contacts:
 
 
 def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts:
-    """Gather the features of pairs of parts, each with its boundary and the depths of its frames."""
+    """Gather the features of pairs of parts, each with its boundary and its frames' depths."""
     if not found:
         return NO_CONTACTS
+    every = [rows for _, rows, _ in found]
     frames = [depths for _, _, depths in found]
-    found = [item[:2] for item in found]
-    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for _, rows in found)])
+    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for rows in every)])
     numbers: dict[Hashable, int] = {}
     curves = [
         numbers.setdefault((at, curve), len(numbers))
-        for at, (_, rows) in zip(frames, found, strict=True)
+        for at, rows in zip(frames, every, strict=True)
         for curve in rows.curves
     ]
     keys = np.full((len(curves), SIDES), -1)
     ends = np.full((len(curves), 2), -1)
     names: dict[Hashable, int] = {}
     k = 0
-    for at, (_, rows) in zip(frames, found, strict=True):
+    for at, rows in zip(frames, every, strict=True):
         for own, pairs in zip(rows.keys, rows.ends, strict=True):
             for side, key in enumerate(own):
                 number = names.setdefault((at, key), len(names))
@@ -610,22 +610,22 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
                 ends[k, end] = numbers.setdefault((at, name), len(numbers))
             k += 1
     made = Contacts(
-        np.concatenate([rows.forms for _, rows in found]),
-        np.concatenate([rows.sides for _, rows in found]),
-        np.concatenate([rows.corners for _, rows in found]),
-        np.concatenate([rows.clause + n for (_, rows), n in zip(found, clauses, strict=False)]),
-        tuple(name for _, rows in found for name in rows.names),
-        np.concatenate([np.full(len(rows.forms), k) for k, (_, rows) in enumerate(found)]),
-        np.concatenate([rows.touching for _, rows in found]),
-        tuple(boundary for boundary, _ in found),
-        np.concatenate([rows.relative for _, rows in found]),
-        np.concatenate([rows.side_relative for _, rows in found]),
-        np.concatenate([np.full(len(rows.forms), rows.sizes.length) for _, rows in found]),
-        frozenset().union(*(rows.sizes.slides for _, rows in found)),
+        np.concatenate([rows.forms for rows in every]),
+        np.concatenate([rows.sides for rows in every]),
+        np.concatenate([rows.corners for rows in every]),
+        np.concatenate([rows.clause + n for rows, n in zip(every, clauses, strict=False)]),
+        tuple(name for rows in every for name in rows.names),
+        np.concatenate([np.full(len(rows.forms), k) for k, rows in enumerate(every)]),
+        np.concatenate([rows.touching for rows in every]),
+        tuple(boundary for boundary, _, _ in found),
+        np.concatenate([rows.relative for rows in every]),
+        np.concatenate([rows.side_relative for rows in every]),
+        np.concatenate([np.full(len(rows.forms), rows.sizes.length) for rows in every]),
+        frozenset().union(*(rows.sizes.slides for rows in every)),
         np.array(curves),
         keys,
         ends,
-        np.array([_NEVER if rows.discs is None else rows.discs for _, rows in found]),
+        np.array([_NEVER if rows.discs is None else rows.discs for rows in every]),
     )
     # What terms that cancel leave is rounding.
     forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)

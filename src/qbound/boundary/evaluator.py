@@ -25,6 +25,7 @@ from qbound.boundary.screen import LEAST, SINES, Screen, reaches, screen
 from qbound.boundary.separation import Separation
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
+from qbound.model.values import real_numbers
 from qbound.tolerances import ROUNDING
 
 Floats = NDArray[np.float64]
@@ -88,7 +89,7 @@ class Evaluator:
         Raises
         ------
         ValueError
-            If the last axis has not one value a joint, or one is NaN or infinite.
+            If the last axis has not one value a joint, or one is NaN, infinite or complex.
 
         Examples
         --------
@@ -116,7 +117,7 @@ class Evaluator:
 
     def feasible(self, q: ArrayLike) -> Bools:
         """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
-        q = np.asarray(q, dtype=float)
+        q = real_numbers(q)
         if q.ndim == 1 and self.bodies is None:
             return self._one_feasible(self.shaped(q))
         flat = self.shaped(q).reshape(-1, self.joints)
@@ -218,7 +219,7 @@ class Evaluator:
         return q
 
     def _checked(self, q: ArrayLike) -> Floats:
-        q = self.shaped(np.asarray(q, dtype=float))
+        q = self.shaped(real_numbers(q))
         finite = all(map(math.isfinite, q.tolist())) if q.ndim == 1 else np.isfinite(q).all()
         if not finite:
             raise ValueError("a joint value is NaN or infinite")

@@ -89,7 +89,8 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
 
     Examples
     --------
-    >>> from qbound import load_robot, pair_vector
+    >>> from qbound import load_robot
+    >>> from qbound.boundary.functions import pair_vector
     >>> robot = load_robot("minervabot-v2")
     >>> vector = pair_vector(robot, robot.boundary("B1"))
     >>> vector([0.0, 0.0]).round(3).tolist()
@@ -133,7 +134,8 @@ def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
 
     Examples
     --------
-    >>> from qbound import components, load_robot
+    >>> from qbound import load_robot
+    >>> from qbound.boundary.functions import components
     >>> robot = load_robot("minervabot-v2")
     >>> components(robot, robot.boundary("B7"))([0.0, 0.0]).round(3).tolist()
     [0.0, 0.0, 37.16]
@@ -291,7 +293,8 @@ def _(boundary: HalfSpace, robot: Robot) -> HarmonicForm:
 
 
 def _of_bodies(boundary: Boundary) -> str:
-    return f"{printable(boundary.name)} is about whole bodies: it has no single boundary function"
+    said = f"{printable(boundary.name)} is about whole bodies: it has no single boundary function"
+    return f"{said}; margins(robot, q) has its signed distance"
 
 
 # --- a point carried along the chain --------------------------------------------------------------

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from qbound.arms.reports import by_links
+from qbound.boundary.margins import violated
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
 from qbound.model.robotfile import RobotFileError, refuse_replacing
-from qbound.region.region import violated
 from qbound.units import parse_length
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
 from qbound.urdf.robot_text import robot_text

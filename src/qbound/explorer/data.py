@@ -300,7 +300,7 @@ def _row(region: Region, row: Slices, views: Sequence[Data]) -> Data:
     own, problems = region.problem, [each.problem for each in row.regions]
     others = {j: value for j, value in own.held.items() if j != row.along}
     alike = all({**problem.held, **others} == problem.held for problem in problems)
-    if row.robot is not region.robot or problems[0].joints != own.joints or not alike:
+    if row.robot != region.robot or problems[0].joints != own.joints or not alike:
         raise ValueError("the row of slices is of other joints, or of other held values")
     if own.held[row.along] not in row.values.tolist():
         raise ValueError("the region is none of the slices of its row")

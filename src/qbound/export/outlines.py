@@ -111,12 +111,13 @@ def outlines_npz(drawn: Outlines) -> bytes:
     )
 
 
-def outlines_shapely(drawn: Outlines) -> MultiPolygon:
-    """Return the polygons of all components as one shapely geometry."""
+def outlines_shapely(drawn: Outlines, component: int | None = None) -> MultiPolygon:
+    """Return the polygons of all components, or of one of them, as one shapely geometry."""
     require("shapely", "a region as a shapely geometry")
     from shapely import MultiPolygon, Polygon
 
-    pieces = (piece for pieces in drawn.pieces for piece in pieces)
+    chosen = drawn.pieces if component is None else (drawn.pieces[component],)
+    pieces = (piece for pieces in chosen for piece in pieces)
     return MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
 
 

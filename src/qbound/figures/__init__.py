@@ -16,7 +16,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import count, pairwise, product
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,7 +30,7 @@ from qbound.model.plane import COORDINATES
 from qbound.model.robot import Joint, Robot
 from qbound.paths.traversal import Traversal
 from qbound.printable import printable
-from qbound.region import Region
+from qbound.region import Component, Region
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -508,17 +508,41 @@ def _halo(text: Any) -> Any:
     return text
 
 
-def draw_components(ax: Axes, region: Region) -> list[Artist]:
-    """Fill every component, home's in blue, others in grey, with its copies a turn away."""
+def draw_components(
+    ax: Axes,
+    region: Region,
+    chosen: Iterable[Component] | None = None,
+    unit: Literal["deg", "rad"] = "deg",
+    **style: Any,
+) -> list[Artist]:
+    """Fill every component, home's in blue, others in grey, with its copies a turn away.
+
+    Parameters
+    ----------
+    chosen : iterable of Component, optional
+        Some of the region's; default: all.
+    unit : {"deg", "rad"}
+        Of angles.
+    **style
+        What matplotlib's patches take; outlines have its edge colour and line width.
+    """
+    from matplotlib.cbook import normalize_kwargs
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
     artists: list[Artist] = []
-    scale = joint_scales(region)
+    scale = joint_scales(region, unit)
+    own = normalize_kwargs(style, PathPatch)
+    if (both := own.pop("color", None)) is not None:
+        own = {"facecolor": both, "edgecolor": both} | own
+    label = own.pop("label", None)
     turns = [[0.0] if r else [-TURN, 0.0, TURN] for r in region.problem.ranges]
     rounds = np.array([len(shifts) > 1 for shifts in turns])
-    for component in reversed(region.components):  # home's last, over the edges of the others
+    components = region.components if chosen is None else chosen
+    for component in reversed([*components]):  # home's last, over the edges of the others
         colour = FEASIBLE if component.contains_home else "#777777"
+        inside_look = {"facecolor": colour, "alpha": 0.25} | own | {"linewidth": 0}
+        line = {"color": own.get("edgecolor", colour), "lw": own.get("linewidth", 1.5)}
         pieces, _ = polygons(component, DRAWN)
         rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
         rings = [ring - _turns_off(rings[0], rounds) for ring in rings]
@@ -527,9 +551,11 @@ def draw_components(ax: Axes, region: Region) -> list[Artist]:
         for shift in (np.array(s) for s in product(*turns)):
             closed = ((np.append(ring, ring[:1], axis=0) + shift) * scale for ring in rings)
             inside = Path.make_compound_path(*(Path(ring, closed=True) for ring in closed))
-            artists.append(ax.add_patch(PathPatch(inside, fc=colour, alpha=0.25, lw=0)))
+            artists.append(ax.add_patch(PathPatch(inside, **inside_look)))
             for path in lines:
-                artists += ax.plot(*((path + shift) * scale).T, color=colour, lw=1.5)
+                artists += ax.plot(*((path + shift) * scale).T, **line)
+    if artists and label is not None:
+        artists[0].set_label(label)  # once in a legend, not once a component
     return artists
 
 
@@ -539,7 +565,9 @@ def _turns_off(points: Floats, rounds: NDArray[np.bool_]) -> Floats:
     return np.where(rounds, TURN * whole_turns(middle), 0.0)
 
 
-def joint_scales(region: Region) -> Floats:
-    """Return degrees a radian for a revolute joint, 1 for a prismatic one, shape (2,)."""
-    kinds = region.problem.forms.kinds
-    return np.array([np.degrees(1.0) if kind == "revolute" else 1.0 for kind in kinds])
+def joint_scales(region: Region, unit: Literal["deg", "rad"] = "deg") -> Floats:
+    """Return degrees a radian for a joint that turns, if asked for; else 1. Shape (2,)."""
+    if unit not in ("deg", "rad"):
+        raise ValueError(f"no unit {unit!r} of angles; there are deg and rad")
+    turns = [kind == "revolute" and unit == "deg" for kind in region.problem.forms.kinds]
+    return np.where(turns, np.degrees(1.0), 1.0)

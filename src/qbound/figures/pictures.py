@@ -94,7 +94,7 @@ def traversal_picture(
     def draw(axes: Sequence[Axes]) -> None:
         joints, space = axes
         drawn = path.q[:, list(region.problem.joints)] * figures.joint_scales(region)
-        _joint_panel(joints, region, None, path.q)
+        _joint_panel(joints, region, None, path.q[:, list(region.problem.joints)])
         figures.draw_path(joints, drawn, path.stops, labels=labels, distance=-13, color=INK)
         figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
@@ -126,16 +126,23 @@ def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> b
     return picture(1, draw, kind, size=(6.4, 5.6))
 
 
-def plot_region(region: Region, ax: Axes | None = None) -> Axes:
-    """Draw a robot's region with home marked, on axes of one's own or in a figure of its own."""
+def plot_region(
+    region: Region,
+    ax: Axes | None = None,
+    component: int | None = None,
+    unit: Literal["deg", "rad"] = "deg",
+    **style: Any,
+) -> Axes:
+    """Draw a region, a robot's with home marked; arguments as `qbound.Region.plot` has them."""
     require("matplotlib")
     if ax is None:
         from matplotlib import pyplot
 
         ax = pyplot.subplots()[1]
-    robot, problem = region.robot, region.problem
-    home = robot.with_held(robot.home[list(problem.joints)], problem.held)
-    _pose_panel(ax, region, next(iter(region.components), None), home)
+    chosen = region.components if component is None else (region.components[component],)
+    home = np.empty((0, 2)) if region.problem.home is None else region.problem.home[None]
+    _joint_panel(ax, region, next(iter(chosen), None), home, chosen, unit, **style)
+    _mark(ax, home * figures.joint_scales(region, unit))
     return ax
 
 
@@ -150,10 +157,9 @@ def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
 
     def draw(axes: Sequence[Axes]) -> None:
         for k, (ax, region) in enumerate(zip(axes, slices.regions, strict=True)):
-            q = slices.robot.home[None][: slices.holds_home(k)]
-            _joint_panel(ax, region, None, q)
-            place = q[:, list(region.problem.joints)] * figures.joint_scales(region)
-            ax.plot(*place.T, "P", color=INK, ms=9, mec="white", zorder=7)
+            home = slices.robot.home[None, list(region.problem.joints)][: slices.holds_home(k)]
+            _joint_panel(ax, region, None, home)
+            _mark(ax, home * figures.joint_scales(region))
             ax.set_title(_slice_title(slices, k))
             for axis, turns in zip((ax.xaxis, ax.yaxis), region.problem.forms.kinds, strict=True):
                 if turns == "revolute":
@@ -205,35 +211,48 @@ def picture(
 
 def _pose_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats) -> None:
     """Draw all components and mark one configuration."""
-    _joint_panel(ax, region, numbered, q[None])
-    place = q[list(region.problem.joints)] * figures.joint_scales(region)
-    ax.plot(*place, "P", color=INK, ms=9, mec="white", zorder=7)
+    place = q[None, list(region.problem.joints)]
+    _joint_panel(ax, region, numbered, place)
+    _mark(ax, place * figures.joint_scales(region))
 
 
-def _joint_panel(ax: Axes, region: Region, numbered: Component | None, q: Floats) -> None:
-    """Draw all components over one turn or the limits, and further where `q` goes."""
-    robot, chosen = region.robot, region.problem.joints
-    scales, ranges = figures.joint_scales(region), region.problem.ranges
-    figures.draw_components(ax, region)
+def _mark(ax: Axes, places: Floats) -> None:
+    """Mark configurations, shape (k, 2), in the axes' units."""
+    ax.plot(*places.T, "P", color=INK, ms=9, mec="white", zorder=7)
+
+
+def _joint_panel(
+    ax: Axes,
+    region: Region,
+    numbered: Component | None,
+    q: Floats,
+    chosen: Sequence[Component] | None = None,
+    unit: Literal["deg", "rad"] = "deg",
+    **style: Any,
+) -> None:
+    """Draw components over one turn or the limits, and further where `q`, shape (k, 2), goes."""
+    problem = region.problem
+    scales, ranges = figures.joint_scales(region, unit), problem.ranges
+    figures.draw_components(ax, region, chosen, unit, **style)
     if not region.components:
         reason = figures.as_text(", ".join(region.empty_because))
         text = f"No configuration is feasible:\nno room is left by {reason}"
         ax.text(0.5, 0.5, text, transform=ax.transAxes, ha="center", va="center", wrap=True)
     shown = [np.array(ends or (-np.pi, np.pi)) for ends in ranges]
-    for axis, j, ends, scale in zip(("x", "y"), chosen, shown, scales, strict=True):
-        joint = robot.joints[j]
-        values = np.concatenate([ends, q[:, j]]) * scale
+    for k, (axis, ends) in enumerate(zip(("x", "y"), shown, strict=True)):
+        values = np.concatenate([ends, q[:, k]]) * scales[k]
         room = 0.03 * np.ptp(values)
-        if joint.turns:
+        in_degrees = unit == "deg" and problem.forms.kinds[k] == "revolute"
+        if in_degrees:
             getattr(ax, f"{axis}axis").set_major_locator(figures.every(np.ptp(values)))
-        unit = joint.unit(robot.length_unit, "°")
+        name, written = problem.joint_names[k], "°" if in_degrees else problem.units[k]
         ax.set(
             **{
                 f"{axis}lim": (values.min() - room, values.max() + room),
-                f"{axis}label": f"{figures.symbol(joint.name)} / {unit}",
+                f"{axis}label": f"{figures.symbol(name)} / {written}",
             }
         )
-    if len({robot.joints[j].kind for j in chosen}) == 1:
+    if len(set(problem.forms.kinds)) == 1:
         ax.set_aspect("equal")
     if numbered is not None and numbered.vertices:
         corners = np.array([vertex.q for vertex in numbered.vertices])

@@ -59,7 +59,7 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
     Raises
     ------
     ValueError
-        If a coefficient is NaN or infinite.
+        If a coefficient is NaN, infinite or complex.
 
     Notes
     -----
@@ -68,7 +68,7 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 
     Examples
     --------
-    >>> from qbound import circle_roots
+    >>> from qbound.forms.circle import circle_roots
     >>> roots = circle_roots(1.0, 0.0, 0.5)
     >>> int(roots.count), roots.q.round(4).tolist(), roots.slope.tolist()
     (2, [-1.0472, 1.0472], [1, -1])
@@ -78,7 +78,10 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
     >>> circle_roots(1.0, 0.0, [1.0, 2.0]).count.tolist()
     [1, 0]
     """
-    a, b, c = (np.asarray(x, dtype=float) for x in np.broadcast_arrays(a, b, c))
+    given = np.broadcast_arrays(a, b, c)
+    if any(map(np.iscomplexobj, given)):
+        raise ValueError("a, b and c must be real numbers, found complex ones")
+    a, b, c = (np.asarray(x, dtype=float) for x in given)
     if not (np.isfinite(a).all() and np.isfinite(b).all() and np.isfinite(c).all()):
         raise ValueError("a, b and c must be finite numbers")
     theta, alpha, ratio = polar(a, b, c)
@@ -135,7 +138,7 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
 
     Examples
     --------
-    >>> from qbound import circle_arc
+    >>> from qbound.forms.circle import circle_arc
     >>> arc = circle_arc(-1.0, 0.0, 0.5)
     >>> float(arc.centre.round(4)), float(arc.half_width.round(4))
     (3.1416, 1.0472)

@@ -62,6 +62,11 @@ class HarmonicForm:
     >>> float(form([0.0, 5.0])), form.gradient([0.0, 5.0]).tolist()
     (3.0, [-15.0, 0.0])
 
+    Forms of the same joints are added, and multiplied by numbers:
+
+    >>> float((2 * form - form + 1)([0.0, 5.0]))
+    4.0
+
     Configurations are rows; a column for each joint is wanted:
 
     >>> form([[0.0, 5.0], [np.pi, 5.0]]).round(12).tolist()
@@ -108,13 +113,37 @@ class HarmonicForm:
         joints = (slice(None),) * len(self.kinds)
         return HarmonicForm(self.coefficients[(*inside, ..., *joints)], self.kinds)
 
-    def __add__(self, constant: ArrayLike) -> HarmonicForm:
-        """Add a constant, of the stack's shape, to each form."""
-        return HarmonicForm(add_constant(self.coefficients, constant), self.kinds)
+    __array_ufunc__ = None
+    """NumPy leaves ``array + form`` to the form."""
 
-    def __sub__(self, constant: ArrayLike) -> HarmonicForm:
-        """Subtract a constant, of the stack's shape, from each form."""
-        return self + -np.asarray(constant)
+    def __add__(self, other: ArrayLike | HarmonicForm) -> HarmonicForm:
+        """Add forms of the same joints, or a constant, one or an array of them, to each form."""
+        if not isinstance(other, HarmonicForm):
+            constant = np.broadcast_to(np.asarray(other), self.shape)
+            return HarmonicForm(add_constant(self.coefficients, constant), self.kinds)
+        if other.kinds != self.kinds:
+            raise ValueError(f"forms of {self.kinds} and of {other.kinds} have no sum")
+        return HarmonicForm(self.coefficients + other.coefficients, self.kinds)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: ArrayLike | HarmonicForm) -> HarmonicForm:
+        """Subtract forms of the same joints, or a constant from each form."""
+        return self + (-other if isinstance(other, HarmonicForm) else -np.asarray(other))
+
+    def __rsub__(self, constant: ArrayLike) -> HarmonicForm:
+        """Subtract each form from a constant."""
+        return -self + constant
+
+    def __mul__(self, factor: ArrayLike) -> HarmonicForm:
+        """Multiply each form by a number, or by its own of an array of the stack's shape."""
+        if isinstance(factor, HarmonicForm):  # cos² is none of 1, cos, sin
+            raise TypeError("a product of two forms is no harmonic form; multiply their values")
+        factor = np.asarray(factor)
+        axes = (...,) + (None,) * len(self.kinds) * (factor.ndim > 0)
+        return HarmonicForm(self.coefficients * factor[axes], self.kinds)
+
+    __rmul__ = __mul__
 
     def __neg__(self) -> HarmonicForm:
         """Change the sign of each form."""
@@ -140,7 +169,7 @@ class HarmonicForm:
         Raises
         ------
         ValueError
-            If there is not one value a joint on the last axis, or one is NaN or infinite.
+            If there is not one value a joint on the last axis, or one is NaN, infinite or complex.
         """
         columns = self._columns(q)
         values = np.asarray(q)
@@ -273,6 +302,8 @@ class HarmonicForm:
     def _columns(self, q: Values) -> list[Array]:
         """Split (..., n) joint values into n arrays of shape (...), of floats or of objects."""
         values, n = np.asarray(q), len(self.kinds)
+        if values.dtype.kind == "c":
+            raise ValueError("joint values are real numbers, found complex ones")
         if values.dtype != object:
             values = values.astype(float)
         if values.shape[-1:] != (n,):

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import basis_and_slope
 from qbound.forms.harmonic import HarmonicForm
+from qbound.model.values import real_numbers
 from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
 
@@ -240,7 +241,7 @@ def nearest_boundary(
     >>> nearest_boundary(region, [1.5, 0.0]).boundary
     'B7'
     """
-    q, w = np.asarray(q, dtype=float), np.asarray(weights, dtype=float)
+    q, w = real_numbers(q), real_numbers(weights)
     if q.shape != (2,) or not np.isfinite(q).all():
         raise ValueError("a configuration is two finite joint values")
     if w.shape != (2,) or not ((w > 0) & (w >= 1 / HEAVIEST) & (w <= HEAVIEST)).all():

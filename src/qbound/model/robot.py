@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import Any, TypeVar
@@ -68,8 +68,20 @@ class Robot:
     >>> replace(robot, tool="elbow").tool
     'elbow'
 
-    What it was read from, the text of a file or its content, is kept in `source`: exact numbers
-    are looked up there (`qbound.model.exact`).
+    Robots are equal, and have one hash, where their content is the same:
+
+    >>> robot == load_robot("pr-gantry-arm"), robot == replace(robot, tool="elbow")
+    (True, False)
+
+    `boundaries` are those that a file names; `used` has all that bound the region, with the pairs
+    of bodies that `collisions` makes.
+
+    >>> arm = load_robot("two-links-on-a-table")
+    >>> len(arm.boundaries), len(arm.used)
+    (0, 8)
+
+    What it was read from, the text of a file or its content, is kept in `source` and not compared:
+    exact numbers are looked up there (`qbound.model.exact`).
     """
 
     name: str
@@ -88,11 +100,35 @@ class Robot:
     source: str | Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """Fit a line: name, joints with their kinds, number of boundaries."""
-        count = len({b.name for b in (*self.boundaries, *self.used)})
+        """Fit a line: name, joints with their kinds, number of boundaries, of pairs of bodies."""
+        count = len(self.boundaries)
+        made = len(self.used) - sum(boundary.used for boundary in self.boundaries)
         joints = one_line(", ".join(f"{joint.name} ({joint.type_name})" for joint in self.joints))
-        bounds = f"{count} boundar{'y' if count == 1 else 'ies'}"
-        return f"<Robot {one_line(self.name)}: {joints}; {bounds}>"
+        bounds = [f"{count} boundar{'y' if count == 1 else 'ies'}"] * (count > 0 or not made)
+        bounds += [f"{made} pair{'s' * (made != 1)} of bodies"] * (made > 0)
+        return f"<Robot {one_line(self.name)}: {joints}; {' and '.join(bounds)}>"
+
+    def __eq__(self, other: object) -> bool:
+        """Compare all but `source`."""
+        if not isinstance(other, Robot):
+            return NotImplemented
+        return self is other or self._content == other._content
+
+    def __hash__(self) -> int:
+        """Agree with `__eq__`."""
+        return self._hash
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is worked out: the hash of a text differs from process to process."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    @cached_property
+    def _content(self) -> Any:
+        return _comparable(self)
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self._content)
 
     @property
     def base(self) -> str:
@@ -270,6 +306,90 @@ class Robot:
         still = np.eye(3, dtype=int)
         fixed = [Frame(point.name, point.frame, still, point.at) for point in self.points]
         return Frames(self.base, [*moved, *fixed])
+
+    def forward_kinematics(self, q: ArrayLike, point: str | None = None) -> NDArray[np.float64]:
+        """Return where the tool is, or another point, seen from the base (Table 2).
+
+        Parameters
+        ----------
+        q : array_like, shape (..., n)
+            One configuration or many; rad or length.
+        point : str, optional
+            Name of a point or a frame; default: the tool.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            Length.
+
+        Raises
+        ------
+        ValueError
+            If `q` is no configuration of finite numbers, or there is no such point.
+
+        Examples
+        --------
+        >>> from qbound import load_robot
+        >>> robot = load_robot("two-joint-arm-with-walls")
+        >>> robot.forward_kinematics([[0.0, 0.0], [0.5, -1.0]]).round(3).tolist()
+        [[0.0, 0.0, 1.1], [0.024, 0.0, 1.008]]
+        """
+        name = self.tool if point is None else point
+        known = [self.base, *(label for joint in self.joints for label in joint.labels)]
+        if name not in (*known, *self._points):
+            raise ValueError(f"no point or frame {name!r}; there are {', '.join(self._points)}")
+        values = self.configuration(q)
+        found = self.frames(values).position(self.base, name, self.base)
+        return np.array(np.broadcast_to(found, (*values.shape[:-1], 3)), dtype=float)
+
+    def inverse_kinematics(self, place: ArrayLike, held: Held | None = None) -> NDArray[np.float64]:
+        """Return every configuration that brings the tool to a place, in closed form.
+
+        Two joints of any kinds move the tool in a plane; others are held.
+
+        Parameters
+        ----------
+        place : array_like, shape (3,)
+            Seen from the base; length.
+        held : mapping of int or str to float, optional
+            Values of all joints but two, by index or name; rad or length.
+
+        Returns
+        -------
+        ndarray, shape (k, n)
+            Within the joints' limits, feasible or not; a joint without limits in (-pi, pi]. Empty
+            where the place is out of reach.
+
+        Raises
+        ------
+        ValueError
+            If not exactly two joints are left free, the tool leaves its plane, the place is not
+            three finite numbers, or a whole circle of configurations reaches it.
+
+        Examples
+        --------
+        >>> from qbound import load_robot
+        >>> robot = load_robot("two-joint-arm-with-walls")
+        >>> robot.inverse_kinematics([0.5, 0.0, 0.2]).round(3).tolist()
+        [[2.597, -1.607], [1.128, 1.607]]
+        >>> robot.inverse_kinematics([9.0, 0.0, 0.0]).shape
+        (0, 2)
+        """
+        from qbound.workspace.planar import planar_postures
+
+        fixed = self.held_indices(held or {})
+        free = planar_postures(self, place, fixed)
+        return self.with_held(free, fixed)
+
+
+def _comparable(value: Any) -> Any:
+    """Return data as nested tuples, which compare and hash by content, as arrays do not."""
+    if is_dataclass(value):
+        compared = (getattr(value, each.name) for each in fields(value) if each.compare)
+        return (type(value), *map(_comparable, compared))
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    return tuple(map(_comparable, value)) if isinstance(value, list | tuple) else value
 
 
 def _named(what: str, items: Mapping[str, Item], name: str) -> Item:

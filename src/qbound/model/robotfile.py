@@ -39,6 +39,7 @@ __all__ = [
     "robot_table",
     "robot_text",
     "save_robot",
+    "written_text",
 ]
 
 ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
@@ -190,6 +191,22 @@ def refuse_replacing(path: str | Path) -> None:
         raise RobotFileError(
             f"{path}: not replaced, because qbound did not make this file; choose another name"
         )
+
+
+def written_text(robot: Robot) -> str:
+    """Return the text of the file that a robot was read from, or of one that says the same.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If it was changed, or not read from a robot file, and there is no tomlkit.
+    """
+    if isinstance(robot.source, str) and _built(read_table(tomllib.loads(robot.source))) == robot:
+        return robot.source
+    require("tomlkit")
+    import tomlkit
+
+    return tomlkit.dumps(robot_table(robot))
 
 
 def packaged_robots() -> tuple[str, ...]:

@@ -13,6 +13,23 @@ from qbound.model.schema import one_line
 Array = NDArray[Any]
 
 
+def real_numbers(q: ArrayLike) -> NDArray[np.float64]:
+    """Return an array of floats, of integers or floats; quick, because all are floats mostly.
+
+    Raises
+    ------
+    ValueError
+        If they are complex numbers, texts, or of no shape.
+    """
+    values = np.asarray(q)
+    if values.dtype == np.float64:
+        return values
+    found = _array(values, symbols=False)
+    if found is None:
+        raise ValueError(f"{one_line(repr(q))} is no array of real numbers")
+    return found
+
+
 def joint_values(q: ArrayLike, names: Sequence[str], *, symbols: bool = False) -> Array:
     """Return the values of the joints of those names as floats, shape (..., n).
 

@@ -15,17 +15,10 @@
 - `region`: the answer, and what it can be asked; `slices`: a row of such answers.
 """
 
+from qbound.boundary.margins import margins, violated
 from qbound.region.components import Component, Vertex
 from qbound.region.problem import Problem, Rule, clearance_problem, state
-from qbound.region.region import (
-    NoHomeError,
-    Region,
-    UnresolvedError,
-    find_region,
-    margins,
-    solve,
-    violated,
-)
+from qbound.region.region import NoHomeError, Region, UnresolvedError, find_region, solve
 from qbound.region.slices import Slices, find_slices
 
 __all__ = [

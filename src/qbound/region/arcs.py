@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.harmonic import HarmonicForm
+from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.region.plane import Plane
 from qbound.tolerances import QUADRATURE, SAME_POINT
@@ -173,17 +174,25 @@ class Arc:
         return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])
 
     def at(self, s: ArrayLike) -> Floats:
-        """Return joint values at parameters in [0, 1], shape (n,) -> (n, 2); exact, ends included.
+        """Return joint values at parameters in [0, 1], shape (...) to (..., 2); exact, ends too.
 
-        Pieces between critical values take equal parts of [0, 1].
+        Pieces between critical values take equal parts of [0, 1]. What is beyond is an end.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is NaN or complex.
         """
-        x = np.clip(np.asarray(s, dtype=float), 0, 1) * len(self.pieces.roots)
+        parameters = real_numbers(s)
+        if np.isnan(parameters).any():
+            raise ValueError("a parameter along an arc is NaN")
+        x = np.clip(parameters, 0, 1).reshape(-1) * len(self.pieces.roots)
         piece = np.minimum(x.astype(np.int64), len(self.pieces.roots) - 1)
         q = np.empty((len(x), 2))
         for k in np.unique(piece):
             mine = piece == k
             q[mine] = self.pieces[k : k + 1].places((x[mine] - k - 0.5) * math.pi)[0]
-        return q
+        return q.reshape(*parameters.shape, 2)
 
     def nodes(self, n: int = 48) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes q and weighted steps dq, each of shape (n pieces, 2).

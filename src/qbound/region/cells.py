@@ -98,12 +98,16 @@ class Parts(NamedTuple):
         return part
 
 
-class _Marks(NamedTuple):
-    """Places on lines that are no ends of cells: line, value, error and root of each."""
+class _Ends(NamedTuple):
+    """Ends of cells on lines, and other places at which lines are cut.
+
+    Line, value, a bound of its error, whether the cell lies to the right (0) or left (1), and root.
+    """
 
     line: Ints
     v: Floats
     error: Floats
+    side: Ints
     root: Ints
 
 
@@ -218,55 +222,26 @@ class CellComplex:
     def _elements(self) -> Elements:
         """Cut the lines where cells end, and tell which cells lie on both sides of each part."""
         kept = which(~self.whole)
-        at = self.slabs[kept, None] + np.array([0, 1])
-        at = at % self.n_lines if self.wrapped else at
-        line = at.repeat(2, axis=1).reshape(-1)
-        value, error = self.ends[kept].reshape(-1), self._errors[kept].reshape(-1)
-        v = math.pi - (math.pi - value) % TURN if self.circle else value
-        cell = kept.repeat(4)
-        side, end = (np.tile(x, len(kept)) for x in ([0, 0, 1, 1], [0, 1, 0, 1]))
-        root = self.roots[cell, end]
-        marks = self._marks()
-        if len(marks.line):  # after the ends of cells: they are none
-            line, v = np.concatenate([line, marks.line]), np.concatenate([v, marks.v])
-            error, side = np.concatenate([error, marks.error]), np.append(side, 0 * marks.line)
-            root = np.concatenate([root, marks.root])
-        order = np.lexsort([v, line])
-        line, v, error, side, root = (x[order] for x in (line, v, error, side, root))
-        rank, v = _Ranks(self.decomposition, line, v, error, side, root, self.circle).ranked()
-        ranks = np.empty(len(order), dtype=np.int64)
-        ranks[order] = rank
-        place = ranks[: len(cell)].reshape(-1, 2, 2)
-        # Places of a line, one after the other; where there are none on a circle, one element.
-        found, first = np.unique(rank, return_index=True)
-        line, low = line[first], v[first]
-        number = np.zeros(len(rank), dtype=np.int64)
-        number[found] = np.arange(len(found))
-        place = number[place] if len(place) else place
+        line, low = self._cuts(kept)
         begin, last = runs(line)
         count = np.bincount(line, minlength=self.n_lines)
-        high = np.append(low[1:], 0.0)[: len(low)]
-        if self.circle:
-            high[last] = low[begin] + TURN
-            without = which(count == 0)
-        else:
-            without = np.zeros(0, dtype=np.int64)
-        self._place = np.full((len(self.slabs), 2, 2), -1)
-        self._place[kept] = place
-        self._begin = np.searchsorted(line, np.arange(self.n_lines))
-        self._count = count
+        self._begin, self._count = np.searchsorted(line, np.arange(self.n_lines)), count
         owner = np.full((2, len(line)), -1)
         for s in (0, 1):  # the left line of a cell is on its right-hand side
-            self._own(owner[1 - s], kept, at[:, s], place[:, s], s)
-        elements = np.ones(len(line), dtype=np.bool_)
-        if not self.circle:
-            elements[last] = False
-        if len(without):
+            at = self.slabs[kept] + s
+            at = at % self.n_lines if self.wrapped else at
+            self._own(owner[1 - s], kept, at, self._place[kept, s], s)
+        high, elements = np.append(low[1:], 0.0)[: len(low)], np.ones(len(line), dtype=np.bool_)
+        if self.circle:  # a line on which nothing ends is one element
+            high[last] = low[begin] + TURN
+            without = which(count == 0)
             line = np.concatenate([line, without])
             low = np.concatenate([low, np.full(len(without), -math.pi)])
             high = np.concatenate([high, np.full(len(without), math.pi)])
             owner = np.concatenate([owner, np.full((2, len(without)), -1)], axis=1)
-            elements = np.append(elements, np.ones(len(without), dtype=np.bool_))
+            elements = np.ones(len(line), dtype=np.bool_)
+        else:
+            elements[last] = False
         self._fill_whole(owner, line)
         self._number = np.where(elements, elements.cumsum() - 1, -1)
         line, low, high, owner = line[elements], low[elements], high[elements], owner[:, elements]
@@ -275,35 +250,66 @@ class CellComplex:
         joined[joined] = self.decomposition.joined(line[joined], low[joined], high[joined])
         return Elements(line, low, high, owner, turns, joined)
 
-    def _marks(self) -> _Marks:
+    def _cuts(self, kept: Ints) -> tuple[Ints, Floats]:
+        """Return the places at which lines are cut: line and value, by line and upwards.
+
+        And note for each cell at which of them its two ends are, on either line: `_place`.
+        """
+        own, marks = self._cell_ends(kept), self._marks()
+        every: list[Any] = [np.concatenate(x) for x in zip(own, marks, strict=True)]
+        order = np.lexsort([every[1], every[0]])
+        sorted_ends = _Ends(*(x[order] for x in every))
+        rank, v = _Ranks(self.decomposition, sorted_ends, self.circle).ranked()
+        found, first = np.unique(rank, return_index=True)
+        number = np.zeros(len(rank), dtype=np.int64)
+        number[found] = np.arange(len(found))
+        place = np.empty(len(order), dtype=np.int64)
+        place[order] = number[rank]
+        self._place: Ints = np.full((len(self.slabs), 2, 2), -1)
+        self._place[kept] = place[: len(own.line)].reshape(-1, 2, 2)
+        return sorted_ends.line[first], v[first]
+
+    def _cell_ends(self, kept: Ints) -> _Ends:
+        """Return both ends of cells at their left and at their right line."""
+        line = self.slabs[kept, None] + np.array([0, 1])
+        line = line % self.n_lines if self.wrapped else line
+        value = self.ends[kept].reshape(-1)
+        side, end = (np.tile(x, len(kept)) for x in ([0, 0, 1, 1], [0, 1, 0, 1]))
+        return _Ends(
+            line.repeat(2, axis=1).reshape(-1),
+            self._turned(value),
+            self._errors[kept].reshape(-1),
+            side,
+            self.roots[kept.repeat(4), end],
+        )
+
+    def _turned(self, v: Floats) -> Floats:
+        """Bring angles of a lift that closes into (-pi, pi]."""
+        return np.asarray(math.pi - (math.pi - v) % TURN if self.circle else v)
+
+    def _marks(self) -> _Ends:
         """Return where contacts along a fibre may begin or end: their side conditions vanish."""
         plane, found = self.plane, self.decomposition
         first = plane.count + len(plane.contacts.forms)
-        line, row = list[int](), list[int]()
-        for at, rows in found.standing.items():
-            if self.wrapped and at == self.n_lines:
-                continue  # the first line, a turn on
-            for k in (r - plane.count for r in rows if r >= plane.count):
-                for s in range(SIDES):
-                    if plane.sides[k, s, :, 1:].any():
-                        line.append(at)
-                        row.append(first + SIDES * k + s)
-        none = np.zeros(0)
-        if not line:
-            return _Marks(np.zeros(0, dtype=np.int64), none, none, np.zeros((0, 3), dtype=np.int64))
-        at, rows = np.array(line), np.array(row)
-        c, errors, real = plane.side_roots(
-            rows - first, self.abscissae[at], found.critical.radius[at]
-        )
-        branch, k = np.nonzero(np.isfinite(c) & (real >= 0))
-        v = c[branch, k]
-        if self.circle:
-            v = math.pi - (math.pi - v) % TURN
-        low, high = plane.lift_ends
-        inside = which((v > low) & (v < high)) if not self.circle else np.arange(len(v))
+        last = self.n_lines if self.wrapped else -1  # the first line, a turn on
+        marked = [
+            (line, SIDES * (row - plane.count) + side)
+            for line, rows in found.standing.items()
+            for row in rows
+            for side in range(SIDES)
+            if line != last
+            and row >= plane.count
+            and plane.sides[row - plane.count, side, :, 1:].any()
+        ]
+        line, number = np.array(marked, dtype=np.int64).reshape(-1, 2).T
+        t, radius = self.abscissae[line], found.critical.radius[line]
+        values, errors, real = plane.side_roots(number, t, radius)
+        branch, k = np.nonzero(np.isfinite(values) & (real >= 0))
+        v, (low, high) = values[branch, k], plane.lift_ends
+        inside = np.arange(len(v)) if self.circle else which((v > low) & (v < high))
         branch, k, v = branch[inside], k[inside], v[inside]
-        root = np.stack([rows[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
-        return _Marks(at[k], v, errors[branch, k], root)
+        root = np.stack([first + number[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
+        return _Ends(line[k], self._turned(v), errors[branch, k], np.zeros_like(k), root)
 
     def _own(self, owner: Ints, kept: Ints, line: Ints, place: Ints, side: int) -> None:
         """Write each cell into the parts of a line between its two ends."""
@@ -326,8 +332,8 @@ class CellComplex:
         for cell in which(self.whole).tolist():
             slab = int(self.slabs[cell])
             for s, at in ((1, slab), (0, slab + 1)):
-                at = at % self.n_lines if self.wrapped else at
-                owner[s, line == at] = cell
+                own = at % self.n_lines if self.wrapped else at
+                owner[s, line == own] = cell
 
     def _turns(self, line: Ints, middle: Floats, owner: Ints) -> Ints:
         """Return the full turns that bring parts of lines into the cells beside them, (2, n)."""
@@ -342,7 +348,7 @@ class CellComplex:
         return turns
 
     def in_order(self, cell: Ints, side: int, element: Ints) -> Ints:
-        """Number the elements beside cells, on their left (0) or right (1), upwards from each cell."""
+        """Count the elements beside cells, on their left (0) or right (1), upwards from each."""
         line = self.elements.line[element]
         count = np.maximum(self._count[line], 1)
         spot = self._spot[element]
@@ -397,23 +403,16 @@ class _Ranks:
 
     Parameters
     ----------
-    line, v, error, side, root : ndarray
-        Of each end, by line and upwards: its line, value, a bound of its error, whether its cell
-        lies to the right (0) or left (1) of the line, and its root.
+    found : Decomposition
+    ends : _Ends
+        By line and upwards.
+    circle : bool
+        Whether the lift closes.
     """
 
-    def __init__(
-        self,
-        found: Decomposition,
-        line: Ints,
-        v: Floats,
-        error: Floats,
-        side: Ints,
-        root: Ints,
-        circle: bool,
-    ) -> None:
-        self.found, self.line, self.v, self.error = found, line, v, error
-        self.side, self.root, self.circle = side, root, circle
+    def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
+        self.found, self.circle = found, circle
+        self.line, self.v, self.error, self.side, self.root = ends
 
     def ranked(self) -> tuple[Ints, Floats]:
         """Return of each end the number of the first that is one with it, in order; and values.
@@ -446,17 +445,13 @@ class _Ranks:
         position = np.arange(n, dtype=float)
         for own in clusters:
             groups = self._groups(own, [float(v[k]) + shift.get(k, 0.0) for k in own])
-            crossing = any(k in shift for k in own)
-            base = -1.0 if crossing else 0.0
-            spots = sorted(own) if not crossing else [first[line[own[0]] == line[first]][0] + 0.0]
-            low = float(min(k for k in own if k not in shift)) if crossing else float(spots[0])
+            # Groups stand one behind the other between the rows before and behind the cluster.
+            low = min(k for k in own if k not in shift) - any(k in shift for k in own)
             for g, group in enumerate(groups):
                 best = min(group, key=lambda k: error[k])
                 value = v[best] + shift.get(best, 0.0)
-                for k in group:
-                    # Between the ends before and those after the cluster, group after group.
-                    position[k] = low + base + (g + 1) / (len(groups) + 1)
-                    v[k] = value
+                position[group] = low + (g + 1) / (len(groups) + 1)
+                v[group] = value
         order = np.lexsort([position, line])
         change = np.ones(n, dtype=np.bool_)
         change[1:] = (np.diff(position[order]) != 0) | (np.diff(line[order]) != 0)
@@ -491,20 +486,12 @@ class _Ranks:
         first = plane.count + len(plane.contacts.forms)
         groups: dict[Any, set[Any]] = {}
         for k in members:
-            kind, i, j = events.what[k].tolist()
+            _, i, j = events.what[k].tolist()
             name = ("key", int(events.key[k])) if events.key[k] >= 0 else ("event", k)
             for row in (i, j):
                 if row < first:
                     groups.setdefault(name, set()).add(self._curve(row))
-        together = next((g for g in groups.values() if curves <= g), None)
-        if together is None:
-            return False
-        # Where the same curves come near each other twice, it is not known where they meet.
-        others = which((self.line == line) & ~np.isin(np.arange(len(self.line)), own))
-        near = [k for k in others.tolist() if self._curve(int(self.root[k, 0])) in curves]
-        if len(curves) == 1:
-            return True
-        return len({self._curve(int(self.root[k, 0])) for k in near}) < len(curves) or True
+        return any(curves <= group for group in groups.values())
 
     def _curve(self, form: int) -> tuple[int, int]:
         count, contacts = self.found.plane.count, self.found.plane.contacts

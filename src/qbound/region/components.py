@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate, chain
@@ -12,16 +12,23 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.forms.angles import TURN, nearest_turn
+from qbound.forms.angles import TURN, first_from, nearest_turn
 from qbound.printable import printable
 from qbound.region.arcs import NODES, Arc, legendre, ordered
 from qbound.region.cells import CellComplex, Placed
 from qbound.region.loops import behind
 from qbound.region.problem import Problem
-from qbound.tolerances import QUADRATURE
+from qbound.tolerances import QUADRATURE, TOUCH
 
 CELL_NODES: Final = (NODES[0], 32, *NODES[1:])
 """Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
+
+ROOM: Final = 1.25
+"""No fibre of a cell is taller than so many times the tallest one at its nodes.
+
+Roots are analytic between critical values, and the nodes lie densest at both ends. Where a fibre
+were taller, a sample would have a little less of it.
+"""
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,6 +66,12 @@ class Component:
     contains_home : bool
     area_unit : str
         The product of both joints' units.
+
+    Notes
+    -----
+    What needs more than a component is asked of its region: ``region.component_of(q) == k`` tells
+    where configurations lie in component k, ``region.plot(component=k)`` draws it alone, and
+    ``region.to_shapely(component=k)`` returns its polygons.
     """
 
     area: float
@@ -93,6 +106,61 @@ def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list
         for one in cells.placed(ordered(q, base))
         if not one.off.any() or feasible(q + ordered(one.off, base) / 2)
     ]
+
+
+def numbered(
+    problem: Problem, cells: CellComplex, base: int, owner: Mapping[int, int], q: Floats
+) -> Ints:
+    """Return the number of the component of each configuration, shape (n, 2) to (n,); -1: none.
+
+    What is well inside a cell is told at once for all; of the others `closures` says the first.
+    """
+    found = np.full(len(q), -1)
+    feasible = np.flatnonzero(problem.evaluator.feasible(q))
+    t, v = ordered(q[feasible], base).T
+    if cells.wrapped:
+        t = first_from(cells.plane.ends[0], t)
+    slab = np.searchsorted(cells.abscissae, t) - 1
+    order = np.argsort(slab, kind="stable")
+    first = np.searchsorted(slab[order], np.arange(len(cells.abscissae) + 1))
+    near = TOUCH * cells.plane.base_unit
+    for cell, component in owner.items():
+        here = order[first[cells.slabs[cell]] : first[cells.slabs[cell] + 1]]
+        start, end = cells.spans([cell])[0]
+        here = here[(start + near < t[here]) & (t[here] < end - near)]
+        if len(here) and not cells.whole[cell]:
+            low, high = cells.interval([cell], t[None, here])[:, 0]
+            lift = first_from(low, v[here]) if cells.circle else v[here]
+            here = here[(low + cells.touch < lift) & (lift < high - cells.touch)]
+        found[feasible[here]] = component
+    for k in feasible[found[feasible] < 0]:
+        placed = closures(problem, cells, base, q[k])
+        found[k] = min((owner[one.cell] for one in placed if one.cell in owner), default=-1)
+    return found
+
+
+def drawn(
+    problem: Problem, cells: CellComplex, base: int, own: Ints, n: int, rng: np.random.Generator
+) -> Floats:
+    """Draw n places evenly over some cells, shape (n, 2); angles of full turns in (-pi, pi].
+
+    A cell is chosen by its area, then a base value by the height over it, by rejection.
+    """
+    areas = _cell_moments(cells)[own, 0]
+    sines, _ = _smooth_rules((NODES[1],))
+    start, end = cells.spans(own).T
+    low, high = cells.interval(own, (start + end)[:, None] / 2 + (end - start)[:, None] / 2 * sines)
+    tallest = ROOM * (high - low).max(axis=1)
+    chosen = rng.choice(len(own), n, p=areas / areas.sum())
+    place, left = np.empty((n, 2)), np.arange(n)
+    while len(left):
+        k = chosen[left]
+        t = rng.uniform(start[k], end[k])
+        low, high = cells.interval(own[k], t[:, None])[..., 0]
+        place[left] = np.stack([t, rng.uniform(low, high)], axis=-1)
+        left = left[rng.uniform(size=len(left)) * tallest[k] > high - low]
+    q = ordered(place, base)
+    return np.where([ends is None for ends in problem.ranges], nearest_turn(q, 0), q)
 
 
 @dataclass(frozen=True, eq=False)

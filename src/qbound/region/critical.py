@@ -1,8 +1,8 @@
 """Base values at which something happens to forms along the lift: the zeros of events.
 
 Every kind of event (`precise.KINDS`) is one polynomial of the base: of z = exp(i t) on a circle, of
-t itself on a line. They are solved in stacks, in doubles, each zero with a bound of its error. Where
-two of them are nearer than their errors, the order is decided in balls (`Lines`).
+t itself on a line. They are solved in stacks, in doubles, each zero with a bound of its error.
+Where two of them are nearer than their errors, the order is decided in balls (`Lines`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -284,10 +284,9 @@ class Finder:
         found = [NO_EVENTS]
         for what, stack, errors in _blocks(requests):
             blank = (np.abs(stack) <= errors[:, None]).all(axis=1)
-            # Without any term nothing cancels: it is zero everywhere.
-            some = which(errors > 0)
-            what, stack, errors, blank = (x[some] for x in (what, stack, errors, blank))
-            found += [self._all_of(tuple(what[k].tolist())) for k in which(blank).tolist()]
+            # Without any term nothing cancels, and it is zero everywhere; else balls are asked.
+            doubtful = which(blank & (errors > 0))
+            found += [self._all_of(tuple(what[k].tolist())) for k in doubtful.tolist()]
             rows = which(~blank)
             found.append(self._of(what[rows], stack[rows], errors[rows]))
         return Events.joined(found)
@@ -359,9 +358,9 @@ class Finder:
         for place, k in enumerate(crowded.tolist()):
             group.append(k)
             following = crowded[place + 1] if place + 1 < len(crowded) else None
-            if following is not None and (what[place + 1] == what[place]).all():
-                if low[following] <= max(high[i] for i in group):
-                    continue
+            same = following is not None and (what[place + 1] == what[place]).all()
+            if same and low[following] <= max(high[i] for i in group):
+                continue
             name = *what[place, :3].tolist(), float(low[group].min()), float(high[group].max())
             if name not in known:
                 zeros = self._settled(events[group[0]], *name[3:])
@@ -372,24 +371,26 @@ class Finder:
         return np.concatenate(owner), Events.joined(found)
 
     def _settled(self, event: Events, low: float, high: float) -> list[Zero]:
-        what = tuple(event.what.tolist())
+        """Return the zeros of an event within an interval, in balls."""
+        what: Any = tuple(event.what.tolist())
         for bits in LEVELS:
-            zeros = self.precise.zeros(what, low, high, bits)  # type: ignore[arg-type]
+            zeros = self.precise.zeros(what, low, high, bits)
             if zeros is not None and (bits == LEVELS[-1] or all(z.order == 0 for z in zeros)):
                 return zeros
-        if self.precise.vanishes(what):  # type: ignore[arg-type]
+        if self.precise.vanishes(what):
             return []
         raise UndecidedError(f"{NAMES[what[0]]} of rows {what[1:]} near base value {low:.17g}")
 
     def zero(self, events: Events, k: int) -> Zero | None:
         """Return an event as a zero in balls; None where there is none."""
         if events.exact[k] >= 0:
-            return self.zeros[events.exact[k]]
+            return self.zeros[int(events.exact[k])]
         t, radius = float(events.t[k]), float(events.radius[k])
         for wider in (1, 16, 256):
             found = self._settled(events[k], t - wider * radius, t + wider * radius)
             if found:
-                return min(found, key=lambda zero: abs(to_float(zero.ball) - t))
+                near: Zero = min(found, key=lambda zero: abs(to_float(zero.ball) - t))
+                return near
         return None
 
 
@@ -503,86 +504,60 @@ class Lines:
 
 def find_lines(finder: Finder, events: Events) -> Lines:
     """Put events in order; those that are one, or cannot be told apart, become one line."""
-    plane, precise = finder.plane, finder.precise
-    low, high = plane.ends
-    wrapped = plane.base_range is None
-    n = len(events)
-    t = events.t.copy()
+    low, high = finder.plane.ends
+    wrapped, n = finder.plane.base_range is None, len(events)
+    # The ends of the range are lines, too: the numbers after those of the events.
+    t = np.append(events.t, [low, high])
+    radius = np.append(events.radius, np.full(2, 4 * UNIT * max(abs(low), abs(high))))
     if wrapped:  # an event at the cut is one, on either side of it
-        t = np.where(t + events.radius >= high, t - TURN, t)
-    end = 4 * UNIT * max(abs(low), abs(high))
-    every_t = np.concatenate([t, [low, high]])
-    radius = np.concatenate([events.radius, [end, end]])
-    order = np.argsort(every_t, kind="stable")
-    reach = np.maximum.accumulate((every_t + radius)[order])
-    # Radii differ: one cluster reaches as far as any of its members.
-    starts = (every_t - radius)[order]
-    least = np.minimum.accumulate(starts[::-1])[::-1]
-    new = np.ones(n + 2, dtype=np.bool_)
-    new[1:] = least[1:] > reach[:-1]
-    cluster = new.cumsum() - 1
-    count = np.bincount(cluster)
-    lines_t, lines_r, members = list[float](), list[float](), list[list[int]]()
-    known: dict[int, Zero] = {}
-    late: list[tuple[float, float, list[int], Zero]] = []
-    first = np.flatnonzero(new)
-    low_line = high_line = -1
-    for c, (at, size) in enumerate(zip(first.tolist(), count.tolist(), strict=True)):
-        rows = order[at : at + size].tolist()
-        if size == 1 or _is_one(events, rows, n):
+        t[:n] = np.where((t + radius >= high)[:n], t[:n] - TURN, t[:n])
+    found: list[_Line] = []
+    for rows in _clusters(t, radius):
+        if len(rows) == 1 or _is_one(events, rows, n):
             best = min(rows, key=lambda k: radius[k])
-            inner = [k for k in rows if k < n]
-            if n in rows:
-                low_line = len(lines_t)
-            if n + 1 in rows:
-                high_line = len(lines_t)
-            lines_t.append(float(every_t[best]))
-            lines_r.append(float(radius[best]))
-            members.append(inner)
-            continue
-        for value, error, own, zero in _resolved(finder, events, t, rows, n):
-            if n in own:
-                low_line = len(lines_t)
-            if n + 1 in own:
-                high_line = len(lines_t)
-            known[len(lines_t)] = zero
-            lines_t.append(value)
-            lines_r.append(error)
-            members.append([k for k in own if k < n])
-    # Of a circle what lies below the cut lies a turn on.
-    before = list(range(low_line))
-    after = list(range(high_line + 1, len(lines_t)))
-    between = list(range(low_line, high_line + 1))
-    chosen = between
-    shift = [0.0] * len(between)
-    if wrapped and before:
-        chosen = between[:-1] + before + between[-1:]
-        shift = [0.0] * (len(between) - 1) + [TURN] * len(before) + [0.0]
-    del after, late
-    number = {line: k for k, line in enumerate(chosen)}
-    of = np.full(n, -1)
-    for line in chosen:
-        of[members[line]] = number[line]
-    last = len(chosen) - 1
-    values = np.array([lines_t[line] + s for line, s in zip(chosen, shift, strict=True)])
-    values[0], values[-1] = low, high
-    own = [members[line] for line in chosen]
+            found.append(_Line(float(t[best]), float(radius[best]), rows))
+        else:
+            found += _resolved(finder, events, t, rows, n)
+    first, last = (next(k for k, one in enumerate(found) if n + end in one.rows) for end in (0, 1))
+    chosen = found[first : last + 1]
+    if wrapped:  # what lies below the cut lies a turn on
+        turned = [one.turned(finder.precise) for one in found[:first]]
+        chosen = [*found[first:last], *turned, found[last]]
+    members = [[k for k in one.rows if k < n] for one in chosen]
     if wrapped:
-        own[last] = own[0]
-    kept_known = {
-        number[line]: (zero if not shift[number[line]] else shifted(precise, zero, 1))
-        for line, zero in known.items()
-        if line in number and number[line] not in (0, last)
-    }
-    return Lines(
-        finder,
-        np.maximum.accumulate(values),
-        np.array([lines_r[line] for line in chosen]),
-        of,
-        events,
-        own,
-        kept_known,
-    )
+        members[-1] = members[0]
+    of = np.full(n, -1)
+    for k, own in reversed(list(enumerate(members))):
+        of[own] = k
+    values = np.array([one.t for one in chosen])
+    values[0], values[-1] = low, high
+    known = {k: one.zero for k, one in enumerate(chosen[1:-1], start=1) if one.zero is not None}
+    radii = np.array([one.radius for one in chosen])
+    return Lines(finder, np.maximum.accumulate(values), radii, of, events, members, known)
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """A base value, a bound of its error, the events there, and what it is in balls if known."""
+
+    t: float
+    radius: float
+    rows: list[int]
+    zero: Zero | None = None
+
+    def turned(self, precise: Precise) -> _Line:
+        """Return the line a turn later."""
+        zero = None if self.zero is None else shifted(precise, self.zero, 1)
+        return replace(self, t=self.t + TURN, zero=zero)
+
+
+def _clusters(t: Floats, radius: Floats) -> list[list[int]]:
+    """Return base values that may be one, as far as their errors tell, together; ascending."""
+    order = np.argsort(t, kind="stable")
+    reach = np.maximum.accumulate((t + radius)[order])
+    least = np.minimum.accumulate((t - radius)[order][::-1])[::-1]
+    cuts = which(least[1:] > reach[:-1]) + 1
+    return [rows.tolist() for rows in np.split(order, cuts)]
 
 
 def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
@@ -608,8 +583,8 @@ def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
 
 def _resolved(
     finder: Finder, events: Events, t: Floats, rows: Sequence[int], n: int
-) -> list[tuple[float, float, list[int], Zero]]:
-    """Return the different base values of a cluster, ascending, and the events at each."""
+) -> list[_Line]:
+    """Return the different base values of a cluster, ascending."""
     precise = finder.precise
     owners: list[tuple[list[int], Zero]] = []
     # One of several events that are one because of their key stands for all.
@@ -627,16 +602,21 @@ def _resolved(
             for k in own:
                 owners += _owned(finder, events, t, [k])
         elif name[0] == "end":
-            upper = own[0] == n + 1
-            owners.append((own, Zero(None, 0, lambda u=upper: precise.ends("base")[u])))
+            upper = own[0] - n
+            owners.append((own, Zero(None, 0, partial(_end_of, precise, upper))))
         else:
             owners += _owned(finder, events, t, own)
     found = []
     for ball, members in in_order(owners, lambda item, bits: precise.refined(item[1], bits)):
         value = to_float(ball)
         error = float(ball.rad()) * 1.01 + 2 * UNIT * abs(value)
-        found.append((value, error, [k for own, _ in members for k in own], members[0][1]))
+        every = [k for own, _ in members for k in own]
+        found.append(_Line(value, error, every, members[0][1]))
     return found
+
+
+def _end_of(precise: Precise, upper: int) -> Any:
+    return precise.ends("base")[upper]
 
 
 def _owned(

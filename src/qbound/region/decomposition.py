@@ -21,15 +21,26 @@ from numpy.typing import NDArray
 
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, turns_up_to
-from qbound.region.critical import NO_EVENTS, NUMBER, Events, Finder, Lines, find_lines
+from qbound.region.critical import NO_EVENTS, Events, Finder, Lines, find_lines
 from qbound.region.pieces import END, INSIDE, Pieces, crossings, find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, Separation, ranges, runs, which
-from qbound.region.precise import LEVELS, Precise, UndecidedError, in_order, midpoint, precision
+from qbound.region.precise import (
+    LEVELS,
+    NUMBER,
+    Precise,
+    UndecidedError,
+    in_order,
+    midpoint,
+    precision,
+)
 from qbound.tolerances import BEYOND_JUMP, SAME_POINT, UNCHANGED, UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+Rows = tuple[Ints, Floats, Floats, Ints, Ints]
+"""Slab, lift value, its error, root and contact of roots."""
 
 PLACES = (0.29, 0.5, 0.77)
 """Parts of an element at which it is asked whether bodies touch there; one place may be special."""
@@ -195,7 +206,7 @@ def _standing(
         for k in inner
         if what[k, 1] < plane.count and (what[k, 0] in own or what[k, 0] == NUMBER["constant"])
     ]
-    lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
+    lifts: Any = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
     for line, _, row in candidates:
         if row in found.get(line, ()):
             continue
@@ -300,67 +311,71 @@ class _Fibres:
 
     def _gather(self) -> None:
         """Find the roots in the lift's range and its ends; on a circle without roots, its cut."""
-        plane, pieces, t, m = self.plane, self.pieces, self.t, self.plane.count
-        c = plane.along_lift(t)
-        found, errors, real = plane.roots_and_errors(np.arange(m), c)
-        lifts = plane.scaled[:m, :, 1:].any(axis=(1, 2))
-        real = np.where(lifts, real, -1)
-        for slab, form in np.argwhere(real == 0).tolist():
-            base = self.base(slab)
-            real[slab, form] = 1 if self.precise.real(form, lambda bits, b=base: b) >= 0 else -1
+        parts = [self._of_forms()]
+        if self.plane.contacts.pairs:
+            parts.append(self._of_contacts())
+        rows: list[Any] = [np.concatenate(x) for x in zip(*parts, strict=True)]
+        self.slab, self.values, self.errors, self.roots, self.piece = self._in_range(*rows)
+        self._take(np.lexsort([self.values, self.slab]))
+
+    def _of_forms(self) -> Rows:
+        """Return the roots of forms that stand alone."""
+        plane, m = self.plane, self.plane.count
+        found, errors, real = plane.roots_and_errors(np.arange(m), plane.along_lift(self.t))
+        real = np.where(plane.scaled[:m, :, 1:].any(axis=(1, 2)), real, -1)
+        for k, row in np.argwhere(real == 0).tolist():
+            base = self.base(k)
+            real[k, row] = 1 if self.precise.real(row, lambda bits, b=base: b) >= 0 else -1
         there = np.broadcast_to(real > 0, found.shape).copy()
         if plane.lift_kind == "prismatic":
             there[1] &= ~plane.affine[:m]
         branch, slab, form = np.nonzero(there)
-        values, errors = found[branch, slab, form], errors[branch, slab, form]
-        roots, piece = np.zeros((len(form), 3), dtype=np.int64), np.full(len(form), -1)
-        roots[:, 0], roots[:, 1] = form, 2 * branch - 1
-        if plane.contacts.pairs:
-            k, over = self._alive()
-            touching = pieces.roots(plane, k)
-            row = touching[:, 0]
-            factors = plane.coefficients(row, t[over][:, None])[:, :, 0]
-            both, own, _ = plane.roots_and_errors(row, factors)
-            which_one = (touching[:, 1] > 0).astype(int)
-            every = np.arange(len(k))
-            values = np.concatenate([values, both[which_one, every]])
-            errors = np.concatenate([errors, own[which_one, every]])
-            roots = np.concatenate([roots, touching])
-            slab, piece = np.concatenate([slab, over]), np.concatenate([piece, k])
+        roots = np.stack([form, 2 * branch - 1, np.zeros_like(form)], axis=1)
+        none = np.full(len(form), -1)
+        return slab, found[branch, slab, form], errors[branch, slab, form], roots, none
+
+    def _of_contacts(self) -> Rows:
+        """Return the roots at which bodies touch."""
+        plane, (k, slab) = self.plane, self._alive()
+        roots = self.pieces.roots(plane, k)
+        c = plane.coefficients(roots[:, 0], self.t[slab][:, None])[:, :, 0]
+        values, errors, _ = plane.roots_and_errors(roots[:, 0], c)
+        side, every = (roots[:, 1] > 0).astype(int), np.arange(len(k))
+        return slab, values[side, every], errors[side, every], roots, k
+
+    def _in_range(self, *rows: Any) -> Rows:
+        """Put roots into the lift's range, on as many turns as it has, and its ends with them."""
+        slab, values, errors, roots, piece = rows
+        plane, every = self.plane, np.arange(len(self.t))
         low, high = plane.lift_ends
-        if plane.lift_kind == "revolute":
-            if self.circle:
-                roots[:, 2] = turns_up_to(low, values).astype(np.int64)
-                values = values + TURN * roots[:, 2]
-            else:
+        if self.circle:
+            roots[:, 2] = turns_up_to(low, values).astype(np.int64)
+            values = values + TURN * roots[:, 2]
+            ends = [(which(np.bincount(slab, minlength=len(every)) == 0), low, LOWEST)]
+        else:
+            first = last = np.zeros(len(values), dtype=np.int64)
+            if plane.lift_kind == "revolute":
                 first = turns_up_to(low - errors, values).astype(np.int64)
                 last = turns_up_to(high + errors, values).astype(np.int64)
-                pick, turns = ranges(first, last)
-                values, errors = values[pick] + TURN * turns, errors[pick]
-                slab, roots, piece = slab[pick], roots[pick], piece[pick]
-                roots[:, 2] = turns
-        every = np.arange(len(t))
-        if self.circle:
-            ends = [(which(np.bincount(slab, minlength=len(t)) == 0), low, LOWEST)]
-        else:
-            inside = (values > low - errors) & (values < high + errors)
-            slab, values, roots = slab[inside], values[inside], roots[inside]
-            errors, piece = errors[inside], piece[inside]
+            else:
+                last = last + 1
+            pick, turns = ranges(first, last)
+            slab, errors, roots, piece = (x[pick] for x in (slab, errors, roots, piece))
+            values, roots[:, 2] = values[pick] + TURN * turns, turns
+            inside = which((values > low - errors) & (values < high + errors))
+            slab, values, errors, roots, piece = (
+                x[inside] for x in (slab, values, errors, roots, piece)
+            )
             ends = [(every, low, LOWEST), (every, high, HIGHEST)]
+        parts: list[Rows] = [(slab, values, errors, roots, piece)]
         for where, value, root in ends:
-            slab = np.concatenate([slab, where])
-            values = np.concatenate([values, np.full(len(where), value)])
-            errors = np.concatenate([errors, np.full(len(where), 2 * UNIT * abs(value))])
-            roots = np.concatenate([roots, np.tile(root, (len(where), 1))])
-            piece = np.concatenate([piece, np.full(len(where), -1)])
-        self.slab, self.values, self.errors, self.roots, self.piece = (
-            slab,
-            values,
-            errors,
-            roots,
-            piece,
-        )
-        self._take(np.lexsort([values, slab]))
+            n = len(where)
+            error = np.full(n, 2 * UNIT * abs(value))
+            both = np.tile(root, (n, 1)).astype(np.int64)
+            parts.append((where, np.full(n, value), error, both, np.full(n, -1)))
+        found: list[Any] = [np.concatenate(x) for x in zip(*parts, strict=True)]
+        slab, values, errors, roots, piece = found
+        return slab, values, errors, roots, piece
 
     def _alive(self) -> tuple[Ints, Ints]:
         """Return the pieces over each slab, and the slab, in pairs."""
@@ -380,7 +395,7 @@ class _Fibres:
     # --- order ----------------------------------------------------------------------------------
 
     def _order(self) -> None:
-        """Number the places of roots: doubles put in order what they can, balls the rest."""
+        """Give places of roots their numbers: doubles decide what they can, balls the rest."""
         reach, least = self.values + self.errors, self.values - self.errors
         n, curve = len(self.slab), self._curves()
         close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
@@ -438,7 +453,7 @@ class _Fibres:
         return [row for group in groups for row in group]
 
     def _curves(self) -> Ints:
-        """Number the curves that roots follow: features of one curve have one number."""
+        """Give the curves that roots follow numbers: features of one curve have one."""
         form, branch, count = self.roots[:, 0], self.roots[:, 1], self.plane.count
         curves = self.plane.contacts.curves
         most = curves.max(initial=0) + 1
@@ -603,16 +618,16 @@ class _Fibres:
         tested. Where the count does not return to itself round a circle, or is not what a second
         test finds at an end of a range, each gap of the slab is tested.
         """
-        plane, pieces = self.plane, self.pieces
-        slabs, n = len(self.t), len(self.start)
+        pieces, slabs = self.pieces, len(self.t)
         widths = np.where(gap, self.tops - self.bottoms, -1.0)
         widest = first + _first_largest(widths, first, self.gap_slab)
         change = self._changes()
         count = np.cumsum(change)
         moving = ~pieces.base_only & ~pieces.idle & ~pieces.resting
         found = self._colliding(widest, moving).sum(axis=1)
-        blocked = self._colliding(widest, pieces.base_only | pieces.idle).any(axis=1)
+        blocked: Any = self._colliding(widest, pieces.base_only | pieces.idle).any(axis=1)
         count = count + (found - count[widest])[self.gap_slab]
+        doubtful: Any
         if self.circle:
             doubtful = np.bincount(self.gap_slab, change, slabs) != 0
         else:
@@ -626,10 +641,9 @@ class _Fibres:
         if pieces.resting.any():
             looked = which(free)
             free[looked] = ~self._colliding(looked, pieces.resting).any(axis=1)
-        del n, plane
         return free
 
-    def _changes(self) -> Floats:
+    def _changes(self) -> Ints:
         """Return by how much each group changes the number of pairs in collision.
 
         Of one pair several features may touch at one place: it is one contact. A pair that comes
@@ -644,7 +658,8 @@ class _Fibres:
         key = np.sort((self.group[rows] * pairs + pair) * 2 + enters)
         key = key[np.diff(key, prepend=-1) > 0]
         group, sense = key // (2 * pairs), key % 2
-        return np.bincount(group, np.where(sense == 1, 1.0, -1.0), len(self.start))
+        change = np.bincount(group, np.where(sense == 1, 1.0, -1.0), len(self.start))
+        return change.astype(np.int64)
 
     def _colliding(self, gaps: Ints, pairs: Bools) -> Bools:
         """Tell which of some pairs are not apart in gaps, shape (gaps, pairs)."""
@@ -686,10 +701,10 @@ def turned_root(
 def _numbered(
     forms: Ints, lower: dict[int, tuple[int, ...]], upper: dict[int, tuple[int, ...]]
 ) -> tuple[Ints, list[tuple[int, ...]]]:
-    """Number the sets of rows along both roots of cells: most are one row."""
+    """Give the sets of rows along both roots of cells numbers: most are one row."""
     alone, sets = np.unique(forms, return_inverse=True)
     sets = sets.reshape(forms.shape)
-    numbers = {(form,): k for k, form in enumerate(alone.tolist())}
+    numbers: dict[tuple[int, ...], int] = {(form,): k for k, form in enumerate(alone.tolist())}
     for side, several in enumerate((lower, upper)):
         for k, rows in several.items():
             sets[k, side] = numbers.setdefault(rows, len(numbers))

@@ -259,13 +259,13 @@ class _Contacts:
         self.lines = np.unique(np.concatenate(lines))
 
     def _is_strict(self, found: Events) -> Bools:
-        """Tell which events end a contact's piece in any case: an angle may jump, roots may meet."""
+        """Tell which events end a piece in any case: an angle may jump there, or roots meet."""
         first = self.plane.count + len(self.plane.contacts.forms)
         return np.asarray(found.what[:, 1:].max(axis=1, initial=0) < first)
 
     def _in_order(self, of: Ints, found: Events) -> tuple[Ints, Events]:
         """Sort events by feature and base value; balls decide what doubles do not."""
-        plane, (low, high) = self.plane, self.plane.ends
+        low, high = self.plane.ends
         inside = (found.t >= low - found.radius) & (found.t <= high + found.radius)
         order = np.lexsort([found.t, of])
         order = order[inside[order]]
@@ -428,7 +428,7 @@ class _Contacts:
         c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
         values, _, _ = plane.roots_and_errors(row, c)
         over, _ = _sides_over(plane, feature, t, values)
-        varied = plane.sides.reshape(-1, SIDES, 9)[feature][:, :, 1:].any(axis=2)
+        varied: Any = plane.sides.reshape(-1, SIDES, 9)[feature][:, :, 1:].any(axis=2)
         return np.asarray(((np.abs(over) <= WALL) & varied[:, None]).any(axis=2))
 
     def _boxes(
@@ -476,8 +476,7 @@ class _Contacts:
         slopes = _along_base(plane, plane.scaled[plane.count + features])
         own = Finder(_Slopes(plane, features, slopes), self.finder.precise)  # type: ignore[arg-type]
         n = len(features)
-        found = own.quick(np.arange(n), n + np.arange(n))
-        return found
+        return own.quick(np.arange(n), n + np.arange(n))
 
 
 class _Slopes:

@@ -317,9 +317,9 @@ def normalised(tables: Floats) -> Floats:
     return np.asarray(tables / np.where(largest > 0, largest, 1.0))
 
 
-def which(found: Bools) -> Ints:
+def which(found: Any) -> Ints:
     """Return where an array, shape (n,), is true; of ten entries sooner than `np.flatnonzero`."""
-    return found.nonzero()[0]
+    return np.asarray(found.nonzero()[0])
 
 
 def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:

@@ -21,6 +21,8 @@ from qbound.region.plane import HIGHEST, Plane
 if TYPE_CHECKING:
     from flint import arb_series
 
+    from qbound.region.problem import Problem
+
 Ball = Any
 """An `arb`."""
 
@@ -326,8 +328,7 @@ class Precise:
         self.decided += 1
         with precision(bits):
             whole = arb((low + high) / 2, (high - low) / 2)
-            found = self._in(event, whole, bits)
-        return found
+            return self._in(event, whole, bits)
 
     def _in(self, event: tuple[int, int, int], whole: Ball, bits: int) -> list[Zero] | None:
         from flint import arb
@@ -555,7 +556,7 @@ def _sign(x: Ball) -> int:
 
 
 def _half_turn(c2: Ball) -> Ball:
-    """Return half a turn, to the side that makes an angle one between minus and plus half a turn."""
+    """Return half a turn, to the side that leaves an angle between minus and plus half a turn."""
     from flint import arb
 
     return -arb.pi() if c2 < 0 else arb.pi()

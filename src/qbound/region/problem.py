@@ -237,12 +237,15 @@ def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
         If not exactly two joints are left free, or `held` names no joint or no finite number.
     """
     values = robot.held_indices(held or {})
-    return _slice_problem(robot, values) if values else _whole_problem(robot)
+    return _slice_problem(robot, values) if values else _whole_problem(robot, id(robot.source))
 
 
 @lru_cache(maxsize=4)
-def _whole_problem(robot: Robot) -> Problem:
-    """State the clearance rule where nothing is held; a robot that is asked again has the same."""
+def _whole_problem(robot: Robot, _source: int) -> Problem:
+    """State the clearance rule where nothing is held; a robot that is asked again has the same.
+
+    Equal robots may be written in other decimals: exact numbers are those of the robot's source.
+    """
     return _slice_problem(robot, {})
 
 

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from importlib.util import find_spec
 from itertools import chain, islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
+from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.region.cells import CellComplex
-from qbound.region.components import Component, bounded, closures, measured
+from qbound.region.components import Component, bounded, closures, drawn, measured, numbered
 from qbound.region.decomposition import decompose, nothing_in
 from qbound.region.emptiness import irreducible
 from qbound.region.halfedges import find_loops, half_edges
@@ -24,13 +24,15 @@ from qbound.region.loops import BoundaryLoop, Layout
 from qbound.region.precise import Precise, UndecidedError
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.region.relevant import without_irrelevant
-from qbound.region.verified import faults
+from qbound.region.verified import Found, faults
 from qbound.tolerances import UNIT
 from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from shapely import MultiPolygon
+
+    from qbound.measures.nearest import BoundaryPoint
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -99,9 +101,9 @@ class Region:
     cells: CellComplex
     base: int
     owner: dict[int, int]
-    empty_because: tuple[str, ...] = ()
-    irrelevant: tuple[str, ...] = ()
-    unresolved: tuple[str, ...] = ()
+    empty_because: tuple[str, ...] = field(default_factory=tuple)
+    irrelevant: tuple[str, ...] = field(default_factory=tuple)
+    unresolved: tuple[str, ...] = field(default_factory=tuple)
     inner: Problem | None = None
 
     def __repr__(self) -> str:
@@ -111,8 +113,8 @@ class Region:
         if self.unresolved:
             return f"<Region{of}: unresolved: {printable(self.unresolved[0])}>"
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
-        home = "with home" if self.home is not None else "home in none"
-        return f"<Region{of}: {count}, {home}, area {self.area:.6g} {self.area_unit}>"
+        home = "" if robot is None else ", with home" if self.home is not None else ", home in none"
+        return f"<Region{of}: {count}{home}, area {self.area:.6g} {self.area_unit}>"
 
     @property
     def components(self) -> tuple[Component, ...]:
@@ -178,8 +180,15 @@ class Region:
     @property
     def robot(self) -> Robot:
         """The robot; ValueError where the region is of forms that stand for themselves."""
+        return self._robot_for("robot")
+
+    def _robot_for(self, asked: str) -> Robot:
+        """Return the robot, for what cannot do without."""
         if self.problem.robot is None:
-            raise ValueError("this region is of forms, not of a robot")
+            raise ValueError(
+                f"{asked}: this region is of forms, not of a robot; plot, sample, nearest,"
+                " to_geojson and to_shapely need none"
+            )
         return self.problem.robot
 
     @property
@@ -250,13 +259,32 @@ class Region:
         >>> region.components_of([0.2, 2.5])
         (1,)
         """
-        placed = closures(self.problem, self.cells, self.base, np.asarray(q, dtype=float))
-        if not self.components:  # an unresolved region raises here
-            return ()
+        _ = self.components  # an unresolved region raises
+        placed = closures(self.problem, self.cells, self.base, real_numbers(q))
         return tuple(sorted({self.owner[one.cell] for one in placed if one.cell in self.owner}))
 
-    def component_of(self, q: ArrayLike) -> int | None:
-        """Return the first of `components_of`, None where there is none.
+    @overload
+    def component_of(self, q: Sequence[float]) -> int | None: ...
+    @overload
+    def component_of(self, q: ArrayLike) -> Any: ...
+    def component_of(self, q: ArrayLike) -> Any:
+        """Return the number of the component that a configuration lies in, or of many.
+
+        Parameters
+        ----------
+        q : array_like, shape (2,) or (..., 2)
+            Rad or length; modulo full turns of a joint without limits.
+
+        Returns
+        -------
+        int or None, or ndarray of int, shape (...)
+            The first of `components_of`. Where there is none it is None for one configuration, and
+            -1 in an array.
+
+        Raises
+        ------
+        ValueError
+            As `margins`.
 
         Examples
         --------
@@ -266,11 +294,109 @@ class Region:
         0
         >>> print(region.component_of([1.5, 0.0]))
         None
-        """
-        return next(iter(self.components_of(q)), None)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the components, angles in degrees, and return the axes; needs ``qbound[figures]``.
+        A million configurations are one call:
+
+        >>> region.component_of([[0.2, -0.5], [1.5, 0.0], [0.2, 2.5]]).tolist()
+        [0, -1, 1]
+        """
+        places = real_numbers(q)
+        if places.ndim < 2:
+            return next(iter(self.components_of(places)), None)
+        _ = self.components
+        flat = self.problem.evaluator.shaped(places).reshape(-1, 2)
+        found = numbered(self.problem, self.cells, self.base, self.owner, flat)
+        return found.reshape(places.shape[:-1])
+
+    def nearest(
+        self, q: ArrayLike, component: int | None = None, weights: Sequence[float] = (1.0, 1.0)
+    ) -> BoundaryPoint:
+        """Return the point of the boundary that is nearest to a configuration, feasible or not.
+
+        Parameters
+        ----------
+        q : array_like, shape (2,)
+            rad or length.
+        component : int, optional
+            Take the boundary of this component alone; default: of all.
+        weights : sequence of two float
+            What a unit of each joint counts; for one that turns and one that slides give the
+            length of the arm for the first.
+
+        Returns
+        -------
+        BoundaryPoint
+            With ``q``, ``boundary``, ``component``, ``distance`` (`qbound.measures.nearest`).
+
+        Raises
+        ------
+        ValueError
+            If there is no boundary, or a weight or joint value is unfit.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> point = find_region(load_robot("minervabot-v2")).nearest([0.2, -0.5])
+        >>> point.boundary, point.q.round(3).tolist(), round(point.distance, 3)
+        ('B7', [0.898, -0.223], 0.751)
+        """
+        from qbound.measures.nearest import nearest_boundary
+
+        return nearest_boundary(self, q, component, weights)
+
+    def sample(self, n: int, rng: np.random.Generator | int | None = None) -> Floats:
+        """Draw feasible configurations, evenly over the area of all components.
+
+        Parameters
+        ----------
+        n : int
+        rng : numpy.random.Generator or int, optional
+            The generator, or the seed of one; the same seed draws the same configurations.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            Rad or length; a joint that turns all the way round in (-pi, pi].
+
+        Raises
+        ------
+        ValueError
+            If the region is empty.
+
+        Examples
+        --------
+        >>> from qbound import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> q = region.sample(1000, rng=1)
+        >>> q.shape, bool(region.contains(q).all())
+        ((1000, 2), True)
+        """
+        if not self.components:
+            raise ValueError("the region is empty: there is nothing to draw from")
+        own = np.array(sorted(self.owner))
+        return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(rng))
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        component: int | None = None,
+        unit: Literal["deg", "rad"] = "deg",
+        **style: Any,
+    ) -> Axes:
+        """Draw the components and return the axes; needs ``qbound[figures]``.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Default: those of a new figure.
+        component : int, optional
+            Draw this component alone.
+        unit : {"deg", "rad"}
+            Of the angles on both axes; lengths are in the robot's unit. Joint values of your own
+            fit onto axes in radians.
+        **style
+            What matplotlib's patches take: ``facecolor``, ``alpha``, ``label``, ...
 
         Examples
         --------
@@ -281,11 +407,17 @@ class Region:
         >>> axes.get_xlabel()
         'beam / mm'
 
+        Points of your own are laid over a picture in radians:
+
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> axes = region.plot(figure.subplots(), unit="rad", facecolor="tab:green", alpha=0.5)
+        >>> points = axes.plot(*region.sample(100, rng=1).T, ".")
+
         Without axes of your own it opens a figure with `matplotlib.pyplot`, a new one each time.
         """
         from qbound.figures.pictures import plot_region
 
-        return plot_region(self, ax)
+        return plot_region(self, ax, component=component, unit=unit, **style)
 
     def explore(self) -> Any:
         """Return the page in which one moves the arm; Jupyter shows it inline.
@@ -298,6 +430,7 @@ class Region:
         """
         from qbound.explorer import explore
 
+        self._robot_for("explore")
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
@@ -314,6 +447,7 @@ class Region:
         """
         from qbound.export.document import region_document
 
+        self._robot_for("to_dict")
         return region_document(self)
 
     def to_geojson(self, deviation: float = 1e-3) -> dict[str, Any]:
@@ -332,8 +466,10 @@ class Region:
 
         return outlines_geojson(find_outlines(self, deviation))
 
-    def to_shapely(self, deviation: float = 1e-3) -> MultiPolygon:
+    def to_shapely(self, deviation: float = 1e-3, component: int | None = None) -> MultiPolygon:
         """Return polygons, no farther from the arcs than `deviation`, as one shapely geometry.
+
+        They are those of one component, if it is given.
 
         Examples
         --------
@@ -347,11 +483,11 @@ class Region:
         """
         from qbound.export.outlines import find_outlines, outlines_shapely
 
-        return outlines_shapely(find_outlines(self, deviation))
+        return outlines_shapely(find_outlines(self, deviation), component)
 
     def _repr_svg_(self) -> str | None:
         """Return the picture that Jupyter shows, where matplotlib is installed."""
-        if self.problem.robot is None or find_spec("matplotlib") is None:
+        if find_spec("matplotlib") is None:
             return None
         from qbound.figures.pictures import region_picture
 
@@ -481,7 +617,8 @@ class _Asked:
             except UndecidedError as error:
                 reasons = (str(error),)
                 continue
-            reasons = tuple(faults(region))
+            found = Found(self.problem, self.inner, region.cells, region.found, region.owner)
+            reasons = tuple(faults(found))
             if not reasons:
                 return region, ()
         return None, reasons
@@ -533,21 +670,24 @@ class _Asked:
 def _differences(one: Region, other: Region) -> tuple[str, ...]:
     """Return what two regions of one problem, found over either joint, do not have in common."""
     found = []
-    for what, size in (
-        ("components", lambda region: len(region.components)),
-        ("loops", lambda region: sum(len(c.loops) for c in region.components)),
-        ("vertices", lambda region: sum(len(c.vertices) for c in region.components)),
+    for what, *counts in zip(
+        ("components", "loops", "vertices"), _counts(one), _counts(other), strict=True
     ):
-        counts = size(one), size(other)
         if counts[0] != counts[1]:
             found.append(f"{counts[0]} {what} over one joint, {counts[1]} over the other")
-    areas = [sorted(c.area for c in region.components) for region in (one, other)]
-    if not found and areas[0]:
-        plane, off = one.cells.plane, np.abs(np.subtract(*areas)).max()
+    if not found and one.components:
+        areas = np.array([sorted(c.area for c in region.components) for region in (one, other)])
+        plane, off = one.cells.plane, float(np.ptp(areas, axis=0).max())
         rounding = 64 * UNIT * plane.base_unit * plane.lift_unit
         if off > SAME_AREA * max(one.area, other.area) + rounding:
             found.append(f"an area differs by {off:.2g} between the joints")
     return tuple(found)
+
+
+def _counts(region: Region) -> tuple[int, int, int]:
+    """Return the numbers of components, loops and vertices."""
+    every = region.components
+    return len(every), sum(len(c.loops) for c in every), sum(len(c.vertices) for c in every)
 
 
 SAME_AREA = 1e-9
@@ -564,49 +704,3 @@ def _why_no_home(region: Region) -> str:
     lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
-
-
-def margins(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
-    """Return the margin of a configuration to every boundary in use and to every joint limit.
-
-    Margins are lengths for boundaries (``|B| - d_min``, or the depth inside a half-space), joint
-    units for limits; negative where violated (eqs. 9-12), 0 where rounding alone makes it so.
-
-    Raises
-    ------
-    ValueError
-        If a joint value is NaN or infinite, or there is not one for each joint.
-
-    Examples
-    --------
-    >>> from qbound import load_robot, margins
-    >>> robot = load_robot("two-joint-arm-with-walls")
-    >>> name, margin = min(margins(robot, [0.0, 0.0]), key=lambda item: item[1])
-    >>> name, round(margin, 3)
-    ('forearm, lamp', 0.131)
-
-    All joints count, however many, and a joint limit is a boundary; on its limit a joint keeps it:
-
-    >>> dict(margins(load_robot("pp-portal"), [0.0, 100.0]))["beam.lower"]
-    0.0
-    """
-    refuse_no_robot("margins", robot)
-    compiled = evaluator(robot)
-    if np.ndim(q) != 1:
-        raise ValueError("one configuration is wanted; for many there is Region.margins")
-    return list(zip(compiled.names, compiled.margins(q).tolist(), strict=True))
-
-
-def violated(robot: Robot, q: ArrayLike) -> list[tuple[str, float]]:
-    """Return those of the `margins` of a configuration that are negative; none: feasible.
-
-    Examples
-    --------
-    >>> from qbound import load_robot, violated
-    >>> robot = load_robot("minervabot-v2")
-    >>> [(name, round(margin, 3)) for name, margin in violated(robot, [1.5, 0.0])]
-    [('B7', -26.882)]
-    >>> violated(robot, [0.2, -0.5])
-    []
-    """
-    return [(name, margin) for name, margin in margins(robot, q) if margin < 0]

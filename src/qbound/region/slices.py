@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +43,14 @@ class Slices:
         low, high = self.areas.min(), self.areas.max()
         count = len(self.regions)
         return f"<{count} slices along {joint!r}: areas {low:.6g} to {high:.6g} {unit}>"
+
+    def __len__(self) -> int:
+        """Count the slices."""
+        return len(self.regions)
+
+    def __iter__(self) -> Iterator[Region]:
+        """Go through the regions, in the order of `values`."""
+        return iter(self.regions)
 
     @property
     def areas(self) -> Floats:
@@ -115,6 +123,8 @@ def find_slices(
     >>> slices = find_slices(robot, "q3", [-0.5, 0.0, 0.5])
     >>> slices.areas.round(3).tolist()
     [23.459, 24.157, 24.786]
+    >>> [len(region.components) for region in slices]
+    [5, 5, 5]
     >>> [slices.holds_home(k) for k in range(3)]
     [False, True, False]
     """

@@ -6,21 +6,21 @@ margins, which knows robots and distances only; where its doubles do not decide,
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.region.arcs import ordered
 from qbound.region.cells import CellComplex
+from qbound.region.components import Component
 from qbound.region.decomposition import apart, turned_root
 from qbound.region.plane import which
 from qbound.region.precise import LEVELS, Precise, precision
+from qbound.region.problem import Problem
 from qbound.tolerances import ON_ARC, UNIT
-
-if TYPE_CHECKING:
-    from qbound.region.region import Region
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,67 +39,90 @@ CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
 
 
-def faults(region: Region) -> list[str]:
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What is verified.
+
+    Attributes
+    ----------
+    problem : Problem
+        What was asked.
+    inner : Problem
+        What is left of it for the search: its rows are those of the cells' plane.
+    cells : CellComplex
+    components : sequence of Component
+    owner : mapping of int to int
+        Component of each cell.
+    """
+
+    problem: Problem
+    inner: Problem
+    cells: CellComplex
+    components: Sequence[Component]
+    owner: Mapping[int, int]
+
+    @property
+    def base(self) -> int:
+        """Which joint is the base of the cells."""
+        return self.cells.plane.base
+
+
+def faults(found: Found) -> list[str]:
     """Return what is wrong with a region, a sentence each; none where it is right.
 
     Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
     middle and its boundaries are violated just beyond, and whether loops are as many as Euler's
     count of the cells allows.
     """
-    found = list(_off(region))
-    found += _Cells(region).faults()
-    found += _loops(region)
-    return found
+    return [*_off(found), *_Cells(found).faults(), *_loops(found)]
 
 
-def _off(region: Region) -> Iterator[str]:
+def _off(found: Found) -> Iterator[str]:
     """Yield the arcs and vertices that do not lie on their boundaries."""
-    arcs = [arc for part in region.components for loop in part.loops for arc in loop]
+    arcs = [arc for part in found.components for loop in part.loops for arc in loop]
     if not arcs:
         return
-    column = {name: k for k, name in enumerate(region.boundaries)}
+    column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
     laid = arcs[0].laid  # all arcs are laid behind one another
     first, end = np.array([arc.span for arc in arcs]).T
     starts = ordered(laid.start[first], laid.base)[:, None]
     q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), starts], axis=1)
     limited = np.array([arc.row < 0 for arc in arcs])
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
-    margins = np.abs(region.problem.evaluator.margins(q))
+    margins = np.abs(found.problem.evaluator.margins(q))
     off = np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0]
     if limited.any():
-        off[limited] = _to_limits(region, q[limited])
-    allowed = ON_ARC * np.where(limited, 1.0, region.problem.evaluator.sizes[rows])
+        off[limited] = _to_limits(found, q[limited])
+    allowed = ON_ARC * np.where(limited, 1.0, found.problem.evaluator.sizes[rows])
     for k, place in np.argwhere(off > allowed[:, None]).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k, place])
         yield f"an arc of {arcs[k].boundary} is {off[k, place]:.2g} off it at ({at})"
 
 
-def _to_limits(region: Region, q: Floats) -> Floats:
+def _to_limits(found: Found, q: Floats) -> Floats:
     """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
-    plane, found = region.cells.plane, []
+    plane, gaps = found.cells.plane, []
     units = plane.base_unit, plane.lift_unit
-    for j, limits in enumerate(region.problem.ranges):
-        unit = units[0] if j == region.base else units[1]
-        found += [(q[..., j] - end) / unit for end in limits or ()]
-    return np.asarray(np.abs(found).min(axis=0))
+    for j, limits in enumerate(found.problem.ranges):
+        unit = units[0] if j == found.base else units[1]
+        gaps += [(q[..., j] - end) / unit for end in limits or ()]
+    return np.asarray(np.abs(gaps).min(axis=0))
 
 
 class _Cells:
     """What the cells of a region are asked: free in the middle, and not beyond their ends."""
 
-    def __init__(self, region: Region) -> None:
-        self.region, self.cells = region, region.cells
-        self.plane = region.cells.plane
-        self.found = region.cells.decomposition
-        evaluator = region.problem.evaluator
+    def __init__(self, found: Found) -> None:
+        self.cells, self.plane, inner = found.cells, found.cells.plane, found.inner
+        self.found = found.cells.decomposition
+        evaluator = found.problem.evaluator
         self.evaluator, self.doubt = evaluator, CLEAR * evaluator.margin_rounding
-        self.column = {name: k for k, name in enumerate(region.boundaries)}
-        inner = region.inner or region.problem
+        self.column = {name: k for k, name in enumerate(evaluator.names)}
         self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
 
     def faults(self) -> list[str]:
         """Return what is wrong."""
-        cells, plane = self.cells, self.plane
+        cells = self.cells
         every = np.arange(len(cells.slabs))
         if not len(every):
             return []
@@ -120,7 +143,6 @@ class _Cells:
                 if not self._is_shut(k, side, t[k], start[k], end[k]):
                     place = self._place(t[k], value[k])
                     found.append(f"beyond a cell's end at {place} nothing is violated")
-        del plane
         return found + self._standing()
 
     def _standing(self) -> list[str]:
@@ -145,11 +167,11 @@ class _Cells:
         return found
 
     def _margins(self, t: Floats, v: Floats) -> Floats:
-        q = ordered(np.stack([t, v], axis=1), self.region.base)
+        q = ordered(np.stack([t, v], axis=1), self.plane.base)
         return np.asarray(self.evaluator.margins(q))
 
     def _place(self, t: float, v: float) -> str:
-        one, other = (t, v) if self.region.base == 0 else (v, t)
+        one, other = (t, v) if self.plane.base == 0 else (v, t)
         return f"({one:.9g}, {other:.9g})"
 
     def _shut(
@@ -193,9 +215,8 @@ class _Cells:
         return _free(precise, base, middle)
 
     def _root(self, k: int, side: int, base: Any, bits: int) -> Any:
-        form, branch, turns = self.cells.roots[k, side].tolist()
+        form, branch, _ = self.cells.roots[k, side].tolist()
         near = self.cells.interval([k], np.array([[float(base.mid())]]))[side, 0, 0]
-        del turns
         return turned_root(self.found.precise, form, branch, base, bits, float(near))
 
     def _is_shut(self, k: int, side: int, t: float, start: float, end: float) -> bool:
@@ -227,7 +248,7 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
     )
 
 
-def _loops(region: Region) -> list[str]:
+def _loops(found: Found) -> list[str]:
     """Compare the number of loops of each component with Euler's count of its cells.
 
     A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
@@ -235,19 +256,19 @@ def _loops(region: Region) -> list[str]:
     plane or on a cylinder as many loops bound it as 2 less that count; on a torus, of which it is
     all but some holes, 2 less.
     """
-    cells, owner = region.cells, region.owner
+    cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
-    found = []
+    wrong = []
     count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float))
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
     np.subtract.at(count, part[elements.cell[0, joined]], 1)
     np.add.at(count, part[elements.cell[0, _between(cells)]], 1)
-    for k, component in enumerate(region.components):
+    for k, component in enumerate(found.components):
         wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
         if len(component.loops) not in wanted:
-            found.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
-    return found
+            wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
+    return wrong
 
 
 def _between(cells: CellComplex) -> Ints:

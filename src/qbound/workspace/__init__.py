@@ -7,3 +7,27 @@
 - `areas`: the workspace, its aspects and areas; `passage`: which poses it joins;
 - `report`: all of these, as they were asked for.
 """
+
+from qbound.workspace.areas import Aspect, Workspace, find_workspace
+from qbound.workspace.passage import find_passage
+from qbound.workspace.planar import (
+    NoPlanarWorkspaceError,
+    PlanarArm,
+    Posture,
+    planar_arm,
+    postures,
+)
+from qbound.workspace.report import workspace_report
+
+__all__ = [
+    "Aspect",
+    "NoPlanarWorkspaceError",
+    "PlanarArm",
+    "Posture",
+    "Workspace",
+    "find_passage",
+    "find_workspace",
+    "planar_arm",
+    "postures",
+    "workspace_report",
+]

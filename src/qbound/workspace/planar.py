@@ -23,8 +23,9 @@ from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import FACTORS, Kind, basis
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
+from qbound.model.values import real_numbers
 from qbound.printable import printable
-from qbound.tolerances import NEGLIGIBLE, ZERO_AMPLITUDE
+from qbound.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -215,7 +216,7 @@ def postures(
         If a coordinate is not finite, or the place is on the first joint's axis, where a whole
         circle of configurations reaches it.
     """
-    if not np.isfinite(np.asarray(place, dtype=float)).all():
+    if not np.isfinite(real_numbers(place)).all():
         raise ValueError("a place needs two finite coordinates")
     z = arm.in_frame(place)
     u, singular = _distance(arm, z)
@@ -228,6 +229,36 @@ def postures(
             sign = 0 if singular else side
             found += [Posture(np.array([a, b]), sign) for b in second for a in first]
     return found
+
+
+def planar_postures(robot: Robot, place: ArrayLike, held: Mapping[int, float]) -> Floats:
+    """Return the values of the two free joints that bring the tool to a place, within limits.
+
+    Parameters
+    ----------
+    place : array_like, shape (3,)
+        Seen from the base; length. One beside the tool's plane is out of reach.
+
+    Returns
+    -------
+    ndarray, shape (k, 2)
+
+    Raises
+    ------
+    ValueError
+        As `planar_arm` and `postures`, and if the place is not three finite numbers.
+    """
+    at = real_numbers(place)
+    if at.shape != (3,) or not np.isfinite(at).all():
+        raise ValueError(f"a place needs three finite coordinates, found {at.tolist()}")
+    arm, free = planar_arm(robot, held), robot.free(held)
+    home = robot.forward_kinematics(robot.with_held(robot.home[free], held))
+    off = (at - home) - arm.axes.T @ (arm.axes @ (at - home))
+    if np.linalg.norm(off) > ON_BOUNDARY * max(robot.stretched(robot.tool), 1e-300):
+        return np.empty((0, 2))
+    one, other = (robot.joints[j].limits for j in free)
+    found = postures(arm, arm.axes @ at, (one, other))
+    return np.array([posture.q for posture in found]).reshape(-1, 2)
 
 
 def _distance(arm: PlanarArm, z: complex) -> tuple[float | None, bool]:

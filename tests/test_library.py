@@ -1,0 +1,400 @@
+"""What one types in Python: names, equality, one question asked of one configuration or of many."""
+
+import inspect
+import pickle
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose, assert_array_equal
+
+import qbound
+from qbound import (
+    HarmonicForm,
+    clearance,
+    find_region,
+    find_slices,
+    is_feasible,
+    keeps_clear,
+    load_robot,
+    margins,
+    packaged_robots,
+    sample,
+    save_robot,
+    violated,
+    why,
+)
+from qbound.boundary.evaluator import evaluator
+from qbound.export.outlines import find_outlines
+from qbound.forms.circle import circle_arc, circle_roots
+from qbound.region import Problem, clearance_problem, solve
+from support.forms import LENS, LIMITS, PP, RR, forms
+
+MINERVA = load_robot("minervabot-v2")
+REGION = find_region(MINERVA)
+TWO = [name for name in packaged_robots() if name != "ur5"]
+OWN = solve(
+    Problem(forms(RR, {"10": 1.0, "01": 1.0, "00": -0.5}), ("lens",), ((-3.0, 3.0), None), LIMITS)
+)
+"""A region of a form of one's own: cos q1 + cos q2 > 0.5."""
+BAD = [float("nan"), float("inf"), 1j]
+
+
+def configurations(robot, n=500):
+    """Draw configurations, some of them beyond limits."""
+    low, high = np.array([joint.limits or (-4.0, 4.0) for joint in robot.joints]).T
+    room = 0.1 * (high - low)
+    return np.random.default_rng(5).uniform(low - room, high + room, (n, len(low)))
+
+
+# --- names ----------------------------------------------------------------------------------------
+
+
+def test_the_front_door_shows_what_a_user_needs_and_nothing_else() -> None:
+    assert sorted(dir(qbound)) == sorted([*qbound.__all__, "__version__"])
+    assert len(qbound.__all__) <= 22
+    assert {"keeps_clear", "sample", "why", "fibres", "reach", "is_feasible"} <= {*qbound.__all__}
+    for moved in ("components", "pair_vector", "circle_arc", "circle_roots"):
+        with pytest.raises(AttributeError):
+            getattr(qbound, moved)
+
+
+def test_the_index_of_the_api_page_has_every_name_of_the_front_door() -> None:
+    page = (Path(__file__).parents[1] / "book" / "api.md").read_text("utf-8")
+    index = page.split("## Index by name")[1].split("\n## ")[0]
+    assert re.findall(r"^\| `(\w+)` \|", index, re.MULTILINE) == qbound.__all__
+    for name in qbound.__all__:
+        target = getattr(qbound, name)
+        assert f"`{target.__module__}.{name}`" in index
+
+
+def test_help_on_a_region_shows_no_docstring_of_a_tuple() -> None:
+    shown = subprocess.run(
+        [sys.executable, "-c", "import qbound; help(qbound.Region)"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert "Built-in immutable sequence" not in shown
+
+
+def test_the_workspace_has_its_calls_at_its_door() -> None:
+    from qbound import workspace
+
+    arm, problem = workspace.planar_arm(MINERVA), clearance_problem(MINERVA)
+    assert workspace.find_workspace(arm, problem, MINERVA.home).area > 0
+
+
+# --- robots ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_robots_are_equal_by_content(name) -> None:
+    one, other = load_robot(name), load_robot(name)
+    assert one == other
+    assert hash(one) == hash(other)
+    assert one == replace(one, source=None) == pickle.loads(pickle.dumps(one))
+    assert one != replace(one, name="another")
+    assert one != replace(one, home=one.home + 0.25)
+    assert one != name
+
+
+def test_one_number_anywhere_makes_another_robot() -> None:
+    robot = load_robot("two-links-on-a-table")
+    body = robot.obstacles[0]
+    shape = replace(body.shape, at=body.shape.at + 0.1)
+    moved = (replace(body, shape=shape), *robot.obstacles[1:])
+    joint = replace(robot.joints[0], origin=robot.joints[0].origin + 0.1)
+    others = [
+        replace(robot, obstacles=moved),
+        replace(robot, joints=(joint, *robot.joints[1:])),
+        replace(robot, clearance=0.001),
+    ]
+    assert len({robot, load_robot("two-links-on-a-table"), *others}) == 4
+
+
+def test_a_hash_of_another_process_is_not_taken_over() -> None:
+    hash(MINERVA)
+    assert not {"_hash", "_content"} & set(vars(pickle.loads(pickle.dumps(MINERVA))))
+
+
+def test_equal_robots_keep_the_decimals_of_their_own_files() -> None:
+    """Exact numbers come from the text that a robot was read from, and that is not compared."""
+    doubles = replace(load_robot("minervabot-v2"), source=None)
+    assert doubles == MINERVA
+    assert clearance_problem(MINERVA).robot.source == MINERVA.source
+    assert clearance_problem(doubles).robot.source is None
+
+
+def test_a_robot_of_bodies_says_so() -> None:
+    table = load_robot("two-links-on-a-table")
+    assert repr(table).endswith("elbow (revolute); 8 pairs of bodies>")
+    assert repr(load_robot("minervabot-v2-bodies")).endswith("; 1 boundary and 3 pairs of bodies>")
+
+
+@pytest.mark.parametrize("name", TWO)
+def test_inverse_kinematics_lead_back(name) -> None:
+    robot = load_robot(name)
+    for q in configurations(robot, 20):
+        place = robot.forward_kinematics(q)
+        found = robot.inverse_kinematics(place)
+        assert_allclose(robot.forward_kinematics(found), np.tile(place, (len(found), 1)), atol=1e-9)
+        inside = not any(
+            f"{j.name}." in bound for j in robot.joints for bound, _ in violated(robot, q)
+        )
+        turns = [joint.limits is None for joint in robot.joints]
+        off = np.where(turns, np.sin((found - q) / 2), found - q)
+        assert not inside or np.abs(off).max(axis=-1).min() < 1e-6
+
+
+def test_forward_kinematics_are_the_frames() -> None:
+    robot = load_robot("ur5")
+    q = np.random.default_rng(2).uniform(-3, 3, (4, 5, 6))
+    places = robot.forward_kinematics(q)
+    assert places.shape == (4, 5, 3)
+    frames = robot.frames(q[1, 2])
+    assert_allclose(places[1, 2], frames.position(robot.base, robot.tool, robot.base))
+    assert_array_equal(robot.forward_kinematics(q, robot.base), np.zeros((4, 5, 3)))
+    with pytest.raises(ValueError, match="no point or frame 'nowhere'"):
+        robot.forward_kinematics(q, "nowhere")
+
+
+def test_kinematics_refuse_what_is_no_place() -> None:
+    arm = load_robot("two-joint-arm-with-walls")
+    assert arm.inverse_kinematics([0.5, 0.1, 0.2]).shape == (0, 2)  # beside the tool's plane
+    with pytest.raises(ValueError, match="three finite coordinates"):
+        arm.inverse_kinematics([0.5, 0.2])
+    with pytest.raises(ValueError, match="not two"):
+        load_robot("ur5").inverse_kinematics([0.5, 0.0, 0.2])
+    for bad in BAD:
+        with pytest.raises(ValueError, match=r"finite|real"):
+            arm.inverse_kinematics([0.5, 0.0, bad])
+        with pytest.raises(ValueError, match=r"finite|no array of numbers"):
+            arm.forward_kinematics([0.5, bad])
+
+
+# --- one configuration or many --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_margins_of_many_are_those_of_each(name) -> None:
+    robot = load_robot(name)
+    q = configurations(robot, 12).reshape(3, 4, -1)
+    found = margins(robot, q)
+    names = [boundary for boundary, _ in margins(robot, q[0, 0])]
+    assert found.shape == (3, 4, len(names))
+    assert names == list(evaluator(robot).names)
+    each = [[[margin for _, margin in margins(robot, x)] for x in row] for row in q]
+    assert_allclose(found, each, atol=1e-9)
+    assert_array_equal(is_feasible(robot, q), (found >= 0).all(axis=-1))
+    assert_array_equal(is_feasible(robot, q), [[not violated(robot, x) for x in row] for row in q])
+
+
+def test_feasible_counts_limits_and_keeping_clear_does_not() -> None:
+    robot = load_robot("ur5")
+    q = np.array([7.0, -1.57, 1.57, -1.57, -1.57, 0.0])
+    assert keeps_clear(robot, q)
+    assert not is_feasible(robot, q)
+    assert "limits" in inspect.getdoc(keeps_clear).splitlines()[0]
+
+
+def test_who_asks_bodies_for_a_form_is_told_what_they_have() -> None:
+    robot = load_robot("two-links-on-a-table")
+    with pytest.raises(ValueError, match=r"no single boundary function; margins\(robot, q\)"):
+        clearance(robot, robot.used[0])
+    assert robot.used[0].name in dict(margins(robot, robot.home))
+
+
+def test_violated_takes_one_configuration() -> None:
+    with pytest.raises(ValueError, match="one configuration"):
+        violated(MINERVA, np.zeros((3, 2)))
+
+
+@pytest.mark.parametrize("name", TWO)
+def test_components_of_many_are_those_of_each(name) -> None:
+    robot = load_robot(name)
+    region = find_region(robot)
+    corners = [vertex.q for component in region.components for vertex in component.vertices]
+    q = np.concatenate([configurations(robot), *(np.array(corners).reshape(-1, 2),)])
+    each = [region.component_of(x) for x in q]
+    assert_array_equal(region.component_of(q), [-1 if k is None else k for k in each])
+    assert len({*each}) > 1
+    assert region.component_of(q[:6].reshape(3, 2, 2)).shape == (3, 2)
+    assert region.component_of(np.empty((0, 2))).shape == (0,)
+
+
+def test_components_of_configurations_a_turn_away() -> None:
+    q = configurations(MINERVA, 200)
+    assert_array_equal(
+        REGION.component_of(q), REGION.component_of(q + np.array([2 * np.pi, -4 * np.pi]))
+    )
+
+
+@pytest.mark.parametrize("bad", BAD)
+def test_what_is_no_real_number_is_refused_everywhere(bad) -> None:
+    q = [0.2, bad]
+    questions = [
+        REGION.margins,
+        REGION.contains,
+        REGION.component_of,
+        REGION.components_of,
+        REGION.nearest,
+        OWN.contains,
+        MINERVA.frames,
+        HarmonicForm(np.ones((3, 3)), RR),
+        lambda q: margins(MINERVA, q),
+        lambda q: is_feasible(MINERVA, q),
+        lambda q: keeps_clear(MINERVA, q),
+        lambda q: violated(MINERVA, q),
+    ]
+    for ask in questions:
+        with pytest.raises(ValueError, match=r"NaN|finite|real|numbers"):
+            ask(q)
+    for solve_one in (circle_roots, circle_arc):
+        with pytest.raises(ValueError, match=r"finite|real"):
+            solve_one(bad, 1.0, 0.5)
+    for ask in (REGION.contains, REGION.component_of, lambda q: margins(MINERVA, q)):
+        with pytest.raises(ValueError, match=r"NaN|finite|real|numbers"):
+            ask(np.array([q] * 300))
+
+
+# --- drawing from a region, and what is near ------------------------------------------------------
+
+
+@pytest.mark.parametrize("region", [REGION, OWN, find_region(load_robot("pr-gantry-arm"))])
+def test_a_sample_is_even_over_the_area(region) -> None:
+    q = region.sample(4000, rng=7)
+    assert region.contains(q).all()
+    assert_array_equal(q, region.sample(4000, np.random.default_rng(7)))
+    part = np.array([component.area for component in region.components]) / region.area
+    drawn = np.bincount(region.component_of(q), minlength=len(part)) / len(q)
+    assert_allclose(drawn, part, atol=4 * np.sqrt(0.25 / len(q)))
+    # a uniform density: the mean of any function is its integral over the area
+    largest = region.components[int(part.argmax())]
+    if largest.centroid is not None:
+        own = q[region.component_of(q) == part.argmax()]
+        turns = [ends is None for ends in region.problem.ranges]
+        off = own - largest.centroid
+        off = np.where(turns, (off + np.pi) % (2 * np.pi) - np.pi, off)
+        assert (np.abs(off.mean(axis=0)) < 5 * own.std(axis=0) / np.sqrt(len(own))).all()
+
+
+def test_nothing_is_drawn_from_an_empty_region() -> None:
+    floor = replace(MINERVA.boundary("B7"), offset=100.0)
+    with pytest.raises(ValueError, match="empty"):
+        find_region(replace(MINERVA, boundaries=(floor,))).sample(3)
+    assert REGION.sample(0, 1).shape == (0, 2)
+
+
+def test_the_nearest_boundary_is_asked_of_the_region() -> None:
+    point = REGION.nearest([0.2, -0.5])
+    assert point.boundary == "B7"
+    assert_allclose(np.linalg.norm(point.q - [0.2, -0.5]), point.distance)
+    assert REGION.nearest([0.2, -0.5], component=1).component == 1
+
+
+def test_sampling_takes_what_keeps_clear_unless_told_otherwise() -> None:
+    drawn = sample(MINERVA, 50, seed=3)
+    assert_array_equal(drawn.free, keeps_clear(MINERVA, drawn.q))
+
+
+# --- arcs, slices, forms --------------------------------------------------------------------------
+
+
+def test_an_arc_is_asked_at_a_number() -> None:
+    arc = REGION.home.loops[0][0]
+    assert arc.at(0.5).shape == (2,)
+    assert_allclose([arc.at(0), arc.at(1)], [arc.start, arc.end])
+    assert_array_equal(arc.at([[0.1, 0.2, 0.3]])[0, 1], arc.at(0.2))
+    for bad in (float("nan"), 1j):
+        with pytest.raises(ValueError, match=r"NaN|real"):
+            arc.at(bad)
+
+
+def test_slices_are_gone_through() -> None:
+    slices = find_slices(load_robot("ur5"), "elbow_joint", [1.5, 1.6], {0: 0.0, 4: 0.0, 5: 0.0})
+    assert len(slices) == 2
+    assert [*slices] == [*slices.regions]
+
+
+def test_forms_are_added_and_multiplied_by_numbers() -> None:
+    rng = np.random.default_rng(4)
+    one, other = (HarmonicForm(rng.normal(size=(2, 3, 3)), RR) for _ in range(2))
+    q = rng.uniform(-3, 3, (7, 2))
+    assert_allclose((one + other)(q), one(q) + other(q))
+    assert_allclose((one - other)(q), one(q) - other(q))
+    assert_allclose((2 * one)(q), 2 * one(q))
+    assert_allclose((np.array([2.0, -1.0]) * one * 0.5)(q), one(q) * [1.0, -0.5])
+    assert_allclose((1 - one)(q), 1 - one(q))
+    assert_allclose((np.array([1.0, 2.0]) + one)(q), np.array([1.0, 2.0]) + one(q))
+    with pytest.raises(TypeError, match="product of two forms"):
+        one * other
+    with pytest.raises(ValueError, match="no sum"):
+        one + HarmonicForm(np.ones((2, 3, 3)), PP)
+
+
+# --- pictures and exports -------------------------------------------------------------------------
+
+
+def test_a_picture_in_radians_holds_data_of_ones_own() -> None:
+    axes = REGION.plot(Figure().subplots(), unit="rad", facecolor="red", label="safe", alpha=0.5)
+    assert axes.get_xlabel().endswith("/ rad")
+    assert axes.get_xlim()[1] < 4
+    assert {patch.get_facecolor() for patch in axes.patches} == {to_rgba("red", 0.5)}
+    assert axes.get_legend_handles_labels()[1] == ["safe"]
+    degrees = REGION.plot(Figure().subplots())
+    assert degrees.get_xlabel().endswith("/ °")
+    for one, other in zip(axes.patches, degrees.patches, strict=True):
+        assert_allclose(np.degrees(one.get_path().vertices), other.get_path().vertices)
+    with pytest.raises(ValueError, match="no unit 'grad'"):
+        REGION.plot(Figure().subplots(), unit="grad")
+
+
+def test_one_component_is_drawn_and_handed_on_alone() -> None:
+    every, alone = (REGION.plot(Figure().subplots(), component=k) for k in (None, 1))
+    assert len(alone.patches) * len(REGION.components) == len(every.patches)
+    assert REGION.to_shapely(component=1).area == pytest.approx(REGION.components[1].area, abs=2e-3)
+
+
+def test_a_region_of_own_forms_is_drawn_and_handed_on() -> None:
+    assert repr(OWN) == f"<Region: 1 component, area {OWN.area:.6g} rad^2>"
+    assert OWN.area == pytest.approx(LENS, rel=1e-12)
+    axes = OWN.plot(Figure().subplots())
+    assert axes.get_xlabel() == "$q_{1}$ / °"
+    assert axes.patches
+    assert "<svg" in OWN._repr_svg_()
+    assert OWN.to_shapely().area == pytest.approx(OWN.area, abs=1e-2)
+    assert OWN.to_geojson()["features"][0]["properties"]["joints"] == ["q1", "q2"]
+    assert len(find_outlines(OWN).pieces) == 1
+
+
+@pytest.mark.parametrize("what", ["to_dict", "explore"])
+def test_what_takes_a_robot_says_so_by_name(what) -> None:
+    with pytest.raises(ValueError, match=rf"{what}: this region is of forms, not of a robot; plot"):
+        getattr(OWN, what)()
+
+
+# --- why ------------------------------------------------------------------------------------------
+
+
+def test_why_takes_a_robot_as_it_is(tmp_path) -> None:
+    ends = [0.0, 0.0], [0.2, -0.5]
+    named = why("minervabot-v2", *ends)
+    loaded = why(MINERVA, *ends)
+    assert loaded.robot is MINERVA
+    assert loaded.answer == named.answer == "connected"
+    assert loaded.certificate.text == named.certificate.text
+
+
+def test_why_certifies_a_changed_robot_as_it_would_be_saved(tmp_path) -> None:
+    changed = replace(MINERVA, boundaries=(replace(MINERVA.boundary("B7"), offset=12.0),))
+    found = why(changed, [0.0, 0.0], [0.2, -0.5])
+    save_robot(changed, tmp_path / "arm.toml")
+    assert found.answer == why(tmp_path / "arm.toml", [0.0, 0.0], [0.2, -0.5]).answer == "connected"
+    assert "offset = 12.0" in found.certificate.text.replace("\\n", "\n")
