@@ -139,7 +139,7 @@ def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
 @pytest.mark.parametrize(
     ("module", "command"),
     [
-        ("scipy", ["why", "two-links-on-a-table", "100", "-60", "-72.1", "-27.83"]),
+        ("scipy", ["why", "two-joint-arm-with-walls", "20", "60", "-134.26", "-130.08"]),
         ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
     ],
 )

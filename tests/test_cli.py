@@ -17,6 +17,7 @@ from lizarraga2025 import closed_form, recorded
 from qbound import load_robot, packaged_robots
 from qbound.__main__ import start
 from qbound.cli import main
+from qbound.model.robotfile import robot_text
 
 
 def run(capsys, *arguments: str) -> tuple[int, str, str]:
@@ -45,6 +46,93 @@ def test_region_writes_the_promised_json_and_nothing_else(capsys):
             arcs = loop["arcs"]
             for before, arc in zip([arcs[-1], *arcs[:-1]], arcs, strict=True):
                 assert_allclose(before["to"], arc["from"], atol=1e-6)
+
+
+REASONS = "near 0.3: more coincides than 1024 bits tell", "near 0.7: the same"
+
+
+@pytest.fixture
+def unresolved(monkeypatch):
+    """Over neither joint a region is found that verifies itself."""
+    from qbound.region import region
+
+    found = {0: (None, REASONS[:1]), 1: (None, REASONS[1:])}
+    monkeypatch.setattr(region._Asked, "verified", lambda _, base: found[base])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["region", "ROBOT", "--svg", "FILE.svg"],
+        ["region", "ROBOT", "--geojson", "FILE.json"],
+        ["workspace", "ROBOT"],
+        ["explore", "ROBOT", "-o", "FILE.html"],
+        ["draw", "ROBOT", "-o", "FILE.svg"],
+        ["certify", "ROBOT", "--region"],
+        ["traverse", "ROBOT", "1", "2"],
+    ],
+    ids=lambda words: f"{words[0]} {words[2] if len(words) > 2 else ''}",
+)
+def test_what_needs_the_components_of_an_unresolved_region_is_undecided(
+    capsys, tmp_path, unresolved, words
+):
+    given = {"ROBOT": "minervabot-v2"}
+    words = [given.get(w, w.replace("FILE", str(tmp_path / "file"))) for w in words]
+    status, out, err = run(capsys, *words)
+    assert (status, out, err.count("\n")) == (3, "", 1)
+    assert "this region is unresolved" in err
+    assert all(reason in err for reason in REASONS)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unresolved_region_is_told_and_written(capsys, tmp_path, unresolved):
+    target = tmp_path / "region.json"
+    status, out, err = run(capsys, "region", "minervabot-v2", "--json", str(target))
+    assert (status, err) == (3, "")
+    assert out.startswith(f"this region is unresolved: {REASONS[0]}; {REASONS[1]}\n")
+    content = json.loads(target.read_text())
+    schema = resources.files("qbound") / "schemas" / "region.schema.json"
+    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    assert content["unresolved"] == list(REASONS)
+    assert (content["components"], content["feasible_area"]) == ([], None)
+    assert content["home"] == {"q": [0.0, 0.0], "feasible": True, "violated": []}
+
+
+def test_a_configuration_of_an_unresolved_region_has_margins(capsys, unresolved):
+    status, out, err = run(capsys, "contains", "minervabot-v2", "20deg", "-45deg")
+    assert (status, err) == (0, "")
+    assert "margin 11.687 cm: B1" in out
+    assert f"because the region is unresolved: {REASONS[0]}; {REASONS[1]}" in out
+    assert run(capsys, "contains", "minervabot-v2", "1.5rad", "0")[0] == 1
+
+
+def test_why_goes_on_where_the_region_is_unresolved(capsys, unresolved):
+    words = ["minervabot-v2", "-2.6rad", "0.2rad", "1.6rad", "-2.3rad"]
+    status, out, _ = run(capsys, "why", *words)
+    assert status == 1
+    assert "a paving of q1, q2" in out
+
+
+def test_boundaries_that_coincide_are_named_in_an_arc(tmp_path, capsys):
+    text, _ = robot_text("minervabot-v2")
+    again = (
+        'name = "B7 again"\ntype = "half-space"\npoint = "3"\nnormal = [0, 0, 1]\noffset = 11.32'
+    )
+    arm = tmp_path / "arm.toml"
+    arm.write_text(f"{text}\n[[boundary]]\n{again}\n")
+    contents = {}
+    for command in ("region", "workspace"):
+        status, out, _ = run(capsys, command, str(arm), "--json", "-")
+        assert status == 0
+        contents[command] = json.loads(out)
+        schema = resources.files("qbound") / "schemas" / f"{command}.schema.json"
+        schema = json.loads(schema.read_text(encoding="utf-8"))
+        validate(contents[command], schema, Draft202012Validator)
+    loops = [loop for c in contents["region"]["components"] for loop in c["loops"]]
+    arcs = [arc for loop in loops for arc in loop["arcs"]]
+    named = {arc["boundary"]: arc.get("also") for arc in arcs}
+    assert {name for name, also in named.items() if also} == {"B7"}
+    assert named["B7"] == [["B7 again", ""]]
 
 
 def test_the_papers_rule_gives_the_six_points(capsys):

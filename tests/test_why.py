@@ -21,6 +21,9 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import check_arb, statements
 from qbound.proofs.certify import certify
 from qbound.proofs.connection import connection
+from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.structure import Structure
+from qbound.proofs.verdict import Unproved
 from support import brute_force
 from support.elbow import arm
 from support.planar import caged
@@ -154,13 +157,47 @@ def test_of_bodies_a_paving_decides_what_no_search_finds(monkeypatch):
     found = why(BODIES, robot.home, goal)
     assert found.answer == "connected"
     assert check_arb.verify(found.certificate.text) == "proved"
-    apart = why(BODIES, [1.74532925, -1.04719755], [-1.2584, -0.4858])
-    assert (apart.answer, apart.certificate) == ("separated", None)
-    assert apart.held.paving.cells > 1000
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "Structure", not_proved)
     again = why(BODIES, robot.home, goal)
     assert again.answer == "connected"
     assert check_arb.verify(again.certificate.text) == "proved"
+    apart = why(BODIES, *APART)
+    assert (apart.answer, apart.certificate) == ("separated", None)
+    assert apart.held.paving.cells > 1000
+
+
+APART = [1.74532925, -1.04719755], [-1.2584, -0.4858]
+"""Of the two links on a table: in different components."""
+
+
+def not_proved(problem):
+    raise Unproved("not decided near (0, 0)")
+
+
+def test_of_bodies_the_proved_structure_decides_where_no_paving_does(monkeypatch):
+    from qbound.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    apart = why(BODIES, *APART)
+    assert (apart.answer, apart.held, apart.certificate) == ("separated", None, None)
+    assert next(why_lines(apart)).endswith("start and goal lie in two components of it")
+    valid(apart)
+    home = load_robot(BODIES).home
+    joined = why(BODIES, home, home + 0.05)
+    assert (joined.answer, joined.path, joined.held) == ("connected", None, None)
+    assert "start and goal lie in one component of it" in next(why_lines(joined))
+
+
+def test_an_end_that_turned_too_often_is_not_proved_to_lie_in_a_component():
+    """Each full turn that is taken off moves a double; cells are proved with a small rim only."""
+    structure = Structure(exact_problem(exact_robot(BODIES)))
+    place = np.array(APART[0])
+    number = structure.part_of(place)
+    assert number >= 0
+    turned = [structure.part_of(place + 2 * np.pi * np.array([k, -k])) for k in (1, 3, 1000)]
+    assert turned == [number, number, -1]
 
 
 WALLS = ["two-joint-arm-with-walls", "20deg", "60deg", "-134.26deg", "-130.08deg"]

@@ -17,7 +17,14 @@ from shapely import LineString, Polygon, unary_union
 from qbound import load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
-from qbound.region import NoHomeError, Problem, clearance_problem, paper_rule
+from qbound.region import (
+    NoHomeError,
+    Problem,
+    UnresolvedError,
+    clearance_problem,
+    paper_rule,
+    solve,
+)
 from qbound.workspace import layers
 from qbound.workspace.areas import area_by_green, find_workspace, overlap
 from qbound.workspace.fibres import find_fibres
@@ -389,6 +396,22 @@ def test_a_slice_has_its_own_plane(held):
 def test_an_arm_without_a_planar_workspace_says_why(robot, words):
     with pytest.raises(NoPlanarWorkspaceError, match=words):
         planar_arm(robot)
+
+
+def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
+    """A region that verifies itself over the first joint only has other cells."""
+    from qbound.region import region
+
+    verified = region._Asked.verified
+
+    def only_over_the_first(asked, base):
+        return (None, ("not decided",)) if base == 1 else verified(asked, base)
+
+    monkeypatch.setattr(region._Asked, "verified", only_over_the_first)
+    problem = clearance_problem(MINERVA)
+    assert len(solve(problem, base=1).components) == 5
+    with pytest.raises(UnresolvedError, match="second joint"):
+        find_fibres(problem, MINERVA.home)
 
 
 def test_three_free_joints_are_too_many():

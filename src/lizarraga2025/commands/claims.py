@@ -21,8 +21,9 @@ def add_to(commands: Any) -> None:
         help="what holds of the paper, statement by statement",
         description="Print the ledger's entries: one line each, or whole, with what was computed"
         " and the test, those chosen by id or verdict.",
-        epilog="examples: qbound claims E-34 --recompute; what does not hold as printed: qbound"
-        " claims --verdict refuted --verdict misprint",
+        epilog="exit status: 0 printed, 1 a value is another than the recorded one; 2 bad input\n"
+        "example: qbound claims E-34 --recompute\n"
+        "example: qbound claims --verdict refuted --verdict misprint",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="E-34, B-2.1.2, T-4, F-4.1, S-3, ...")
     parser.add_argument(

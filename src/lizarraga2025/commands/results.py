@@ -22,7 +22,7 @@ def add_to(commands: Any) -> None:
         help="every number that the book states",
         description="Print recorded numbers, each with what it is: all, those of a chapter, that of"
         " an id, or those in whose id or description a word occurs.",
-        epilog="examples: qbound results paper.area --bibtex; qbound results centroid",
+        epilog="example: qbound results paper.area --bibtex\nexample: qbound results centroid",
     )
     parser.add_argument(
         "names", nargs="*", metavar="ID|WORD", help="vertex.1, region/vertex.1, region/, centroid"

@@ -81,8 +81,9 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
             yield f"  margin {amounts[item['boundary']]}: {label}{_features(item)}"
     if len(shown) < len(rows):
         yield f"  the nearest of {len(rows)} boundaries and limits; --all lists every one"
-    for reason in content.get("unresolved", ()):
-        yield f"  its component and the nearest boundary are not known: {reason}"
+    if "unresolved" in content:
+        reasons = "; ".join(content["unresolved"])
+        yield f"  its component is not known, because the region is unresolved: {reasons}"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
 

@@ -34,7 +34,8 @@ def add_to(commands: Any) -> None:
         description="Visit vertices of a component along straight lines in joint space, or follow\n"
         "its arcs. Vertices and arcs count from 1; `qbound draw` shows the numbers of vertices.\n"
         "A path that leaves the region is written, too: the status is 1, and a line says so.",
-        epilog="exit status: 0 the path stays in the region, 1 it leaves it; 2 bad input\n"
+        epilog="exit status: 0 the path stays in the region, 1 it leaves it, 3 the region is\n"
+        "unresolved; 2 bad input\n"
         "example: qbound traverse minervabot-v2 1 2 3 4 5 6 --scale 0.9 --csv path.csv\n"
         "example: qbound traverse minervabot-v2 --arcs 4 -1 --svg path.svg",
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound.export.configuration import feature_content
 from qbound.export.formats import heading
-from qbound.region import Component, NoHomeError, Region, Slices, Vertex
+from qbound.region import Component, NoHomeError, Region, Slices, UnresolvedError, Vertex
 from qbound.region.arcs import Arc
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
@@ -78,12 +78,10 @@ def vertex_content(vertex: Vertex) -> dict[str, Any]:
 def workspace_content(region: Region) -> dict[str, Any]:
     """Return the workspace of the home component, or the reason why there is none."""
     robot, problem = region.robot, region.problem
-    if region.unresolved:
-        return {"workspace": None, "workspace_reason": "the region is unresolved"}
     try:
         arm = planar_arm(robot, problem.held)
         found = find_workspace(arm, problem, robot.home[list(problem.joints)])
-    except (NoPlanarWorkspaceError, NoHomeError) as reason:
+    except (NoPlanarWorkspaceError, NoHomeError, UnresolvedError) as reason:
         return {"workspace": None, "workspace_reason": str(reason)}
     return {"workspace": {"area": found.area, "covered_twice": found.covered_twice}}
 

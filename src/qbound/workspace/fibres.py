@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.forms.angles import TURN
-from qbound.region import Problem, Region, solve
+from qbound.region import Problem, Region, UnresolvedError, solve
 
 Floats = NDArray[np.float64]
 
@@ -55,5 +55,14 @@ class Fibres(Region):
 
 
 def find_fibres(problem: Problem, home: ArrayLike) -> Fibres:
-    """Decompose a problem over its second joint; arguments as `qbound.region.region.solve`."""
-    return Fibres(**vars(solve(problem, home, base=1)))
+    """Decompose a problem over its second joint; arguments as `qbound.region.region.solve`.
+
+    Raises
+    ------
+    UnresolvedError
+        If the structure could be decided over the first joint only.
+    """
+    region = solve(problem, home, base=1)
+    if region.base != 1:
+        raise UnresolvedError("the fibres over the second joint could not be decided")
+    return Fibres(**vars(region))

@@ -84,16 +84,13 @@ class Layers:
         """
         forms, features = set[int](), set[int]()
         for part in self.sides.values():
-            left_out = {problem.names.index(name) for name in part.irrelevant}.union(
-                part.problem.constants
-            )
-            kept = [k for k in range(len(problem.names)) if k not in left_out]
+            kept = () if part.inner is None else part.inner.names
             for cell in part.cells.cells:
                 for row in (cell.lower.form, cell.upper.form):
                     if row >= len(kept):
                         features.add(row - len(kept))
                     elif row >= 0:
-                        forms.add(kept[row])
+                        forms.add(problem.names.index(kept[row]))
         if len(forms) + len(features) > MOST_BOUNDING:
             raise NoPlanarWorkspaceError(
                 f"the workspace is not computed: {len(forms) + len(features)} boundaries bound the"
