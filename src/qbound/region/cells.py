@@ -260,9 +260,10 @@ class CellComplex:
         order = np.lexsort([every[1], every[0]])
         sorted_ends = _Ends(*(x[order] for x in every))
         rank, v = _Ranks(self.decomposition, sorted_ends, self.circle).ranked()
-        found, first = np.unique(rank, return_index=True)
-        number = np.zeros(len(rank), dtype=np.int64)
-        number[found] = np.arange(len(found))
+        first = np.full(rank.max(initial=-1) + 1, -1)
+        first[rank[::-1]] = np.arange(len(rank))[::-1]
+        number = (first >= 0).cumsum() - 1
+        first = first[first >= 0]
         place = np.empty(len(order), dtype=np.int64)
         place[order] = number[rank]
         self._place: Ints = np.full((len(self.slabs), 2, 2), -1)
@@ -323,7 +324,7 @@ class CellComplex:
             raise UndecidedError("a cell ends above its upper end")
         cell, step = ranges(np.zeros_like(steps), steps)
         spot = first[cell] + (start[cell] - first[cell] + step) % np.maximum(count[cell], 1)
-        if len(np.unique(spot)) < len(spot):
+        if np.bincount(spot, minlength=1).max() > 1:
             raise UndecidedError("two cells overlap on a critical line")
         owner[spot] = kept[cell]
 

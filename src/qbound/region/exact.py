@@ -15,13 +15,13 @@ from qbound.boundary.functions import clearance, pair_vector
 from qbound.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
 from qbound.model.robot import Robot
 from qbound.printable import printable
-from qbound.region import paper_rule
-from qbound.region.paper_rule import Window
 from qbound.region.problem import Problem
 from qbound.tolerances import ROUNDING, TOUCH
 
 if TYPE_CHECKING:
     import flint
+
+    from qbound.region.paper_rule import Window
 
     arb = flint.arb
 
@@ -158,6 +158,8 @@ def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[ar
         Of the joint.
     """
     from flint import arb
+
+    from qbound.region import paper_rule  # few ask for it
 
     own = [window for window in paper_rule.windows(robot) if window.joint == joint]
     upper = [window_end(exact, window) for window in own]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.forms.angles import TURN
 from qbound.region.arcs import ordered
 from qbound.region.cells import CellComplex
 from qbound.region.components import Component
@@ -241,7 +242,18 @@ class _Cells:
                     return True
             elif not apart(precise, int(contacts.pair[row - count]), base, beyond):
                 return True
-        return False
+        return self._goes_on(k, side, base)
+
+    def _goes_on(self, k: int, side: int, base: Any) -> bool:
+        """Tell whether another cell begins where a cell ends: a curve is only touched there."""
+        cells, t = self.cells, np.array([[float(base.mid())]])
+        own = which(cells.slabs == cells.slabs[k])
+        ends = cells.interval(own, np.broadcast_to(t, (len(own), 1)))[..., 0]
+        here = ends[side, own == k][0]
+        gap = ends[1 - side] - here
+        if cells.circle:
+            gap -= TURN * np.round(gap / TURN)
+        return bool((np.abs(gap) <= BESIDE[0] * self.plane.lift_unit).any())
 
 
 def _free(precise: Precise, base: Any, place: Any) -> bool:
@@ -263,7 +275,9 @@ def _loops(found: Found) -> list[str]:
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
     wrong = [] if (part >= 0).all() else ["a cell is in no component"]
-    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.components))
+    count = np.bincount(
+        part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.components)
+    )
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
     np.subtract.at(count, part[elements.cell[0, joined]], 1)
