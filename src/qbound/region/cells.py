@@ -487,11 +487,12 @@ class _Ranks:
         first = plane.count + len(plane.contacts.forms)
         groups: dict[Any, set[Any]] = {}
         for k in members:
-            _, i, j = events.what[k].tolist()
-            name = ("key", int(events.key[k])) if events.key[k] >= 0 else ("event", k)
-            for row in (i, j):
-                if row < first:
-                    groups.setdefault(name, set()).add(self._curve(row))
+            key = int(events.key[k])
+            together = groups.setdefault(("key", key) if key >= 0 else ("event", k), set())
+            rows = events.what[k, 1:].tolist()
+            if key >= 0:  # a contact goes over from any of these to any other
+                rows += (plane.count + which((plane.contacts.keys == key).any(axis=1))).tolist()
+            together |= {self._curve(int(row)) for row in rows if row < first}
         return any(curves <= group for group in groups.values())
 
     def _curve(self, form: int) -> tuple[int, int]:

@@ -305,8 +305,8 @@ class Precise:
     def vanishes(self, event: tuple[int, int, int]) -> bool:
         """Tell whether an event is zero at every base value.
 
-        It is a polynomial of degree 8 at most, of half the angle's tangent or of the base: twenty
-        values that are zero show it.
+        In each form it is of degree 2 at most along the base, so that it has at most four zeros a
+        degree: one value more that is zero shows that all are.
         """
         key = ("vanishes", *event)
         if key not in self._zeros:
@@ -314,7 +314,8 @@ class Precise:
                 from flint import arb
 
                 low, high = self.plane.ends
-                places = [arb(low + (high - low) * (k + 0.37) / 20) for k in range(20)]
+                count = 4 * sum(KINDS[NAMES[event[0]]].degrees) + 1
+                places = [arb(low + (high - low) * (k + 0.37) / count) for k in range(count)]
                 every = all(self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places)
             self._zeros[key] = [] if every else [Zero(event, 0, 0)]
         return not self._zeros[key]
