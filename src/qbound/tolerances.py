@@ -43,29 +43,9 @@ NEAR_CIRCLE: Final = 0.03
 A double root leaves it by 1e-5 and a fourfold by 1e-2; one too many costs time, a missed one the
 answer."""
 
-MULTIPLE: Final = 64.0 * 2.0**-52
-"""Taylor coefficient, beside the size of its terms, that is zero at a multiple root but for
-rounding.
-
-Of 28,000 candidates in scenes of bodies a multiple root left an eighth of it at most, and what was
-none 20 times as much at the least."""
-
-SPREAD: Final = 10.0
-"""Parts of an m-fold root lie within so many times the m-th root of `NEGLIGIBLE` of each other.
-
-Once they lie farther apart, two roots are two."""
-
-CONTACT_SIDE: Final = 1e-10
-"""A side condition (coefficients scaled to 1) that is above minus this is not negative.
-
-A contact too many where two features meet is seen twice, and counted once; one too few is not."""
-
 WALL: Final = 1e-7
 """Coefficients along the lift this small: the form vanishes on the fibre, as nearly as a double
 root of the base can be known."""
-
-THIN: Final = 1e-6
-"""A gap between contacts this narrow is looked at itself: rounding may have opened it."""
 
 BOX: Final = 1e-3
 """What is added round the box of a contact's piece: its ends are looked at a little inside."""
@@ -85,15 +65,6 @@ TOUCH: Final = 1e-6
 """Ends of cells on a critical line closer than this are one point; so is a hole smaller than this.
 
 Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 here."""
-
-POSITIVE: Final = 1e-11
-"""Value (coefficients scaled to 1) above which a form is positive on a critical line."""
-
-UNREAL_AREA: Final = 1e-13
-"""Area of a component (rad, or parts of a slide's farthest limit) that rounding can make up.
-
-Two edges that slide along each other leave gaps as wide as a double root is uncertain, 1e-8, over
-slabs as wide as critical values are."""
 
 TRANSVERSAL: Final = 1e-6
 """Quotient of singular values under which two curves are tangent, or one is double, for Newton."""

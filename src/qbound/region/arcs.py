@@ -117,6 +117,8 @@ class Arc:
         Which form of the pieces' plane vanishes along it; negative at a joint limit.
     also : tuple of (str, str)
         Boundaries and features that vanish all along it, too: they coincide there.
+    vague : float
+        How far its start may be off, in units of a joint.
     """
 
     boundary: str
@@ -126,6 +128,7 @@ class Arc:
     feature: str = ""
     row: int = -1
     also: tuple[tuple[str, str], ...] = ()
+    vague: float = 0.0
 
     def __repr__(self) -> str:
         """Say in a line what it is part of and where it runs."""

@@ -40,15 +40,27 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Vertex:
-    """A point of the boundary where two boundaries meet."""
+    """A point of the boundary where two boundaries meet.
+
+    Attributes
+    ----------
+    q : ndarray, shape (2,)
+        Joint values.
+    boundaries : tuple of two str
+    error : float
+        How far a joint value may be off, in units of a joint: rad, or a slide's farthest limit.
+        Where two curves are tangent only half the digits are known.
+    """
 
     q: Floats
     boundaries: tuple[str, str]
+    error: float = 0.0
 
     def __repr__(self) -> str:
         """Say in a line where it is and what meets there."""
         place = ", ".join(f"{x:.6g}" for x in self.q)
-        return printable(f"<Vertex of {' and '.join(self.boundaries)} at ({place})>")
+        vague = f" within {self.error:.1g}" if self.error > 1e-9 else ""
+        return printable(f"<Vertex of {' and '.join(self.boundaries)} at ({place}){vague}>")
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +223,7 @@ def bounded(
     centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
     wraps = found.wraps[base], found.wraps[1 - base]
     vertices = tuple(
-        Vertex(arc.start, (before.boundary, arc.boundary))
+        Vertex(arc.start, (before.boundary, arc.boundary), arc.vague)
         for arcs, corners in loops
         for before, arc, corner in zip(behind(arcs), arcs, corners, strict=True)
         if corner

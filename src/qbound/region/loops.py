@@ -22,7 +22,7 @@ from qbound.region.cells import CellComplex
 from qbound.region.halfedges import DOWN, UP, UPPER, HalfEdges
 from qbound.region.plane import Plane, runs, which
 from qbound.region.precise import UndecidedError
-from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, WALL
+from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, UNIT, WALL
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -117,19 +117,47 @@ class Layout:
         pieces = self._pieces(laid, begin)
         order, corners = _from_lowest(laid, begin, pieces)
         spans, labels = list(pairwise([*begin.tolist(), len(changes)])), laid.label[begin].tolist()
-        arcs = [self._arc(labels[k], pieces, spans[k]) for k in order.tolist()]
+        vague = self._vague(laid, begin, pieces).tolist()
+        arcs = [self._arc(labels[k], pieces, spans[k], vague[k]) for k in order.tolist()]
         place = pairwise([*which(laid.first[begin]).tolist(), len(arcs)])
         at_vertex = corners[order].tolist()
         return [(tuple(arcs[i:j]), at_vertex[i:j]) for i, j in place]
 
-    def _arc(self, label: Sequence[int], pieces: Pieces, span: tuple[int, int]) -> Arc:
+    def _vague(self, laid: _Laid, begin: Ints, pieces: Pieces) -> Floats:
+        """Bound how far the starts of arcs may be off, in units of a joint.
+
+        Two curves that cross at an angle are known there by their errors over its sine; where they
+        are tangent, or one turns back, by the square root of them.
+        """
+        plane, units = self.plane, np.array([self.plane.base_unit, self.plane.lift_unit])
+        q = pieces.start[begin] - pieces.turns[begin]
+        slopes, errors = np.zeros((2, len(begin), 2)), np.full((2, len(begin)), UNIT)
+        for side, rows in enumerate((laid.before[begin], begin)):
+            form = laid.label[rows, 0]
+            limit = laid.label[rows, 2]
+            slopes[side] = np.where((limit < 2)[:, None], [1.0, 0.0], [0.0, 1.0])
+            k = which(form >= 0)
+            base, lift = (
+                basis_and_slope(kind, q[k, j])
+                for j, kind in enumerate((plane.base_kind, plane.lift_kind))
+            )
+            both = base @ plane.table[form[k]] @ lift.swapaxes(1, 2)
+            slopes[side, k] = np.stack([both[:, 1, 0], both[:, 0, 1]], axis=1) * units
+            errors[side, k] = (plane.eps[form[k]] + 8 * UNIT) * plane.scaled_size[form[k]]
+        steep = np.abs(slopes[0, :, 0] * slopes[1, :, 1] - slopes[0, :, 1] * slopes[1, :, 0])
+        wide = errors.max(axis=0) * np.linalg.norm(slopes, axis=2).max(axis=0)
+        return np.asarray(2 * wide / np.maximum(steep, np.sqrt(wide)) + 16 * UNIT)
+
+    def _arc(
+        self, label: Sequence[int], pieces: Pieces, span: tuple[int, int], vague: float
+    ) -> Arc:
         form, branch, end, number = label
         if form < 0:
-            return Arc(self.limits[end], branch or None, pieces, span, "", form)
+            return Arc(self.limits[end], branch or None, pieces, span, "", form, (), vague)
         rows = list(self._numbers)[number]
         own = self.names[form], self.features[form]
         also = sorted({(self.names[row], self.features[row]) for row in rows} - {own})
-        return Arc(own[0], branch or None, pieces, span, own[1], form, tuple(also))
+        return Arc(own[0], branch or None, pieces, span, own[1], form, tuple(also), vague)
 
     def _laid(self, loops: Sequence[BoundaryLoop], windings: Ints) -> _Laid:
         """Put all loops one behind the other, each from where an arc begins."""

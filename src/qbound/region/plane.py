@@ -153,11 +153,6 @@ class Plane:
         """Errors of the scaled coefficients of side conditions, shape (f, 4)."""
         return self._relative(self.contacts.sides, self.contacts.side_errors)
 
-    @cached_property
-    def bodies(self) -> Separation:
-        """The tests that part the bodies."""
-        return Separation(self)
-
     def along_lift(self, t: Floats) -> Floats:
         """Return the coefficients of all forms but features' along the lift, (3, len(t), m)."""
         return self._over(t[:, None], self._columns[:, :, None, : self.count])
@@ -198,26 +193,6 @@ class Plane:
         np.multiply(found[:, :, 0], one[:, None], out=found[:, :, 1])
         np.multiply(found[:, :, 0], other[:, None], out=found[:, :, 2])
         return found.reshape(-1, 9)
-
-    def roots(self, t: Floats) -> Floats:
-        """Return both roots of every form over base values, shape (2, len(t), m), NaN where none.
-
-        Revolute: theta - alpha and theta + alpha, theta in (-pi, pi]; a double root is theta twice
-        or theta -+ pi, two ends that keep their order. Prismatic: the lower and the upper root of
-        a quadratic; the one root of an affine form stands first.
-        """
-        return self.roots_of(self.along_lift(t), self._doubt[..., None, : self.count])
-
-    def roots_of(self, c: Floats, doubt: Floats | None = None) -> Floats:
-        """Return both roots of coefficients along the lift, (3, ...) to (2, ...), as in `roots`.
-
-        With what of the coefficients is rounding, double roots are exact.
-        """
-        if self.lift_kind == "prismatic":
-            return _quadratic_roots(*(c if doubt is None else _settled(c, doubt)))
-        theta, alpha, ratio = _polar(c, doubt)
-        found = (np.abs(ratio) <= 1) & ((c[1] != 0) | (c[2] != 0))
-        return np.where(found, [theta - alpha, theta + alpha], np.nan)
 
     def roots_and_errors(self, row: Ints, c: Floats, slack: Floats | float = 0.0) -> Any:
         """Return both roots of rows from coefficients (3, ..., n) along the lift, and how sure.

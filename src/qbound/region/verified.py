@@ -86,8 +86,12 @@ def _off(found: Found) -> Iterator[str]:
     column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
     laid = arcs[0].laid  # all arcs are laid behind one another
     first, end = np.array([arc.span for arc in arcs]).T
-    starts = ordered(laid.start[first], laid.base)[:, None]
-    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), starts], axis=1)
+    begun = ordered(laid.start[first], laid.base)[:, None]
+    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), begun], axis=1)
+    starts = {tuple(arc.start.tolist()) for arc in arcs}
+    for vertex in (vertex for part in found.components for vertex in part.vertices):
+        if tuple(vertex.q.tolist()) not in starts:
+            yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
     limited = np.array([arc.row < 0 for arc in arcs])
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
     margins, sizes = found.problem.evaluator.margins(q), found.problem.evaluator.sizes
@@ -275,6 +279,8 @@ def _loops(found: Found) -> list[str]:
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
     wrong = [] if (part >= 0).all() else ["a cell is in no component"]
+    if len(found.components) != len(cells.parts.cells):
+        wrong.append(f"{len(found.components)} components, but {len(cells.parts.cells)} of cells")
     count = np.bincount(
         part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.components)
     )
@@ -282,7 +288,7 @@ def _loops(found: Found) -> list[str]:
     joined = which(elements.joined & ~cells.is_circle)
     np.subtract.at(count, part[elements.cell[0, joined]], 1)
     np.add.at(count, part[elements.cell[0, _between(cells)]], 1)
-    for k, component in enumerate(found.components):
+    for k, component in enumerate(found.components[: len(count)]):
         wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
         if len(component.loops) not in wanted:
             wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
