@@ -541,7 +541,7 @@ class _Fibres:
         chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
         for k in which(end - begin > 1).tolist():
             rows = range(int(begin[k]), int(end[k]))
-            own = self._acting(rows, lower) or list(rows)
+            own = self._acting(int(groups[k]), rows, lower) or list(rows)
             ends = [row for row in own if self.roots[row, 0] < 0]
             best = ends or own
             chosen[k] = min(best, key=lambda row: tuple(self.roots[row].tolist()))
@@ -557,26 +557,25 @@ class _Fibres:
         double[order[1:][same]] = double[order[:-1][same]] = True
         return double
 
-    def _acting(self, rows: Sequence[int], lower: bool) -> list[int]:
+    def _acting(self, group: int, rows: Sequence[int], lower: bool) -> list[int]:
         """Return those of coinciding rows that part a cell above them, or below, from the rest.
 
-        A pair that comes into collision there and out of it only touches.
+        Of bodies they are contacts of pairs that are in collision on the other side.
         """
         pieces, contacts = self.pieces, self.plane.contacts
-        senses: dict[int, set[bool]] = {}
-        rows = [row for row in rows if not self.double[row]]
+        other, found = self._below(group) if lower else group, list[int]()
+        closed = np.zeros(contacts.pairs, dtype=np.bool_)
+        touching = {int(self.piece[row]) for row in rows if self.piece[row] >= 0}
+        mine = sorted({int(contacts.pair[pieces.feature[k]]) for k in touching})
+        if mine and other is not None:
+            chosen = closed.copy()
+            chosen[mine] = True
+            closed[mine] = self._colliding(np.array([other]), chosen)[0]
         for row in rows:
-            if self.piece[row] >= 0:
-                k = int(self.piece[row])
-                pair = int(contacts.pair[pieces.feature[k]])
-                senses.setdefault(pair, set()).add(bool(pieces.enters[k]))
-        wanted = {not lower}
-        return [
-            row
-            for row in rows
-            if self.piece[row] < 0
-            or senses[int(contacts.pair[pieces.feature[self.piece[row]]])] == wanted
-        ]
+            k = int(self.piece[row])
+            if k < 0 or (closed[contacts.pair[pieces.feature[k]]] and pieces.enters[k] != lower):
+                found.append(row)
+        return [row for row in found if not self.double[row]] or found
 
     def _positive(self, gaps: Ints) -> Bools:
         """Tell whether every form that stands alone is positive in gaps."""
@@ -646,20 +645,40 @@ class _Fibres:
     def _changes(self) -> Ints:
         """Return by how much each group changes the number of pairs in collision.
 
-        Of one pair several features may touch at one place: it is one contact. A pair that comes
-        into collision and out of it at once only touches.
+        Of one pair several features may touch at one place: it is one contact. Where a pair seems
+        to come into collision and out of it at once, it may only touch: both sides are tested.
         """
         pieces, pairs = self.pieces, self.plane.contacts.pairs
-        rows = which((self.piece >= 0) & ~self.double)
+        rows = which(self.piece >= 0)
         pair = self.plane.contacts.pair[pieces.feature[self.piece[rows]]]
         counted = ~pieces.resting[pair]
         rows, pair = rows[counted], pair[counted]
         enters = pieces.enters[self.piece[rows]]
         key = np.sort((self.group[rows] * pairs + pair) * 2 + enters)
         key = key[np.diff(key, prepend=-1) > 0]
-        group, sense = key // (2 * pairs), key % 2
-        change = np.bincount(group, np.where(sense == 1, 1.0, -1.0), len(self.start))
+        both = which(np.diff(key // 2) == 0)
+        change = np.bincount(key // (2 * pairs), np.where(key % 2, 1.0, -1.0), len(self.start))
+        for name in (key[both] // 2).tolist():
+            group, own = divmod(name, pairs)
+            change[group] += self._turned_at(group, own)
         return change.astype(np.int64)
+
+    def _turned_at(self, group: int, pair: int) -> int:
+        """Return 1 if a pair is in collision above a group and not below, -1 if only below."""
+        below, above = self._below(group), group
+        if below is None or (not self.circle and self.roots[self.start[group], 0] == HIGHEST.form):
+            return 0
+        chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
+        chosen[pair] = True
+        found = self._colliding(np.array([below, above]), chosen)[:, 0].astype(int)
+        return int(found[1] - found[0])
+
+    def _below(self, group: int) -> int | None:
+        """Return the group below one in its slab; round a circle the last is below the first."""
+        if group and self.gap_slab[group - 1] == self.gap_slab[group]:
+            return group - 1
+        last = int(np.searchsorted(self.gap_slab, self.gap_slab[group], side="right")) - 1
+        return last if self.circle else None
 
     def _colliding(self, gaps: Ints, pairs: Bools) -> Bools:
         """Tell which of some pairs are not apart in gaps, shape (gaps, pairs)."""

@@ -146,7 +146,7 @@ class Layout:
             errors[side, k] = (plane.eps[form[k]] + 8 * UNIT) * plane.scaled_size[form[k]]
         steep = np.abs(slopes[0, :, 0] * slopes[1, :, 1] - slopes[0, :, 1] * slopes[1, :, 0])
         wide = errors.max(axis=0) * np.linalg.norm(slopes, axis=2).max(axis=0)
-        return np.asarray(2 * wide / np.maximum(steep, np.sqrt(wide)) + 16 * UNIT)
+        return np.asarray(2 * wide / np.maximum(np.maximum(steep, np.sqrt(wide)), UNIT) + 16 * UNIT)
 
     def _arc(
         self, label: Sequence[int], pieces: Pieces, span: tuple[int, int], vague: float

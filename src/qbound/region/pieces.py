@@ -576,6 +576,9 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     key, group = np.unique(np.minimum(a, b) * size + np.maximum(a, b), return_inverse=True)
     first, second = m + key // size, m + key % size
     found = finder.events(finder.meetings(first, second))
+    # An event of one row alone, where a form of degree one loses its root, names no pair of pieces.
+    alone = found.what[:, 1] == found.what[:, 2]
+    lone, found = found[which(alone)], found[which(~alone)]
     keys = _shared(contacts.keys[found.what[:, 1] - m], contacts.keys[found.what[:, 2] - m])
     found.key[:] = keys
     # Every zero is looked at by all pieces of its two features.
@@ -594,7 +597,7 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     if plane.lift_kind == "revolute":
         apart -= TURN * whole_turns(apart)
     kept = np.unique(pick[np.abs(apart) <= AGREE * plane.lift_unit])
-    return Events.joined([found[kept], _crossed_forms(plane, pieces, finder)])
+    return Events.joined([lone, found[kept], _crossed_forms(plane, pieces, finder)])
 
 
 def _first_of_curve(curves: Ints) -> Ints:
@@ -664,6 +667,8 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     features = np.unique(feature)
     i, j = (x.ravel() for x in np.meshgrid(lifts, m + features, indexing="ij"))
     found = finder.events(finder.meetings(i, j))
+    alone = found.what[:, 1] == found.what[:, 2]
+    lone, found = found[which(alone)], found[which(~alone)]
     of = found.what[:, 1:].max(axis=1, initial=0) - m
     order = np.argsort(feature, kind="stable")
     begin = np.searchsorted(feature[order], of)
@@ -672,4 +677,4 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     k, t = order[k], found.t[pick]
     slack = NEAR * plane.base_unit + found.radius[pick]
     near = (t >= pieces.start[k] - slack) & (t <= pieces.end[k] + slack)
-    return found[np.unique(pick[near])]
+    return Events.joined([lone, found[np.unique(pick[near])]])

@@ -62,8 +62,8 @@ def polynomial_roots(stack: Complexes, errors: Floats, *, circle: bool) -> Roots
     Notes
     -----
     A polynomial of degree d with Taylor coefficients a_k at z has a root within
-    (binomial(d, k) |a_0 / a_k|)^(1/k) of z, for each k (Henrici 1974, Theorem 6.4e); the least of
-    these bounds is taken, with all errors on the bad side.
+    ``(binomial(d, k) abs(a_0 / a_k))**(1/k)`` of z, for each k (Henrici 1974, Theorem 6.4e). The
+    least of these bounds is taken, with all errors on the bad side.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from qbound.forms.angles import TURN
 from qbound.region.arcs import ordered
 from qbound.region.cells import CellComplex
-from qbound.region.components import Component
+from qbound.region.components import Component, numbered
 from qbound.region.decomposition import apart, turned_root
 from qbound.region.plane import which
 from qbound.region.precise import LEVELS, Precise, precision
@@ -35,6 +35,9 @@ INSIDE = 0.43
 
 BESIDE = (1e-6, 1e-9, 1e-12)
 """How far beside an arc it is asked what lies there, in units of a joint; then balls are asked."""
+
+SPREAD_OUT = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
+"""Places in the unit square that are spread evenly (Roberts's sequence), shape (64, 2)."""
 
 CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
@@ -75,7 +78,19 @@ def faults(found: Found) -> list[str]:
     middle and its boundaries are violated just beyond, and whether loops are as many as Euler's
     count of the cells allows.
     """
-    return [*_off(found), *_Cells(found).faults(), *_loops(found)]
+    return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
+
+
+def _lost(found: Found) -> list[str]:
+    """Ask places all over the ranges: one that is free beyond rounding lies in a cell."""
+    ends = [(-np.pi, np.pi) if r is None else r for r in found.problem.ranges]
+    low, high = np.array(ends).T
+    q = low + (high - low) * SPREAD_OUT
+    evaluator = found.problem.evaluator
+    free = (evaluator.margins(q) > CLEAR * evaluator.margin_rounding).all(axis=1)
+    part = numbered(found.problem, found.cells, found.base, dict(found.owner), q[free])
+    missed = q[free][part < 0]
+    return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
 
 
 def _off(found: Found) -> Iterator[str]:

@@ -73,7 +73,7 @@ def workspace_report(
 
     Raises
     ------
-    NoHomeError, NoPlanarWorkspaceError
+    NoHomeError, qbound.workspace.planar.NoPlanarWorkspaceError
         If the home pose is in no component, or the tool leaves its plane.
     """
     robot, problem = region.robot, region.problem
