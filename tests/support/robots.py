@@ -1,6 +1,7 @@
 """Planar robots of two joints, at random or in whole numbers, and the same robot otherwise."""
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from math import pi
 
@@ -139,4 +140,15 @@ def turned(robot: Robot, j: int, angle: float) -> Robot:
     joint = replace(robot.joints[j], mount=np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]))
     if joint.limits:
         joint = replace(joint, limits=(joint.limits[0] - angle, joint.limits[1] - angle))
+    return replace(robot, joints=(*robot.joints[:j], joint, *robot.joints[j + 1 :]))
+
+
+def as_long_as_turned(robot: Robot, j: int, angle: float) -> Robot:
+    """Mount joint j as it is, but as much too long or short as `turned` mounts it by rounding.
+
+    Doubles count as exact numbers: whether what touches still touches hangs on cos^2 + sin^2 - 1.
+    """
+    length = Fraction(np.cos(angle)) ** 2 + Fraction(np.sin(angle)) ** 2
+    rounding = float(np.sign(length - 1)) * np.finfo(float).eps
+    joint = replace(robot.joints[j], mount=robot.joints[j].mount * (1 + rounding))
     return replace(robot, joints=(*robot.joints[:j], joint, *robot.joints[j + 1 :]))
