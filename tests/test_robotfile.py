@@ -403,6 +403,10 @@ BAD: dict[str, tuple[Change, str, str]] = {
         put("boundary[6].offset", 1e200), "boundary[6].offset (B7)",
         "1e+200 is too large; wanted: at most 1e+100",
     ),
+    "a length that no square can hold": (
+        put("boundary[6].offset", 1e-101), "boundary[6].offset (B7)",
+        "1e-101 is too small; wanted: 0, or at least 1e-100",
+    ),
     "hundreds of turns": (
         put("joint[1].limits", [-150000, 150000]), "joint[1].limits (q2)",
         "[-150000, 150000] is 833 turns wide; at most 100",

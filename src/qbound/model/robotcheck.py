@@ -14,7 +14,7 @@ from msgspec import UNSET, Meta, UnsetType, field
 
 from qbound.model.boundaries import TWO_BODIES, TWO_POINTS, BoundaryRow
 from qbound.model.joints import JOINT_TYPES, JointRow
-from qbound.model.rows import LARGEST, Label, Number, Row, Size
+from qbound.model.rows import LARGEST, SMALLEST, Label, Number, Row, Size
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.model.shapes import SHAPES, BodyRow, ObstacleRow, PointRow, default_names
 from qbound.printable import printable
@@ -144,8 +144,13 @@ def _check_finite(table: Table) -> None:
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise fault(table, path, f"{shown(value)} is not a finite number")
         size = abs(value) if isinstance(value, int | float) else 0
-        if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
+        if {"axis", "normal"} & set(path):  # these have a direction alone
+            continue
+        if size > LARGEST:
             raise fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
+        if 0 < size < SMALLEST:
+            text = f"{shown(value)} is too small; wanted: 0, or at least {SMALLEST:g}"
+            raise fault(table, path, text)
 
 
 def _check_names(table: Table) -> None:

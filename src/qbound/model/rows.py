@@ -19,6 +19,9 @@ from qbound.tolerances import TANGENT
 LARGEST = 1e100
 """Largest number of a file: squares of lengths, and their products, must stay within floats."""
 
+SMALLEST = 1e-100
+"""Smallest number of a file but 0, for the same reason."""
+
 Label = Annotated[str, Meta(min_length=1, description="a text of one letter or more")]
 Number = Annotated[float, Meta(ge=-LARGEST, le=LARGEST)]
 Size = Annotated[float, Meta(ge=0, le=LARGEST)]

@@ -275,7 +275,8 @@ class Precise:
         """
         for bits in LEVELS:
             with precision(bits):
-                found = _sign(self.value(row, _at(t, bits), _at(v, bits), bits))
+                place = _at(v, bits)  # None where so few bits do not tell it
+                found = 0 if place is None else _sign(self.value(row, _at(t, bits), place, bits))
             if found:
                 return found
         return 0
