@@ -101,6 +101,7 @@ def read_table(table: Table) -> RobotFile:
         _check_finite(table)
         raise fault(table, *explained(str(error), table, json_schema())) from None
     for check in (
+        _check_small,
         _check_names,
         _check_parallelograms,
         _check_chain,
@@ -144,11 +145,15 @@ def _check_finite(table: Table) -> None:
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise fault(table, path, f"{shown(value)} is not a finite number")
         size = abs(value) if isinstance(value, int | float) else 0
-        if {"axis", "normal"} & set(path):  # these have a direction alone
-            continue
-        if size > LARGEST:
+        if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
             raise fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
-        if 0 < size < SMALLEST:
+
+
+def _check_small(table: Table) -> None:
+    """Refuse a number but 0 whose square no double holds."""
+    for path, value in leaves(table):
+        small = isinstance(value, float) and 0 < abs(value) < SMALLEST
+        if small and not {"axis", "normal"} & set(path):
             text = f"{shown(value)} is too small; wanted: 0, or at least {SMALLEST:g}"
             raise fault(table, path, text)
 
