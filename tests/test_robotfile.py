@@ -672,7 +672,7 @@ def full_tables(draw: st.DrawFn) -> Table:
     table["name"] = draw(NAMES)
     for joint in table["joint"]:
         joint.update(draw(st.fixed_dictionaries({}, optional={"limits": SPANS, "velocity": SIZES})))
-        table["home"][joint["name"]] = draw(st.floats(-1e4, 1e4))
+        table["home"][joint["name"]] = draw(LENGTHS)
     for point in table["point"]:
         point.update(draw(st.fixed_dictionaries({}, optional={"radius": SIZES})))
     pair = {"name": draw(NAMES), "type": "pair", "points": ["p0", "p1"], "clearance": draw(SIZES)}
