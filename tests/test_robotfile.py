@@ -659,7 +659,8 @@ def test_schema_is_a_valid_json_schema_that_closes_every_table() -> None:
 
 LENGTHS = st.floats(-1e3, 1e3).filter(lambda x: abs(x) > 1e-9) | st.just(0.0)
 SIZES = st.floats(1e-6, 1e3)
-SPANS = st.tuples(st.floats(-30, 30), st.floats(0.01, 30)).map(lambda s: [s[0], s[0] + s[1]])
+STARTS = st.floats(-30, 30).filter(lambda x: abs(x) > 1e-9) | st.just(0.0)
+SPANS = st.tuples(STARTS, st.floats(0.01, 30)).map(lambda s: [s[0], s[0] + s[1]])
 NAMES = st.text(min_size=1, max_size=5)
 
 
