@@ -510,7 +510,7 @@ def find_lines(finder: Finder, events: Events) -> Lines:
     t = np.append(events.t, [low, high])
     radius = np.append(events.radius, np.full(2, 4 * UNIT * max(abs(low), abs(high))))
     if wrapped:  # an event at the cut is one, on either side of it
-        t[:n] = np.where((t + radius >= high)[:n], t[:n] - TURN, t[:n])
+        t[:n] = _about_cut(t[:n], radius[:n], low, high)
     found: list[_Line] = []
     for rows in _clusters(t, radius):
         if len(rows) == 1 or _is_one(events, rows, n):
@@ -549,6 +549,19 @@ class _Line:
         """Return the line a turn later."""
         zero = None if self.zero is None else shifted(precise, self.zero, 1)
         return replace(self, t=self.t + TURN, zero=zero)
+
+
+def _about_cut(t: Floats, radius: Floats, low: float, high: float) -> Floats:
+    """Bring events of a circle into its range; those that may be one with its cut to the low end.
+
+    And so those that may be one with these, though they do not reach the cut themselves.
+    """
+    t = np.where(t + radius < low, t + TURN, t)
+    reach = high
+    while (beyond := t + radius >= reach).any():
+        t = np.where(beyond, t - TURN, t)
+        reach = float((t - radius)[beyond].min()) + TURN
+    return t
 
 
 def _clusters(t: Floats, radius: Floats) -> list[list[int]]:
@@ -626,6 +639,7 @@ def _owned(
     zero = finder.zero(events, best)
     if zero is None:
         return []
-    if t[best] != events.t[best]:
-        zero = shifted(finder.precise, zero, -1)
+    turns = round(float(t[best] - events.t[best]) / TURN)
+    if turns:
+        zero = shifted(finder.precise, zero, turns)
     return [(own, zero)]
