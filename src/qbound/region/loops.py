@@ -298,8 +298,9 @@ class Layout:
         q = _newton(self.plane, pair[met], before)
         # Where both are flat there Newton has no direction; the place is known well enough.
         units = np.array([self.plane.base_unit, self.plane.lift_unit])
-        near = (np.abs(q - before) <= POLISHED * units).all(axis=1, keepdims=True)
-        q = np.where(near, q, before)
+        near = (np.abs(q - before) <= POLISHED * units).all(axis=1)
+        better = _off(self.plane, pair[met], q) <= _off(self.plane, pair[met], before)
+        q = np.where((near & better)[:, None], q, before)
         ends[last] += q - starts[corner]  # which may be some turns away
         starts[corner] = q
 
@@ -340,6 +341,14 @@ def _newton(plane: Plane, pairs: Ints, q: Floats) -> Floats:
         if (np.abs(step) <= NEWTON_DONE).all():
             break
     return q
+
+
+def _off(plane: Plane, pairs: Ints, q: Floats) -> Floats:
+    """Return how far the larger of two forms is from zero at base and lift values, (k,)."""
+    base, lift = basis(plane.base_kind, q[:, 0]), basis(plane.lift_kind, q[:, 1])
+    return np.asarray(
+        np.abs(np.einsum("ki,kpij,kj->kp", base, plane.table[pairs], lift)).max(axis=1)
+    )
 
 
 def _least_step(slopes: Floats, value: Floats) -> Floats:
