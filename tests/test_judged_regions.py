@@ -42,8 +42,9 @@ SUITE = [seed for seed in range(306) if seed % 50 != 49]
 
 
 def regions_of(text: str) -> list[Region]:
-    """The region over each joint."""
-    problem = clearance_problem(parse_robot(tomllib.loads(text)))
+    """The region over each joint, of the decimals that the text has: its doubles are rounded."""
+    robot = replace(parse_robot(tomllib.loads(text)), source=text)
+    problem = clearance_problem(robot)
     with within(PATIENCE):
         return [solve(problem, base=base) for base in (0, 1)]
 
@@ -88,24 +89,8 @@ def test_regions_over_both_joints_agree_and_their_arcs_lie_on_their_boundaries(b
     assert not {seed: each[:3] for seed, each in found.items() if each}
 
 
-SEAM = pytest.mark.xfail(
-    strict=True,
-    reason="turned by 0.6, 0.8: where a side of a capsule ends two critical values differ by"
-    " rounding, and what stands there is looked for on one of them only",
-)
-
-
-HAIR = pytest.mark.xfail(
-    strict=True,
-    reason="turned by 0.6, 0.8: two bodies that meet in one line are apart by the rounding of"
-    " decimals, and a vertex more lies 2e-8 beside another",
-)
-COPIED = [0, 2, 6, pytest.param(12, marks=SEAM), 16, pytest.param(17, marks=HAIR), 19, 38]
-
-
-@pytest.mark.parametrize("seed", COPIED)
+@pytest.mark.parametrize("seed", [0, 2, 6, 12, 16, 17, 19, 38])
 def test_exact_copies_of_a_scene_have_the_same_region(seed):
-    """Decimals are copied exactly; doubles round them, which may leave hairs."""
     text = body_scenes.scene(seed)
     slides = sum(joint["type"] == "prismatic" for joint in body_scenes.read(text)["joint"])
     own = [Outline.of(region) for region in regions_of(text)]
