@@ -224,7 +224,6 @@ MISSING = [
     (["draw", "minervabot-v2", "-o", "x.svg"], "matplotlib"),
     (["workspace", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
     (["traverse", "minervabot-v2", "1", "2", "--svg", "x.svg", "--csv", "x.csv"], "matplotlib"),
-    (["connected", "minervabot-v2", "0", "0", "11", "143"], "scipy"),
 ]
 
 
@@ -240,6 +239,7 @@ def test_a_command_says_how_to_install_what_it_misses(
 
 CALLS = {
     "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
+    "scipy": "from qbound.proofs.connection import joined; joined(2, [])",
     "sympy": "qbound.symbols.with_symbols(robot)",
     "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
     "IPython": "qbound.figures.table(['a'], [[1]])",

@@ -42,8 +42,9 @@ SUITE = [seed for seed in range(306) if seed % 50 != 49]
 
 
 def regions_of(text: str) -> list[Region]:
-    """The region over each joint."""
-    problem = clearance_problem(parse_robot(tomllib.loads(text)))
+    """The region over each joint, of the decimals that the text has: its doubles are rounded."""
+    robot = replace(parse_robot(tomllib.loads(text)), source=text)
+    problem = clearance_problem(robot)
     with within(PATIENCE):
         return [solve(problem, base=base) for base in (0, 1)]
 
