@@ -109,6 +109,6 @@ def _component_content(component: Component) -> dict[str, Any]:
         "area": component.area,
         "centroid": None if component.centroid is None else component.centroid.tolist(),
         "wraps": list(component.wraps),
-        "vertices": [vertex_content(vertex) for vertex in component.vertices],
+        "vertices": [vertex_content(v) | {"error": v.error} for v in component.vertices],
         "loops": [loop_content(loop) for loop in component.loops],
     }
