@@ -383,8 +383,8 @@ def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any
                 )
                 keys.append(
                     (
-                        end(side, edge, a, corner),
-                        end(side, edge, b, corner),
+                        end(side, (a, b), a, corner),
+                        end(side, (a, b), b, corner),
                         *(("parallel", f, keep) for f in parallel),
                     )
                 )
@@ -395,8 +395,8 @@ def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any
                 ends.append(((a, b, keep), (a, b, keep)))
                 keys.append(
                     (
-                        *(end(0, frozenset(f), a, b) for f in around(mine, i)),
-                        *(end(1, frozenset(f), b, a) for f in around(theirs, k)),
+                        *(end(0, f, a, b) for f in around(mine, i)),
+                        *(end(1, f, b, a) for f in around(theirs, k)),
                     )
                 )
     return {"curves": tuple(curves), "keys": tuple(keys), "ends": tuple(ends)}
