@@ -81,18 +81,18 @@ def test_a_vertex_that_is_moved_is_named_with_its_place(region):
     arc = first_arc(region)
     start = arc.laid.start.copy()
     start[arc.span[0]] += 1e-5
-    (found,) = faults(with_arc(region, start=start))
+    found = faults(with_arc(region, start=start))
     moved = start[arc.span[0]] if region.base == 0 else start[arc.span[0]][::-1]
-    assert found.startswith(f"an arc of {arc.boundary} is ")
-    assert found.endswith(f"({moved[0]:.9g}, {moved[1]:.9g})")
+    place = f"({moved[0]:.9g}, {moved[1]:.9g})"
+    assert any(f.startswith(f"an arc of {arc.boundary} is ") and f.endswith(place) for f in found)
 
 
 def test_a_loop_that_is_lost_or_there_twice_is_named(region):
     loops = region.found[0].loops
     n = len(loops)
     for wrong in (loops[1:], (*loops, loops[0])):
-        (found,) = faults(with_component(region, 0, loops=wrong))
-        assert found == f"component 0 has {len(wrong)} loops, not {n}"
+        found = faults(with_component(region, 0, loops=wrong))
+        assert f"component 0 has {len(wrong)} loops, not {n}" in found
 
 
 def test_two_components_as_one_are_named(region):
@@ -295,14 +295,10 @@ def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
 # --- what a region does not see of itself yet -----------------------------------------------------
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a component that cells name and is not there is passed over"
-)
 def test_a_component_that_is_lost_is_named(region):
     assert faults(replace(region, found=region.found[:-1]))
 
 
-@pytest.mark.xfail(strict=True, reason="a vertex is looked at where its arc starts only")
 def test_a_vertex_that_is_not_where_its_arc_starts_is_named(region):
     first, *others = region.found[0].vertices
     moved = replace(first, q=first.q + 1e-3)

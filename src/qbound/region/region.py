@@ -584,7 +584,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     other, why_other = asked.verified(1 - base)
     if found is None or other is None:
         right = found or other
-        return asked.unresolved(base, why + why_other) if right is None else right
+        return asked.unresolved(base, [*dict.fromkeys(why + why_other)]) if right is None else right
     differences = _differences(found, other)
     return asked.unresolved(base, differences) if differences else found
 

@@ -293,6 +293,7 @@ def _loops(found: Found) -> list[str]:
     """
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
+    part[part >= len(found.components)] = -1
     wrong = [] if (part >= 0).all() else ["a cell is in no component"]
     if len(found.components) != len(cells.parts.cells):
         wrong.append(f"{len(found.components)} components, but {len(cells.parts.cells)} of cells")
@@ -301,8 +302,9 @@ def _loops(found: Found) -> list[str]:
     )
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
-    np.subtract.at(count, part[elements.cell[0, joined]], 1)
-    np.add.at(count, part[elements.cell[0, _between(cells)]], 1)
+    for rows, change in ((joined, -1), (_between(cells), 1)):
+        parts = part[elements.cell[0, rows]]
+        np.add.at(count, parts[parts >= 0], change)
     for k, component in enumerate(found.components[: len(count)]):
         wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
         if len(component.loops) not in wanted:
