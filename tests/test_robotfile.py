@@ -404,7 +404,7 @@ BAD: dict[str, tuple[Change, str, str]] = {
         "1e+200 is too large; wanted: at most 1e+100",
     ),
     "a length that no square can hold": (
-        put("boundary[6].offset", 1e-101), "boundary[6].offset (B7)",
+        put("clearance", 1e-101), "clearance",
         "1e-101 is too small; wanted: 0, or at least 1e-100",
     ),
     "hundreds of turns": (

@@ -155,8 +155,9 @@ def margin_of(robot: Robot, boundary: Boundary, value: ArrayLike) -> Array:
 def term_size(robot: Robot, boundary: Boundary) -> float:
     """Bound the terms that a boundary's clearance form is the sum of: rounding is a part of them.
 
-    Terms may cancel, and then the form's coefficients say nothing of it: 0.3^2 - (0.1 + 0.2)^2 is
-    not 0 in floats. A length; of a pair, whose form is a squared distance, a length squared.
+    Terms may cancel, and then the form's coefficients say nothing of it:
+    ``0.3**2 - (0.1 + 0.2)**2`` is not 0 in floats. A length; of a pair, whose form is a
+    squared distance, a length squared.
 
     Raises
     ------

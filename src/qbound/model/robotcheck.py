@@ -150,10 +150,10 @@ def _check_finite(table: Table) -> None:
 
 
 def _check_small(table: Table) -> None:
-    """Refuse a number but 0 whose square no double holds."""
+    """Refuse a number of a shape, but 0, whose square no double holds."""
     for path, value in leaves(table):
         small = isinstance(value, float) and 0 < abs(value) < SMALLEST
-        if small and not {"axis", "normal"} & set(path):
+        if small and path[0] in {"body", "obstacle", "clearance"}:
             text = f"{shown(value)} is too small; wanted: 0, or at least {SMALLEST:g}"
             raise fault(table, path, text)
 

@@ -50,8 +50,8 @@ MOST_CELLS = 20_000
 """Cells at once at which a proof is given up."""
 
 ROUNDING = 2.0**-44
-"""Of a sum of nine products of doubles, in parts of its size: cosines err by 2^-47, places by
-2^-50 of the range, each rounding by 2^-53; the rest is room to spare."""
+"""Of a sum of nine products of doubles, in parts of its size: cosines err by ``2**-47``,
+places by ``2**-50`` of the range, each rounding by ``2**-53``; the rest is room to spare."""
 
 BENT = 0.083
 """How unevenly cells are cut, so that no place of symmetry is a corner of one."""

@@ -47,7 +47,7 @@ chords, up to this far from a curve."""
 
 MOST_TURNS = 10
 """Full turns from zero within which a configuration is looked up: taking them off errs by less than
-2^-46 rad, because a double of a turn is right to 2^-51 and rounding takes 2^-48."""
+``2**-46`` rad, because a double of a turn is right to ``2**-51`` and rounding takes ``2**-48``."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,8 +73,10 @@ def workspace_report(
 
     Raises
     ------
-    NoHomeError, qbound.workspace.planar.NoPlanarWorkspaceError
-        If the home pose is in no component, or the tool leaves its plane.
+    NoHomeError
+        If the home pose is in no component.
+    ValueError
+        If the tool leaves its plane: a ``NoPlanarWorkspaceError``.
     """
     robot, problem = region.robot, region.problem
     arm, home = planar_arm(robot, problem.held), robot.home[list(problem.joints)]
