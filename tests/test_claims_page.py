@@ -41,6 +41,11 @@ def flat(text: str) -> str:
 # --- as a file ------------------------------------------------------------------------------------
 
 
+def without_commit(entry: str) -> str:
+    """A citation names the commit at which the page was built; the checkout may be later."""
+    return re.sub(r", commit [0-9a-f]{12}( with changes)?", "", entry)
+
+
 @every_entry
 def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     row = by_id(PAGE)[one.anchor]
@@ -53,7 +58,8 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
         for part in (one.id, one.where, one.says, one.reading, one.found, one.corrected)
     )
     assert row.select_one(".verdict").get_text() == one.verdict
-    assert row.select_one("details pre").get_text() == cite.entry(one)
+    told = row.select_one("details pre").get_text()
+    assert without_commit(told) == without_commit(cite.entry(one))
 
 
 @every_entry
