@@ -1,4 +1,4 @@
-"""What is a collision? Four readings of Figure 11 that the paper's equations allow.
+"""Four readings of "collision" in Figure 11 that the paper's equations allow.
 
 The paper does not state the test behind its red points. Two more readings belong to the library:
 `qbound.sampling.keeps_clear` (eqs. (11) and (12)) and `qbound.region.paper_rule.feasible` (the

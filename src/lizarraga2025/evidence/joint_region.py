@@ -1,4 +1,4 @@
-"""Which region of joint space? By the paper's windows and by clearances, and the scaled polygon."""
+"""The region of joint space, by the paper's windows and by clearances, and the scaled polygon."""
 
 from __future__ import annotations
 

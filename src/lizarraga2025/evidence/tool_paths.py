@@ -1,4 +1,4 @@
-"""Where does the tool go? Paths through the scaled polygon's points, postures, the workspace."""
+"""Where the tool goes: paths through the scaled polygon's points, postures, the workspace."""
 
 from __future__ import annotations
 

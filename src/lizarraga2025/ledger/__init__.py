@@ -1,4 +1,4 @@
-"""What holds of the paper? Every statement that can be tested, and the verdict on it.
+"""The paper's ledger: every statement that can be tested, and the verdict on it.
 
 `entries` reads what each says (the files in ``statements``), `claims` joins this with what its
 function in `lizarraga2025.computations` finds, `page` shows the ledger in the book, `errata` what

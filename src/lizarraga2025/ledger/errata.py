@@ -1,4 +1,4 @@
-"""What would a second printing change? Formulas exactly as printed, and as they would hold.
+"""The errata: formulas exactly as printed, and as they would hold.
 
 ``statements/errata.toml`` has them by entry; those of Table 6 follow from the printed formulas.
 """

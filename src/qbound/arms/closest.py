@@ -1,4 +1,4 @@
-"""Where do two links come closest? A search in floats, untrusted: what it finds is verified.
+"""The search for where two links come closest, in floats: what it finds is verified elsewhere.
 
 Along one joint every form is ``c0 + a cos q + b sin q``, or a quadratic, so that its least value
 is closed form. Joint after joint, from the best of many random configurations.

@@ -1,4 +1,4 @@
-"""Which balls make up a link, and which two links is a boundary about? Their names tell.
+"""The links of an arm: the balls of each, and the two that a boundary is about, by their names.
 
 An imported arm has balls named "LINK/1", "LINK/2", ... The frame is that of the link that moves;
 a link fixed to it keeps its own name. A ball without a stroke in its name belongs to its frame.

@@ -1,4 +1,4 @@
-"""Which functions count where? Values on a grid, of the functions that may vanish nearby.
+"""Values on a grid, of only those boundary functions that may vanish nearby.
 
 Of hundreds of boundary functions few come near to 0 in a part of joint space. A bound over each
 block of the grid finds them, and only they are evaluated there.
