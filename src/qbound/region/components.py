@@ -257,12 +257,17 @@ def _cell_moments(cells: CellComplex) -> Floats:
 
 
 def _settled_moments(cells: CellComplex, of: Ints, spans: Floats) -> tuple[Floats, Bools]:
-    """Return the moments of parts of cells, and which of them no longer change."""
+    """Return the moments of parts of cells, and which of them no longer change.
+
+    What counts as a change is measured in the joints' units: a slide's values may be millions.
+    """
+    base, lift = cells.plane.base_unit, cells.plane.lift_unit
+    least = base * lift * np.array([1.0, base, lift])
     left = np.arange(len(of))
     before, now = _moments(cells, of, spans, CELL_NODES[:2])
     result, done = now.copy(), np.zeros(len(of), dtype=np.bool_)
     for n in CELL_NODES[2:]:
-        same = (np.abs(now - before) <= QUADRATURE * (1 + np.abs(now))).all(axis=1)
+        same = (np.abs(now - before) <= QUADRATURE * (least + np.abs(now))).all(axis=1)
         done[left[same]] = True
         left = left[~same]
         if not len(left):
