@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import io
 import json
@@ -31,6 +32,7 @@ from qbound.cli.files import write_all
 from qbound.files import write_whole
 from support.oracles import packaged_table, point_seen_from
 
+PACKAGE = Path(qbound.__file__).parent
 MINERVA = load_robot("minervabot-v2")
 ARM = """
 schema = 1
@@ -815,6 +817,26 @@ def test_a_paving_ends_when_its_time_is_over(capsys) -> None:
 
 
 # --- sentences -----------------------------------------------------------------------------------
+
+
+def sentences(file: Path) -> set[str]:
+    """The texts of a module, without its docstrings."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    alone = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    return {
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in alone
+    }
+
+
+def test_the_library_speaks_of_no_option_and_a_command_of_no_argument_of_a_call() -> None:
+    library = {file for file in PACKAGE.rglob("*.py") if file.parent.name != "cli"}
+    alone = {PACKAGE / "check.py", PACKAGE / "region" / "problem.py"}  # a program; reads both ways
+    for file in library - alone:
+        assert not [s for s in sentences(file) if re.search(r"(?<![-\w])--[a-z]", s)], file.name
+    for file in (PACKAGE / "cli").glob("*.py"):
+        assert not [s for s in sentences(file) if re.search(r"\w=[{\[(]", s)], file.name
 
 
 def test_one_is_counted_as_one(capsys) -> None:

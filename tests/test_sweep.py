@@ -458,7 +458,7 @@ def test_options_that_cannot_be_are_refused(capsys, tmp_path, monkeypatch):
         (["--workers", "0"], "--workers 0: one or more"),
         (["--workers", "2", "--scheduler", "tcp://x:1"], "has workers of its own"),
         (["--scheduler", "tcp://127.0.0.1:9"], "no scheduler answers"),
-        (["--scheduler", "nonsense://x"], "--scheduler nonsense://x"),
+        (["--scheduler", "nonsense://x"], "scheduler nonsense://x"),
         (["--svg", spec], "is read here"),
     ):
         assert main(["sweep", spec, "-o", out, *words]) == 2

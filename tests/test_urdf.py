@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import resources
 from pathlib import Path
 
@@ -206,7 +207,7 @@ TWO = [link("a", BALL), link("b", BALL)]
         ([*TWO, joint("j", "a", "b", more="<limit effort='1'/>")], "without limits; give them"),
         (
             [*TWO, joint("j", "a", "b", "prismatic", "<limit velocity='1'/>")],
-            "a prismatic joint without limits; give them: --limits j=LOW..HIGH",
+            "a prismatic joint without limits; give them for the import",
         ),
         ([*TWO, joint("j", "a", "b", more="<limit lower='inf' upper='1'/>")], "finite number"),
         ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "do not rise"),
@@ -318,6 +319,33 @@ def test_a_mesh_of_a_package_is_covered_and_scaled(tmp_path) -> None:
         assert np.min(gaps, axis=0).max() <= 0
         assert "of a mesh all triangles are covered" in imported.notes[1]
         assert [source.name for source in imported.sources] == ["arm.urdf", "a.stl"]
+
+
+@pytest.mark.parametrize("guesses", [True, False], ids=["guesses letters", "guesses none"])
+def test_a_mesh_in_letters_of_latin_1_is_read_wherever_it_is(tmp_path, monkeypatch, guesses) -> None:
+    """The parser has a library guess letters, if that is there; names of solids are no matter."""
+    if not guesses:
+        monkeypatch.setitem(sys.modules, "charset_normalizer", None)
+        monkeypatch.setitem(sys.modules, "chardet", None)
+    plain = tmp_path / "plain.stl"
+    plain.write_text(stl(TETRAHEDRON))
+    named = stl(TETRAHEDRON).replace("solid x", "solid pièce")
+    (tmp_path / "latin.stl").write_bytes(named.encode("latin-1"))
+    arms = [import_urdf(with_mesh(tmp_path, name)).robot for name in ("plain.stl", "latin.stl")]
+    assert repr(arms[0].points) == repr(arms[1].points)
+
+
+@pytest.mark.parametrize("kind", ["text", "binary"])
+def test_a_mesh_that_is_cut_short_is_refused_as_damaged(tmp_path, kind) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    whole = stl(TETRAHEDRON).encode()
+    if kind == "binary":
+        whole = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type="stl")
+        (tmp_path / "whole.stl").write_bytes(whole)
+        load_robot(with_mesh(tmp_path, "whole.stl"))
+    (tmp_path / "short.stl").write_bytes(whole[: len(whole) * 2 // 3])
+    with pytest.raises(RobotFileError, match=r"'short.stl': 0 triangles: damaged, or not STL"):
+        load_robot(with_mesh(tmp_path, "short.stl"))
 
 
 def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:

@@ -71,7 +71,7 @@ def parse_length(text: str, unit: str, what: str) -> float:
 
     Examples
     --------
-    >>> parse_length("300mm", "m", "--voxel"), parse_length("0.3", "m", "--voxel")
+    >>> parse_length("300mm", "m", "voxel"), parse_length("0.3", "m", "voxel")
     (0.3, 0.3)
     """
     number, own = text.strip(), unit

@@ -260,8 +260,7 @@ def _robot(table: Table, label: str, source: str | Table) -> Robot:
 def robot_text(source: str | Path) -> tuple[str, str]:
     """Return the text of a robot file, or of a packaged one, and the name to call it by."""
     if is_urdf(source):
-        text = "a URDF, not a robot file; make one of it by: qbound import"
-        raise RobotFileError(f"{source}: {text} {source} -o arm.toml")
+        raise RobotFileError(f"{source}: a URDF, not a robot file; qbound import makes one of it")
     name = f"{source}.toml"
     if name in os.listdir(ROBOTS):  # noqa: PTH208  # letter by letter, on every system
         return _read(f"{ROBOTS}/{name}", "utf-8"), name

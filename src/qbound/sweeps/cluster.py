@@ -94,9 +94,9 @@ def connected(address: str | None, workers: int) -> Iterator[Any]:
             where = cluster if address is None else address
             client = Client(where, timeout=PATIENCE, set_as_default=False)
         except OSError:
-            raise OSError(printable(f"--scheduler {address}: no scheduler answers")) from None
+            raise OSError(printable(f"scheduler {address}: no scheduler answers")) from None
         except ValueError as error:
-            raise ValueError(printable(f"--scheduler {address}: {error}")) from None
+            raise ValueError(printable(f"scheduler {address}: {error}")) from None
         yield stack.enter_context(client)
 
 

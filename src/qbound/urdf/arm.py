@@ -180,11 +180,10 @@ def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
     joint, mount, bar = chain.joints[k], chain.mounts[k], chain.bars[k]
     chosen = joint.limits if limits is None else limits
     if chosen is None and joint.type != "continuous":
-        text = f"a {joint.type} joint without limits; give them: --limits {joint.name}=LOW..HIGH"
-        joint.element.fault(text)
+        joint.element.fault(f"a {joint.type} joint without limits; give them for the import")
     if chosen is not None and not chosen[0] < chosen[1]:
         text = f"limits {chosen[0]:g} to {chosen[1]:g} do not rise"
-        joint.element.fault(f"{text}; give others: --limits {joint.name}=LOW..HIGH")
+        joint.element.fault(f"{text}; give others for the import")
     more = {} if bar is None else {"crank": bar.crank, "bar": bar.frame}
     return JOINT_TYPES[TYPES[joint.type] if bar is None else "parallelogram"](
         name=joint.name,
@@ -271,7 +270,7 @@ def _pairs(urdf: Urdf, balls: list[Ball], links: Srdf, clearance: float) -> Iter
     ]
     if len(found) > MOST_PAIRS:
         text = f"{len(found)} pairs of balls; at most {MOST_PAIRS} are possible"
-        cure = "allow a larger excess (--excess), or disable pairs of links in an SRDF (--srdf)"
+        cure = "allow a larger excess, or disable pairs of links in an SRDF"
         raise RobotFileError(f"{called(urdf.file)}: {text}: {cure}")
     return (Pair(", ".join(names), names, clearance) for names in found)
 

@@ -31,6 +31,9 @@ LARGEST_MESH = 200_000_000
 MOST_TRIANGLES = 500_000
 """Triangles of a mesh at most."""
 
+STL_HEADER, STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL: before the triangles, and of each."""
+
 
 def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     """Read the mesh of an element.
@@ -59,12 +62,12 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     content = path.read_bytes()
     try:
         corners, closed = _loaded(content, kind, mesh.scale)
-    except ImportError:  # a parser asked for a library that guesses which letters these are
-        element.fault(f"{shown(mesh.filename)}: not read: damaged, or no UTF-8 text")
     except Exception as error:  # what a parser of strangers' files makes of them
         element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
-    if not 0 < len(corners) <= MOST_TRIANGLES:
-        text = f"{len(corners)} triangles; wanted: 1 to {MOST_TRIANGLES}"
+    if not len(corners):
+        element.fault(f"{shown(mesh.filename)}: 0 triangles: damaged, or not {kind.upper()}")
+    if len(corners) > MOST_TRIANGLES:
+        text = f"{len(corners)} triangles; wanted: {MOST_TRIANGLES} at most"
         element.fault(f"{shown(mesh.filename)}: {text}")
     if not np.isfinite(corners).all():
         element.fault(f"{shown(mesh.filename)}: a corner is not a finite number")
@@ -89,7 +92,7 @@ def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
             element.fault(f"filename: {shown(name)} {text}")
         if path.is_file():
             return path
-    cure = "; say where its package is: --package FOLDER" if scheme == "package" else ""
+    cure = "; say where its package is" if scheme == "package" else ""
     return element.fault(f"filename: no file {shown(name)}{cure}")
 
 
@@ -109,7 +112,7 @@ def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
     options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = trimesh.load_mesh(io.BytesIO(content), file_type=kind, process=False, **options)
+        found = trimesh.load_mesh(io.BytesIO(_in_utf8(content, kind)), file_type=kind, process=False, **options)
     vertices = np.asarray(found.vertices, dtype=float) * scale
     faces = np.asarray(found.faces, dtype=int)
     merged = trimesh.Trimesh(vertices, faces, process=False)
@@ -117,3 +120,13 @@ def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
         merged.merge_vertices(merge_tex=True, merge_norm=True)
     closed = bool(merged.is_watertight and merged.is_winding_consistent)
     return np.asarray(vertices[faces]), closed
+
+
+def _in_utf8(content: bytes, kind: str) -> bytes:
+    """Return a mesh in text as UTF-8: names may be in other letters, numbers and keywords are not.
+
+    Of other letters the parser has a library guess, which a plain install of it lacks.
+    """
+    count = int.from_bytes(content[80:84], "little")
+    is_binary = kind == "stl" and len(content) == STL_HEADER + STL_TRIANGLE * count
+    return content if is_binary else content.decode(errors="replace").encode()

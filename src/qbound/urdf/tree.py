@@ -215,7 +215,7 @@ def _only_leaf(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
     leaves = [link for link in leaves if _carries(parents, start, link)]
     if len(leaves) > 1:
         text = f"{len(leaves)} links could be the last one: {listed(leaves)}"
-        raise RobotFileError(f"{called(urdf.file)}: {text}; name it (--to LINK)")
+        raise RobotFileError(f"{called(urdf.file)}: {text}; choose it")
     return leaves[0]
 
 
@@ -252,7 +252,7 @@ def _check_count(urdf: Urdf, moving: list[UrdfJoint], start: str, tip: str) -> N
     if len(moving) > MOST_JOINTS:
         text = f"{len(moving)} joints move {between}; at most {MOST_JOINTS} are possible"
         raise RobotFileError(
-            f"{called(urdf.file)}: {text}: choose a shorter chain (--from LINK --to LINK)"
+            f"{called(urdf.file)}: {text}: choose another first or last link"
         )
 
 
