@@ -767,7 +767,61 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     """It said "scale 0.000000001863: refuted", and no more."""
     assert cli.main(["certify", "rp-telescopic-boom", "--largest-scale"]) == 3
     said = capsys.readouterr().out
-    assert "no scale is proved: the centroid of home's vertices seems to be unsafe" in said
+    centre = "unsafe itself, at lift = -86.3705 deg, slide = 1.30099 m: it violates bridge by 0.23"
+    assert f"no scale is proved: the centroid of home's vertices is {centre}" in said
+    assert "--region" in said
+    assert "0.00000" not in said
+
+
+def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsys, monkeypatch):
+    """It said "the proof asks for too much work", and no more."""
+    monkeypatch.setattr(check, "MAX_WORK", 1000)
+    assert cli.main(["certify", "minervabot-v2", "--region"]) == 3
+    said = capsys.readouterr().out
+    assert "the proof asks for too much work" in said
+    assert int(re.search(r"cells that were found safe: (\d+)", said)[1]) > 100
+    inset = statements.usual_inset(load_robot("minervabot-v2"))
+    assert f"a set with a larger --inset than {inset:g} cm takes less work" in said
+
+
+POST = """
+schema = 1
+name = "arm with a post in reach"
+length_unit = "m"
+angle_unit = "deg"
+home = { s = 90, e = 0 }
+tool = "tip"
+collisions = "all"
+allowed = [["upper", "fore"]]
+point = [{ name = "tip", frame = "2", at = [0.35, 0, 0] }]
+body = [{ name = "upper", frame = "1", capsule = { from = [0, 0], to = [0.4, 0], radius = 0.04 } },
+        { name = "fore", frame = "2", capsule = { from = [0, 0], to = [0.35, 0], radius = 0.03 } }]
+obstacle = [{ name = "post", disc = { at = [0.5, -0.35], radius = 0.06 } }]
+[[joint]]
+name = "s"
+type = "revolute"
+parent = "0"
+frame = "1"
+origin = [0, 0, 0]
+axis = [0, 0, 1]
+limits = [-170, 170]
+[[joint]]
+name = "e"
+type = "revolute"
+parent = "1"
+frame = "2"
+origin = [0.4, 0, 0]
+axis = [0, 0, 1]
+limits = [-150, 150]
+"""
+
+
+def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys, tmp_path):
+    """Without an option the set is a polygon that nobody asked for."""
+    (tmp_path / "post.toml").write_text(POST, encoding="utf-8")
+    assert cli.main(["certify", str(tmp_path / "post.toml")]) == 1
+    said = capsys.readouterr().out
+    assert "home's component has 1 hole, which the polygon of its vertices covers" in said
     assert "--region" in said
 
 

@@ -322,7 +322,9 @@ def test_a_mesh_of_a_package_is_covered_and_scaled(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("guesses", [True, False], ids=["guesses letters", "guesses none"])
-def test_a_mesh_in_letters_of_latin_1_is_read_wherever_it_is(tmp_path, monkeypatch, guesses) -> None:
+def test_a_mesh_in_letters_of_latin_1_is_read_wherever_it_is(
+    tmp_path, monkeypatch, guesses
+) -> None:
     """The parser has a library guess letters, if that is there; names of solids are no matter."""
     if not guesses:
         monkeypatch.setitem(sys.modules, "charset_normalizer", None)

@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.boundary.margins import violated
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import write_all
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
 from qbound.cli.values import box, held
+from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
@@ -30,6 +32,8 @@ from qbound.proofs.certify import (
 )
 from qbound.proofs.points import as_decimal, read_points
 from qbound.proofs.reports import certificate_lines, folded
+from qbound.region import find_region
+from qbound.units import counted, joint_text, limited_joints, margin_text
 
 STEPS = 1000
 """Of the progress that is shown."""
@@ -100,8 +104,8 @@ def run(options: argparse.Namespace) -> int:
         say(
             *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
         )
-        if answer.verdict == "undecided":
-            say("a smaller set takes less work: a larger --inset, a lower --scale, or a --box")
+        if answer.verdict != "proved":
+            say(*_instead(robot, options, answer))
     return STATUS[answer.verdict]
 
 
@@ -115,7 +119,7 @@ def _answer(text: str, robot: Robot, options: argparse.Namespace, margin: str) -
         shown(int(part * STEPS))
 
     if asked is None:
-        inset = statements.usual_inset(robot) if options.inset is None else options.inset
+        inset = _inset(robot, options)
         answer = certify_region(text, inset, margin, held(robot, options.slice), tell)
     else:
         answer = certify(text, asked, tell=tell)
@@ -196,6 +200,30 @@ def statement(robot: Robot, options: argparse.Namespace, margin: str) -> stateme
     return statements.home_polygon(robot, scale, margin, values)
 
 
+def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
+    """Say what an answer that is not "proved" leaves to ask for."""
+    undecided = answer.verdict == "undecided"
+    if undecided and answer.leaves:
+        yield f"cells that were found safe: {answer.leaves}"
+    if options.region:
+        inset = f"{_inset(robot, options):g} {robot.length_unit}"
+        yield f"a set with a larger --inset than {inset} takes less work"
+    elif options.box or options.path or options.polygon:
+        if undecided:
+            yield "a smaller set takes less work: cut this one into parts"
+    else:
+        home = find_region(robot, held(robot, options.slice)).home
+        if home is not None and len(home.loops) > 1:
+            holes = counted(len(home.loops) - 1, "hole")
+            yield f"home's component has {holes}, which the polygon of its vertices covers"
+        yield "a lower --scale asks for less; --region leaves nothing out but a strip"
+
+
+def _inset(robot: Robot, options: argparse.Namespace) -> float:
+    """Return the inset of `--region`, a length."""
+    return statements.usual_inset(robot) if options.inset is None else float(options.inset)
+
+
 def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
@@ -205,10 +233,22 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
         if options.output != "-":
             lines = certificate_lines(robot, proof)
             say(f"scale {safe}: proved", *lines, *_how_to_check(options, proof))
-    if refutation is not None and refutation.verdict == "refuted" and options.output != "-":
-        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
     if proof is None and options.output != "-":
-        centre = "the centroid of home's vertices seems to be unsafe itself"
-        say(f"no scale is proved: {centre}; try --region")
+        say(f"no scale is proved{_of_centre(robot)}; try --region, or a --box")
+    elif refutation is not None and refutation.verdict == "refuted" and options.output != "-":
+        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
     both = [answer and answer.verdict for answer in (proof, refutation)]
     return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3
+
+
+def _of_centre(robot: Robot) -> str:
+    """Say what the centre of all scales violates; nothing where it is safe."""
+    centre = polygon.centroid(statements.home_vertices(robot))
+    names = [
+        f"{name} by {margin_text(robot, name, -margin, limited_joints(robot))}"
+        for name, margin in violated(robot, centre)
+    ]
+    if not names:
+        return ""
+    where = f"the centroid of home's vertices is unsafe itself, at {joint_text(robot, centre)}"
+    return f": {where}: it violates {', '.join(names)}"

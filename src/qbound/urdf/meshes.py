@@ -112,7 +112,9 @@ def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
     options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = trimesh.load_mesh(io.BytesIO(_in_utf8(content, kind)), file_type=kind, process=False, **options)
+        found = trimesh.load_mesh(
+            io.BytesIO(_in_utf8(content, kind)), file_type=kind, process=False, **options
+        )
     vertices = np.asarray(found.vertices, dtype=float) * scale
     faces = np.asarray(found.faces, dtype=int)
     merged = trimesh.Trimesh(vertices, faces, process=False)

@@ -251,9 +251,7 @@ def _check_count(urdf: Urdf, moving: list[UrdfJoint], start: str, tip: str) -> N
         raise RobotFileError(f"{called(urdf.file)}: no joint moves {between}")
     if len(moving) > MOST_JOINTS:
         text = f"{len(moving)} joints move {between}; at most {MOST_JOINTS} are possible"
-        raise RobotFileError(
-            f"{called(urdf.file)}: {text}: choose another first or last link"
-        )
+        raise RobotFileError(f"{called(urdf.file)}: {text}: choose another first or last link")
 
 
 def _check_types(moving: list[UrdfJoint]) -> None:
