@@ -859,6 +859,32 @@ def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
 def test_every_file_that_is_written_is_named(capsys) -> None:
     assert "written: a.svg, a.csv" in run(capsys, "region minervabot-v2 --svg a.svg --csv a.csv")[1]
     assert run(capsys, "explore minervabot-v2 -o a.html")[1] == "written: a.html\n"
+    Path("reach.toml").write_text(SWEEP)
+    for line in (
+        "certify minervabot-v2 --scale 0.9 -o b.json",
+        "certify minervabot-v2 --scale 0.9 -o c.json --with-checker checked",
+        "certify minervabot-v2 --largest-scale -o d.json",
+        "why minervabot-v2 0 0 1deg 1deg -o e.json --json f.json --svg g.svg",
+        "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --duration 1 --ros i.json",
+        "sweep reach.toml -o swept --svg j.svg",
+        "draw minervabot-v2 -o k.svg",
+        "surface ur5 --joints 0 1 2 --resolution 8 -o l.ply",
+        "reach minervabot-v2 --voxel 20 --npz m.npz",
+        "import scara.urdf --excess 5cm -o n.toml",
+    ):
+        before = files()
+        _, out, err = run(capsys, line)
+        assert err == ""
+        made = files() - before
+        assert made
+        assert {name for name in made if name not in out} == set(), line
+
+
+def test_a_sweep_says_units_and_where_its_values_are(capsys) -> None:
+    Path("reach.toml").write_text(SWEEP)
+    out = run(capsys, "sweep reach.toml -o swept")[1]
+    assert re.search(r"region.area: \S+ to \S+ rad\^2, largest at joint.q2.origin.0 = 10 cm\n", out)
+    assert "the values are in the folder swept" in out
 
 
 def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys) -> None:

@@ -99,11 +99,9 @@ def run(options: argparse.Namespace) -> int:
             found = bracket_scale(text)
         return _say_bracket(robot, found, options)
     answer = _answer(text, robot, options, margin)
-    _write(options, answer)
+    written = _write(options, answer)
     if options.output != "-" or not answer.text:
-        say(
-            *folded(answer.said), *certificate_lines(robot, answer), *_how_to_check(options, answer)
-        )
+        say(*folded(answer.said), *certificate_lines(robot, answer), *written)
         if answer.verdict != "proved":
             say(*_instead(robot, options, answer))
     return STATUS[answer.verdict]
@@ -127,22 +125,27 @@ def _answer(text: str, robot: Robot, options: argparse.Namespace, margin: str) -
     return answer
 
 
-def _write(options: argparse.Namespace, answer: Certificate) -> None:
-    """Write the certificate, and the checker beside it: both, or none."""
+def _write(options: argparse.Namespace, answer: Certificate) -> list[str]:
+    """Write the certificate, and the checker beside it: both, or none; return what to say of it."""
     if not answer.text:
-        return
+        return []
     files: dict[str, str] = {}
     if options.output is not None:
         files[options.output] = answer.text
     if options.with_checker is None:
         write_all(list(files.items()))
-        return
+        return [f"written: {file}" for file in files]
     beside, checker = _beside(options)
     with _made_folder(options.with_checker):
         same = [file for file in files if file != "-" and Path(file).resolve() == beside.resolve()]
         if not same:
             files[str(beside)] = answer.text
         write_all([*files.items(), (str(checker), Path(check.__file__).read_bytes())])
+    command = " ".join(shlex.quote(str(path)) for path in (checker, beside))
+    return [
+        f"written: {', '.join([*files, str(checker)])}",
+        f"to check it with Python alone: python -I {command}",
+    ]
 
 
 def _beside(options: argparse.Namespace) -> tuple[Path, Path]:
@@ -175,13 +178,6 @@ def _made_folder(name: str) -> Iterator[None]:
         if new:
             folder.rmdir()
         raise
-
-
-def _how_to_check(options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
-    """Say how to run the checker that was put beside the certificate."""
-    if options.with_checker is not None and answer.text:
-        certificate, checker = (shlex.quote(str(path)) for path in _beside(options))
-        yield f"to check it with Python alone: python -I {checker} {certificate}"
 
 
 def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:
@@ -229,10 +225,9 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
     safe, proof = found.safe
     unsafe, refutation = found.unsafe
     if proof is not None and proof.verdict == "proved":
-        _write(options, proof)
+        written = _write(options, proof)
         if options.output != "-":
-            lines = certificate_lines(robot, proof)
-            say(f"scale {safe}: proved", *lines, *_how_to_check(options, proof))
+            say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
     if proof is None and options.output != "-":
         say(f"no scale is proved{_of_centre(robot)}; try --region, or a --box")
     elif refutation is not None and refutation.verdict == "refuted" and options.output != "-":

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from qbound.cli.files import check_targets, write_all
+from qbound.cli.files import check_targets, deliver
 from qbound.cli.progress import progress
-from qbound.cli.terminal import say
 from qbound.printable import printable
 from qbound.sweeps import Swept, sweep
-from qbound.sweeps.grid import values_text
+from qbound.sweeps.run import with_unit
 from qbound.units import counted
 
 SHOWN = 10
@@ -60,10 +59,7 @@ def run(options: argparse.Namespace) -> int:
         workers=workers,
         tell=_teller(),
     )
-    if options.svg is not None:
-        write_all([(options.svg, _picture(found))])
-    if options.svg != "-":
-        say(*_lines(found))
+    deliver([(options.svg, lambda: _picture(found))], _lines(found, options.folder))
     return 0 if found.whole else 1
 
 
@@ -78,24 +74,25 @@ def _teller() -> Callable[[int, int], None]:
     return tell
 
 
-def _lines(found: Swept) -> Iterator[str]:
+def _lines(found: Swept, folder: str) -> Iterator[str]:
     specification = found.study.specification
     arms = int(np.prod([len(axis) for axis in found.axes]))
     yield f"{counted(arms, 'arm')}, {counted(len(specification.measure), 'measure')}"
     for name, values in found.values.items():
         best = found.best(name)
         if best is not None:
-            where = values_text(found.study, best)
-            low, high = f"{np.nanmin(values):.9g}", f"{np.nanmax(values):.9g}"
-            yield f"  {name}: {low} to {high}, largest at {where}"
+            span = f"{np.nanmin(values):.9g} to {np.nanmax(values):.9g}"
+            span = with_unit(span, found.measure_unit(name))
+            yield f"  {name}: {span}, largest at {found.arm_text(best)}"
     if found.reasons:
         yield f"{counted(len(found.reasons), 'arm')} without a value:"
         for index, reason in list(found.reasons.items())[:SHOWN]:
-            yield printable(f"  {values_text(found.study, index)}: {reason}")
+            yield printable(f"  {found.arm_text(index)}: {reason}")
         if len(found.reasons) > SHOWN:
             yield f"  and {len(found.reasons) - SHOWN} more; the array 'reason' has them all"
     for chunk, why in found.missing.items():
         yield f"chunk {', '.join(map(str, chunk))} is missing: {why}; the same command goes on"
+    yield f"the values are in the folder {folder}"
 
 
 def _picture(found: Swept) -> bytes:

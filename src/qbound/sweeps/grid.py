@@ -78,9 +78,3 @@ def _numbers(study: Study, values: tuple[float, ...]) -> dict[str, float]:
     """Return the number of each name in the arm with these values on the axes."""
     rows = zip(study.specification.vary, values, strict=True)
     return {name: value for row, value in rows for name in row.numbers}
-
-
-def values_text(study: Study, index: tuple[int, ...]) -> str:
-    """Write the values of one arm, by its index on each axis."""
-    rows = zip(study.specification.vary, axes(study.specification), index, strict=True)
-    return ", ".join(f"{row.number} = {axis[i]:.6g}" for row, axis, i in rows)

@@ -16,6 +16,12 @@ from qbound.sweeps.cluster import Outcome, run_jobs
 from qbound.sweeps.specification import Study, read_specification
 from qbound.sweeps.store import Store, begin, measure_unit, number_unit
 
+
+def with_unit(text: str, unit: str) -> str:
+    """Write a unit behind a number; a plain number has none."""
+    return text if unit == "1" else f"{text} {unit}"
+
+
 Runner = Callable[[Iterable[Job]], Iterator[Outcome]]
 Tell = Callable[[int, int], None]
 
@@ -56,6 +62,12 @@ class Swept:
     def axis_unit(self, k: int) -> str:
         """Return the unit of a varied number, by its index in `vary`."""
         return number_unit(self.study, self.study.specification.vary[k].number)
+
+    def arm_text(self, index: tuple[int, ...]) -> str:
+        """Write the varied numbers of one arm with their units, by its index on each axis."""
+        rows = zip(self.study.specification.vary, self.axes, index, strict=True)
+        texts = [f"{row.number} = {axis[i]:.6g}" for row, axis, i in rows]
+        return ", ".join(map(with_unit, texts, map(self.axis_unit, range(len(texts)))))
 
     def best(self, measure: str) -> tuple[int, ...] | None:
         """Return the index of the first arm with the largest value; None if no arm has any."""
