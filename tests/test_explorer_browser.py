@@ -22,6 +22,46 @@ WALLS = {
     "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
     "portal": lambda: (load_robot("pp-portal"), {}),
 }
+SIDES = 95
+
+
+def many_sides() -> str:
+    """A robot file: a portal whose safe region has very many vertices."""
+    joint = "origin = [0, 0, 0]\nlimits = [-2, 2]"
+    turns = [math.tau * k / SIDES for k in range(SIDES)]
+    walls = [
+        f'[[boundary]]\nname = "w{k}"\ntype = "half-space"\npoint = "tip"\n'
+        f"normal = [{math.cos(t):.12f}, 0, {math.sin(t):.12f}]\noffset = -1\n"
+        for k, t in enumerate(turns)
+    ]
+    return f"""
+schema = 1
+name = "many sides"
+length_unit = "m"
+angle_unit = "deg"
+home = {{ a = 0, b = 0 }}
+tool = "tip"
+[[joint]]
+name = "a"
+type = "prismatic"
+parent = "0"
+frame = "1"
+axis = [1, 0, 0]
+{joint}
+[[joint]]
+name = "b"
+type = "prismatic"
+parent = "1"
+frame = "2"
+axis = [0, 0, 1]
+{joint}
+[[point]]
+name = "tip"
+frame = "2"
+at = [0, 0, 0]
+{"".join(walls)}"""
+
+
 WIDTHS = {"wide screen": 1280, "phone": 390}
 THEMES = ["light", "dark"]
 
@@ -114,6 +154,8 @@ def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):
     assert page.locator("#plane .shadow").first.get_attribute("d") != shadow
     page.check("#show-sample")
     assert page.is_disabled("#flip")
+    assert page.is_disabled("#show-workspace")  # the layer was ticked, and showed nothing
+    assert not page.is_checked("#show-workspace")
 
 
 def test_dragging_the_dot_moves_the_arm(open_explorer):
@@ -413,6 +455,16 @@ def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer,
         assert covered(page, "#joints text") == [], family
         assert covered(page, "#plane .walls text") == [], family
         assert beyond(page) == [], family
+
+
+def test_numbers_of_many_vertices_do_not_cover_each_other(open_quietly, tmp_path):
+    (tmp_path / "many.toml").write_text(many_sides(), encoding="utf-8")
+    region = find_region(load_robot(tmp_path / "many.toml"))
+    assert len(region.home.vertices) == SIDES
+    explore(region).save(tmp_path / "many.html")
+    page = open_quietly((tmp_path / "many.html").as_uri())
+    assert page.locator("#joints .vertex-name").count() > 10
+    assert covered(page, "#joints .vertex-name") == []
 
 
 def covered(page, picture):

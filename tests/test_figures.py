@@ -1,6 +1,7 @@
 """Figures: the data of what is drawn, degrees, labels, and the same SVG on every run."""
 
 import html
+import math
 import os
 import re
 import subprocess
@@ -8,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
+from itertools import combinations
 from xml.etree import ElementTree
 
 import matplotlib as mpl
@@ -189,6 +191,26 @@ def test_numbers_that_would_overlap_are_turned_aside_and_others_stay() -> None:
     assert [text.get_text() for text in apart] == ["1", "2", "3"]
     assert apart[2].xyann == pytest.approx(plain[2].xyann)
     assert apart[1].xyann != pytest.approx(plain[1].xyann, abs=1)
+
+
+def test_of_numbers_that_cannot_be_apart_some_are_left_out() -> None:
+    ax = Figure(figsize=(4, 4)).subplots()
+    ax.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
+    turns = np.linspace(0, math.tau, 95, endpoint=False)
+    places = 60 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    texts = figures.number_apart(ax, places, [0.0, 0.0])
+    assert 15 < len(texts) < 95
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent().shrunk(0.9, 0.7) for text in texts]
+    assert not [1 for one, other in combinations(boxes, 2) if one.overlaps(other)]
+
+
+def test_a_picture_of_an_arm_names_its_obstacles() -> None:
+    robot = load_robot("two-links-on-a-table")
+    ax = Figure().subplots()
+    assert texts(figures.name_obstacles(ax, robot, figures.drawn_plane(robot))) == [
+        body.name for body in robot.obstacles
+    ]
 
 
 @pytest.mark.parametrize("closed", [False, True])

@@ -150,6 +150,10 @@ def draw_robot(
     return artists
 
 
+MOST_NAMED: Final = 30
+"""Obstacles that are named in a picture: the names of more would cover each other."""
+
+
 def drawn_plane(robot: Robot) -> tuple[int, int]:
     """Return the two coordinates in which a picture shows an arm: x and z if it is not planar."""
     try:
@@ -172,6 +176,20 @@ def _draw_bodies(
         seen = corners + frames.position(robot.base, body.frame, robot.base)
         look: dict[str, Any] = {"facecolor": colour, "edgecolor": INK, "lw": 1}
         artists += ax.fill(*seen[:, axes].T, alpha=0.35 * alpha, **look)
+    return artists
+
+
+def name_obstacles(ax: Axes, robot: Robot, plane: tuple[int, int]) -> list[Artist]:
+    """Write the name of every obstacle on it; of more than `MOST_NAMED` none is named."""
+    if plane != drawn_plane(robot) or len(robot.obstacles) > MOST_NAMED:
+        return []
+    artists: list[Artist] = []
+    for body in robot.obstacles:
+        corners = outline_in_frame(robot, body)[:, list(plane)]
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+        text = ax.annotate(as_text(body.name), tuple(middle), ha="center", va="center", fontsize=8)
+        text.set_zorder(6)
+        artists.append(_halo(text))
     return artists
 
 
@@ -290,22 +308,32 @@ def number_points(
     return artists
 
 
+NUMBER: Final = np.array([14.0, 9.0])
+"""Width and height of a number of two digits, in typographic points."""
+
+
 def number_apart(
     ax: Axes, places: ArrayLike, middle: ArrayLike, distance: float = 12
 ) -> list[Artist]:
     """Write 1, 2, ... beside places as `number_points`, but turned aside where two would overlap.
 
-    The axes' limits have to be set.
+    A number that would cover another wherever it stood is left out. The axes' limits have to be
+    set.
     """
     p = np.asarray(places, dtype=float)
     seen = _points_a_unit(ax) * p
     away = p - np.asarray(middle)
     artists: list[Artist] = []
     taken = list(seen)  # the marks, then the labels too
+    labels = np.empty((0, 2))
     for k, preferred in enumerate(np.arctan2(away[:, 1], away[:, 0])):
         others = np.array([*taken[:k], *taken[k + 1 :], np.full(2, np.inf)])
         shift = _free_shift(seen[k], others, float(preferred), distance)
-        taken.append(seen[k] + shift)
+        label = seen[k] + shift
+        if (np.abs(labels - label) < NUMBER).all(axis=1).any():
+            continue
+        labels = np.vstack([labels, label])
+        taken.append(label)
         artists += number_points(ax, p[k : k + 1], p[k] - shift, distance, [k + 1])
     return artists
 

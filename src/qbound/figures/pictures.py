@@ -48,6 +48,8 @@ def pose_picture(
 ) -> bytes:
     """Draw the joint-space region with a pose marked and, beside it, the robot in that pose.
 
+    Obstacles bear their names.
+
     Parameters
     ----------
     q : array_like, shape (n,)
@@ -69,6 +71,7 @@ def pose_picture(
         if plane is not None:
             figures.draw_spheres(axes[-1], robot, pose, plane)
             figures.draw_robot(axes[-1], robot, pose, plane=plane)
+            figures.name_obstacles(axes[-1], robot, plane)
             axes[-1].set_title(_written(robot, pose))
             _space_panel(axes[-1], robot, plane)
 

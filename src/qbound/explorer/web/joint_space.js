@@ -190,11 +190,13 @@ function drawPolygon(drawn, { vertices, centroid, largest }, scale) {
   group.append(
     make("path", { class: "centroid", d: `M${gx - 6} ${gy}H${gx + 6}M${gx} ${gy - 6}V${gy + 6}` }),
   );
-  corners.forEach((corner, i) => {
+  const names = corners.map((corner, i) => {
     const [x, y] = drawn.at(corner);
     const [dx, dy] = [gx - x, gy - y];
     const size = Math.hypot(dx, dy) || 1;
     const at = { x: x + (16 * dx) / size, y: y + (16 * dy) / size + 4, "text-anchor": "middle" };
-    group.append(make("text", { class: "vertex-name", ...at }, String(i + 1)));
+    return make("text", { class: "vertex-name", ...at }, String(i + 1));
   });
+  group.append(...names);
+  thin(names, drawn.width);
 }

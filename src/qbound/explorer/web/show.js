@@ -24,6 +24,8 @@ function redraw() {
   byId("area").textContent = areaText();
   root.dispatchEvent(new CustomEvent("qbound-draw"));
   if (robot.polygon) inputOf("show-polygon").disabled = !slice.own;
+  inputOf("show-workspace").disabled = !slice.regular; // the tool leaves the plane: it has no area
+  inputOf("show-workspace").checked = slice.regular && state.show.workspace;
   refresh();
 }
 
