@@ -30,6 +30,7 @@ from qbound import find_region, load_robot
 from qbound.cli import COMMANDS, command_parsers, main, progress
 from qbound.cli.files import write_all
 from qbound.files import write_whole
+from qbound.model.robotfile import robot_text
 from support.oracles import packaged_table, point_seen_from
 
 PACKAGE = Path(qbound.__file__).parent
@@ -807,6 +808,74 @@ def test_a_paving_of_many_joints_says_what_memory_it_takes_before_it_begins(caps
     assert "--slice" in err
     assert "--memory 2" in err
     assert run(capsys, "pave minervabot-v2 --memory 0 --tolerance 0.5")[0] == 2
+
+
+def many_joints() -> str:
+    """A URDF of nine joints: a form of all of them has 3^9 coefficients."""
+    shape = "<geometry><capsule radius='0.03' length='0.2'/></geometry>"
+    links = [
+        f"<link name='l{k}'><collision><origin xyz='0 0 0.1'/>{shape}</collision></link>"
+        for k in range(10)
+    ]
+    joints = [
+        f"<joint name='j{k}' type='revolute'><parent link='l{k}'/><child link='l{k + 1}'/>"
+        f"<origin xyz='0.02 0 0.3'/><axis xyz='0 {k % 2} {1 - k % 2}'/>"
+        "<limit lower='-2' upper='2' effort='1' velocity='1'/></joint>"
+        for k in range(9)
+    ]
+    return "<robot name='nine'>" + "".join(links + joints) + "</robot>"
+
+
+def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) -> None:
+    """Of 14,400 pairs `contains` took 4.5 GB, `why` more than 7, and nobody was asked."""
+    Path("nine.urdf").write_text(many_joints())
+    assert run(capsys, "import nine.urdf --excess 5mm -o nine.toml")[0] == 0
+    held = "--slice " + " ".join(f"j{k}=0" for k in range(2, 9))
+    pose = "0 " * 9
+    for line in (
+        f"contains nine.toml {pose}",
+        f"why nine.toml {pose} {pose}",
+        "sample nine.toml -n 10",
+        "surface nine.toml --joints 0 1 2",
+        *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
+        f"explore nine.toml -o x.html {held}",
+        f"traverse nine.toml 1 2 {held}",
+        "pave nine.toml",
+    ):
+        status, out, err = run(capsys, f"{line} --memory 0.1")
+        assert (status, out) == (2, ""), line
+        assert re.search(r"this takes about \d+\.\d GB of memory, and --memory allows 0.1; ", err)
+        assert re.search(r"allow it with --memory (\d+)", err)
+    status, _, err = run(capsys, f"why nine.toml {pose} {pose}")
+    assert (status, "--memory allows 2; keep fewer pairs apart" in err) == (2, True)
+    assert run(capsys, f"fibre nine.toml j4 {pose}")[0] == 0  # by balls, not by forms
+
+
+def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -> None:
+    Path("reach.toml").write_text(
+        SWEEP.replace("minervabot-v2", "ur5")
+        .replace("region.area", "paving.inner")
+        .replace("joint.q2.origin.0", "home.elbow_joint")
+    )
+    for line, about in (
+        ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
+        ("reach ur5 --voxel 7mm", "2.6"),
+        ("reach ur5 --voxel 35mm --axis 0,0,1 --memory 0.05", "0.1"),
+        ("sweep reach.toml -o swept --workers 2", "3.0"),
+    ):
+        status, out, err = run(capsys, line)
+        assert (status, out) == (2, "")
+        assert f"this takes about {about} GB" in err
+    obstacles = "".join(
+        f'[[obstacle]]\nname = "o{k}"\ndisc = {{ at = [{k}, 9], radius = 0.1 }}\n'
+        for k in range(900)
+    )
+    Path("many.toml").write_text(robot_text("two-links-on-a-table")[0] + obstacles)
+    status, out, err = run(capsys, "region many.toml")
+    assert (status, out, "this takes about 2.2 GB" in err) == (2, "", True)
+    assert run(capsys, "sample minervabot-v2 -n 1000 --memory 0.0001")[0] == 0
+    assert run(capsys, "sample minervabot-v2 -n 1e4 --memory 0.0001")[0] == 2
+    assert run(capsys, "sample minervabot-v2 -n 1e4")[0] == 0
 
 
 def test_a_paving_ends_when_its_time_is_over(capsys) -> None:

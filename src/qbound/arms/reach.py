@@ -14,6 +14,7 @@ Not in the paper, whose workspaces are planar.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import floor, log10
@@ -38,6 +39,9 @@ BANDS, SECTORS = 6, 12
 
 MOST_CELLS = 64_000_000
 """Voxels of a grid, times directions where these are told apart."""
+
+WORKING = 8
+"""Bytes a voxel beside those: the map of a scramble, its copies with an edge, coarser ones."""
 
 LONGEST_EDGE = 4
 """Edge of a voxel at most, in lengths of the arm."""
@@ -212,6 +216,25 @@ def reach(
     index = None if axis is None else survey.marked.mean(axis=1).reshape(grid.shape)
     reached: Bools = survey.marked.any(axis=1).reshape(grid.shape)
     return Reach(robot, grid, reached, index, one, survey.fibres, seed, volumes)
+
+
+def map_bytes(robot: Robot, voxel: float | None, *, directions: bool = False) -> int:
+    """Estimate the memory of a map: marks of each voxel, and the configuration that led there.
+
+    Raises
+    ------
+    ValueError
+        If the edge of the voxels is out of range.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> map_bytes(load_robot("ur5"), 0.02) // 10**6  # megabytes
+    104
+    """
+    bins = BANDS * SECTORS if directions else 1
+    cells = math.prod(_grid(robot, voxel, bins).shape)
+    return cells * (8 * len(robot.joints) + bins + WORKING + 8 * directions)
 
 
 class _Survey:

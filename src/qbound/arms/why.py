@@ -29,7 +29,7 @@ from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.disconnected import certify_disconnected
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
 from qbound.proofs.no_path import certify_no_path
 from qbound.proofs.paving import Paving
 from qbound.proofs.proved_region import prove_region, proved_component
@@ -47,6 +47,9 @@ QUICK = 400
 
 SEEDS = 3
 """Searches after it, each with other places, before none is made any more."""
+
+FORM = 75
+"""Bytes a coefficient of the forms of all joints, with what is computed of each; measured."""
 
 MOST_PAVED = 3
 """Joints that a paving takes."""
@@ -209,6 +212,18 @@ def why(
             return found
         tried += [found] if found else []
     return asked.answer("undecided", tried=tuple(tried))
+
+
+def why_bytes(robot: Robot) -> int:
+    """Estimate the memory of an answer: forms of all joints, and exact ones of a paving's.
+
+    Examples
+    --------
+    >>> why_bytes(load_robot("ur5")) // 10**6  # megabytes
+    27
+    """
+    count, joints = len(robot.used), len(robot.joints)
+    return FORM * count * int(3**joints) + paving_bytes(count, min(joints, MOST_PAVED))
 
 
 @dataclass(frozen=True, eq=False)

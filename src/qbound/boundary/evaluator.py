@@ -402,6 +402,20 @@ def forms_in_use(robot: Robot) -> HarmonicForm:
     return stacked(robot, [boundary for boundary in robot.used if not bounds_bodies(boundary)])
 
 
+def forms_bytes(robot: Robot) -> int:
+    """Estimate the memory of the forms of all boundaries in use, while they are compiled.
+
+    Each has :math:`3^n` coefficients, eight bytes each; the table of them is as large again.
+
+    Examples
+    --------
+    >>> from qbound import load_robot
+    >>> forms_bytes(load_robot("ur5"))  # 193 pairs, six joints
+    2251152
+    """
+    return 16 * len(robot.used) * int(3 ** len(robot.joints))
+
+
 def stacked(robot: Robot, boundaries: Sequence[Boundary]) -> HarmonicForm:
     """Return the clearance forms of boundaries as one stack, shape (m,)."""
     forms = np.array([clearance(robot, boundary).coefficients for boundary in boundaries])

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
-from qbound.boundary.evaluator import limit_names
+from qbound.boundary.evaluator import forms_bytes, limit_names
+from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.cli.progress import working
 from qbound.model.robot import Robot
+from qbound.model.robotfile import load_robot
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_text, margin_text
 
 MEMORY: Final = 2
 """Gigabytes that a command takes without being asked to."""
+
+
+CONTACT: Final = 1_200_000
+"""Bytes a pair of convex parts takes in a region of a thousand obstacles; measured."""
+
+FEWER: Final = "keep fewer pairs apart (qbound import makes fewer of them by a larger --excess)"
+"""What to do about a robot of too many boundaries for its number of joints."""
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -62,6 +71,25 @@ def add_memory(parser: argparse.ArgumentParser) -> None:
         metavar="GB",
         help=f"most memory to use, as it is estimated before the work (default {MEMORY})",
     )
+
+
+def region_bytes(robot: Robot) -> int:
+    """Estimate the memory of a region, or of a slice: forms, and contacts of bodies."""
+    contacts = (
+        math.prod(len(body.parts) for body in bounded_bodies(robot, boundary))
+        for boundary in robot.used
+        if bounds_bodies(boundary)
+    )
+    return forms_bytes(robot) + CONTACT * sum(contacts)
+
+
+def sized_robot(
+    options: argparse.Namespace, estimate: Callable[[Robot], float] = region_bytes
+) -> Robot:
+    """Load the robot; refuse one that takes more memory than `--memory` allows."""
+    robot = load_robot(options.robot)
+    refuse_memory(options, estimate(robot), FEWER)
+    return robot
 
 
 def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) -> None:

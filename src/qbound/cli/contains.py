@@ -7,13 +7,12 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from qbound.boundary.evaluator import evaluator
-from qbound.cli.chosen import add_robot
+from qbound.cli.chosen import add_memory, add_robot, sized_robot
 from qbound.cli.files import deliver
 from qbound.cli.values import configuration
 from qbound.export.configuration import configuration_facts, with_version
 from qbound.export.formats import json_text
 from qbound.model.robot import Joint, Robot
-from qbound.model.robotfile import load_robot
 from qbound.tolerances import SAME_POINT
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
@@ -54,12 +53,13 @@ def add_to(commands: Any) -> None:
         " links once, the nearest first",
     )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     content = configuration_facts(robot, configuration(robot, options.values), options.weights)
     document = (options.json, lambda: json_text(with_version(robot, content)))
     deliver([document], _lines(robot, content, everything=options.all))

@@ -9,12 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    region_by_rule,
+    sized_robot,
+)
 from qbound.cli.files import check_targets, write_all
 from qbound.cli.terminal import say
 from qbound.cli.values import configuration, held
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import plane_of_motion
 from qbound.paths.route import nth_component
 
@@ -40,12 +46,13 @@ def add_to(commands: Any) -> None:
         "--component", type=int, default=0, metavar="K", help="number the vertices of this one"
     )
     add_slice(parser)
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Draw the picture and say where it is."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
     check_targets([output], ("svg", "png"))
     values = held(robot, options.slice)

@@ -5,14 +5,21 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, home_lines, region_by_rule
+from qbound.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    region_by_rule,
+    sized_robot,
+)
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, strip
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot
 from qbound.region import Slices, find_slices
 from qbound.tolerances import SAME_POINT
 
@@ -38,12 +45,13 @@ def add_to(commands: Any) -> None:
         metavar="q3[=LOW..HIGH:COUNT]",
         help="a held joint whose slider shows exact slices: so many values (25 over its range)",
     )
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the page; 1 if the home pose is in no component."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     row = None if options.strip is None else _row(robot, options, values)
     region = region_by_rule(robot, options.rule, values)

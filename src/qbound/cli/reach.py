@@ -6,9 +6,9 @@ import argparse
 import math
 from typing import Any
 
-from qbound.arms.reach import Reach, reach
+from qbound.arms.reach import Reach, map_bytes, reach
 from qbound.arms.reports import reach_document, reach_lines, reach_npz
-from qbound.cli.chosen import add_robot
+from qbound.cli.chosen import add_memory, add_robot, refuse_memory
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.export.formats import json_text
@@ -49,6 +49,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--svg", metavar="FILE", help="draw that section")
     parser.add_argument("--npz", metavar="FILE", help="write the voxels as NumPy arrays")
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -60,6 +61,8 @@ def run(options: argparse.Namespace) -> int:
     edge = None
     if options.voxel is not None:
         edge = parse_length(options.voxel, robot.length_unit, "--voxel")
+    estimate = map_bytes(robot, edge, directions=axis is not None)
+    refuse_memory(options, estimate, "take longer voxels")
     with working("mapping"):
         found = reach(robot, edge, seed=options.seed, axis=axis)
     outputs: list[Output] = [

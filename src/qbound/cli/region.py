@@ -11,12 +11,14 @@ from functools import cache, partial
 from typing import Any
 
 from qbound.cli.chosen import (
+    add_memory,
     add_robot,
     add_rule,
     add_slice,
     home_lines,
     is_elsewhere,
     region_by_rule,
+    sized_robot,
 )
 from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
@@ -25,7 +27,6 @@ from qbound.export.document import slices_document
 from qbound.export.formats import json_text
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot
 from qbound.region import Region, Slices, find_slices
 from qbound.units import counted, joint_text
 
@@ -61,6 +62,7 @@ def add_to(commands: Any) -> None:
         " alone: 25 over its range), --slice holding the others; --svg draws a strip of panels,"
         " --json has them all",
     )
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -69,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
     Of a strip: 1 if every slice is empty, 3 if one is unresolved.
     """
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     if options.strip is not None:
         return _strip(robot, options)
     region = region_by_rule(robot, options.rule, held(robot, options.slice))

@@ -6,16 +6,16 @@ import argparse
 from typing import Any
 
 from qbound import sampling
-from qbound.cli.chosen import add_robot, add_rule
+from qbound.boundary.evaluator import forms_bytes
+from qbound.cli.chosen import add_memory, add_robot, add_rule, refuse_memory, sized_robot
 from qbound.cli.files import Output, deliver
 from qbound.cli.progress import progress
 from qbound.export.formats import json_text
-from qbound.export.samples import sample_csv, sample_document, sample_npz
-from qbound.model.robotfile import load_robot
+from qbound.export.samples import sample_bytes, sample_csv, sample_document, sample_npz
 from qbound.region import paper_rule
 
 MOST = 20_000_000
-"""Configurations of a sample: two gigabytes, and more while they are written as a table."""
+"""Configurations of a sample at most."""
 
 
 def add_to(commands: Any) -> None:
@@ -36,6 +36,7 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--npz", metavar="FILE", help="the same as NumPy arrays q, tool, free")
     parser.add_argument("--json", metavar="FILE", help="the same as JSON; - for standard output")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -58,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"-n {options.n}: at most {MOST} fit into memory; take several seeds")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
-    robot, rule, seed = load_robot(options.robot), options.rule, options.seed
+    robot, rule, seed = sized_robot(options), options.rule, options.seed
+    tables = sum(file is not None for file in (options.csv, options.json))
+    estimate = forms_bytes(robot) + sample_bytes(len(robot.joints), options.n, tables)
+    refuse_memory(options, estimate, "draw fewer, or write --npz alone")
     judge = sampling.keeps_clear if rule == "clearance" else paper_rule.feasible
     told = progress("sampling", options.n)
     drawn = sampling.sample(robot, options.n, judge, seed=seed, progress=told)

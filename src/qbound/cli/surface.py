@@ -11,12 +11,11 @@ import numpy as np
 
 from qbound.arms.surface_files import glb_bytes, ply_bytes
 from qbound.arms.surfaces import RESOLUTION, Surface, find_surface
-from qbound.cli.chosen import add_robot, add_slice
+from qbound.cli.chosen import add_memory, add_robot, add_slice, sized_robot
 from qbound.cli.files import Content, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, joint
-from qbound.model.robotfile import load_robot
 from qbound.printable import printable
 from qbound.units import counted
 
@@ -55,13 +54,14 @@ def add_to(commands: Any) -> None:
         dest="output",
         help=f"one of {', '.join(f'.{kind}' for kind in KINDS)}",
     )
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Find it; 0 if it is made, 1 if nothing is feasible within the ranges."""
     check_targets([options.output], tuple(KINDS))
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     values = held(robot, options.slice)
     axes = [joint(robot, text) for text in options.joints]
     with working("surface"):

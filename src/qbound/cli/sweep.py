@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from qbound.cli.chosen import add_memory, refuse_memory
 from qbound.cli.files import check_targets, deliver
 from qbound.cli.progress import progress
 from qbound.printable import printable
 from qbound.sweeps import Swept, sweep
 from qbound.sweeps.run import with_unit
+from qbound.sweeps.specification import arm_bytes, read_specification
 from qbound.units import counted
 
 SHOWN = 10
@@ -41,6 +43,7 @@ def add_to(commands: Any) -> None:
         help="processes on this machine, where no scheduler is given (default 1)",
     )
     parser.add_argument("--svg", metavar="FILE", help="draw the measures of one or two numbers")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -52,6 +55,10 @@ def run(options: argparse.Namespace) -> int:
     if workers < 1:
         raise ValueError(f"--workers {workers}: one or more are wanted")
     check_targets([options.svg], sources=[options.specification])
+    needed = workers * arm_bytes(read_specification(options.specification))
+    refuse_memory(
+        options, needed, "hold joints with 'slice', or take longer voxels or fewer workers"
+    )
     found = sweep(
         options.specification,
         options.folder,

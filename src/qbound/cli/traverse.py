@@ -5,14 +5,20 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, region_by_rule
+from qbound.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    region_by_rule,
+    sized_robot,
+)
 from qbound.cli.files import Output, deliver
 from qbound.cli.terminal import complain
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.export.routes import infeasible_line, route_csv, route_document, route_lines
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot
 from qbound.model.rows import LARGEST
 from qbound.paths.report import PathReport, report
 from qbound.paths.route import Route, plan_route
@@ -67,12 +73,13 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--ros", metavar="FILE", help="write the points of a ROS JointTrajectory")
     parser.add_argument("--json", metavar="FILE", help="write the report; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the path")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Go along the path; 1 if it leaves the region."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     route = _route(robot, options)
     times = _in_time(route, options)
     found = report(route)

@@ -7,14 +7,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from qbound.arms.answers import why_document, why_lines
-from qbound.arms.why import Why, why
-from qbound.cli.chosen import add_robot
+from qbound.arms.why import Why, why, why_bytes
+from qbound.cli.chosen import add_memory, add_robot, sized_robot
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.cli.values import configuration
 from qbound.export.formats import json_text
 from qbound.figures.why import why_picture
-from qbound.model.robotfile import load_robot
 
 STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
 
@@ -50,12 +49,13 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the ranges, or margins along the path")
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer; 0 connected, 1 separated or infeasible, 3 undecided."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options, why_bytes)
     n = len(robot.joints)
     if len(options.values) != 2 * n:
         raise ValueError(f"{len(options.values)} values; two configurations have {2 * n}")

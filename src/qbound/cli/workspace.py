@@ -5,13 +5,20 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_robot, add_rule, add_slice, home_lines, region_by_rule
+from qbound.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    region_by_rule,
+    sized_robot,
+)
 from qbound.cli.files import Output, deliver
 from qbound.cli.terminal import complain
 from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
-from qbound.model.robotfile import load_robot
 from qbound.region import NoHomeError
 from qbound.workspace.report import WorkspaceReport, workspace_report
 
@@ -36,12 +43,13 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--go", nargs=2, metavar="Q1,Q2", help="can the arm go from the one pose to the other?"
     )
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
-    robot = load_robot(options.robot)
+    robot = sized_robot(options)
     values = held(robot, options.slice)
     places = [place(text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -10,6 +10,25 @@ from qbound.export.formats import csv_text, npz_bytes, pose_columns, pose_headin
 from qbound.model.robot import Robot
 from qbound.sampling import Sample, joint_ranges
 from qbound.units import joint_units
+
+TEXT: Final = 90
+"""Bytes a number takes while it is written as text; measured."""
+
+
+def sample_bytes(joints: int, count: int, tables: int = 0) -> int:
+    """Estimate the memory of a sample: joint values, tool and verdict of each configuration.
+
+    Parameters
+    ----------
+    tables : int
+        How often it is written as text, CSV or JSON.
+
+    Examples
+    --------
+    >>> sample_bytes(2, 10**6) // 10**6, sample_bytes(2, 10**6, tables=1) // 10**6  # megabytes
+    (48, 588)
+    """
+    return count * (joints + 4) * (8 + TEXT * tables)
 
 
 def sample_csv(robot: Robot, drawn: Sample) -> str:

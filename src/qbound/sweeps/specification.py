@@ -26,7 +26,9 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, UnsetType, field
 
+from qbound.arms.reach import map_bytes
 from qbound.boundary.balls import Balls
+from qbound.boundary.evaluator import forms_bytes
 from qbound.design import Path as Place
 from qbound.design import varied
 from qbound.model.robot import Robot
@@ -34,6 +36,7 @@ from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots
 from qbound.model.rows import LARGEST, Label, Number, Row
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.printable import printable
+from qbound.proofs.exact import paving_bytes
 from qbound.sweeps.cells import HELD
 from qbound.sweeps.measures import MEASURES
 
@@ -306,6 +309,20 @@ def _arm_faults(study: Study, needs: str) -> Iterator[str]:
         Balls.of(study.robot)
     except ValueError as error:
         yield f"takes points and balls: {error}"
+
+
+def arm_bytes(study: Study) -> int:
+    """Estimate the memory that measuring one arm takes."""
+    robot, wanted = study.robot, study.specification
+    kinds = {name.partition(".")[0] for name in wanted.measure}
+    found = [0]
+    if kinds & {"region", "workspace"}:
+        found.append(forms_bytes(robot))
+    if "paving" in kinds:
+        found.append(paving_bytes(len(robot.used), len(robot.free(held_names(wanted)))))
+    if "reach" in kinds:
+        found.append(map_bytes(robot, None if wanted.voxel is UNSET else wanted.voxel))
+    return max(found)
 
 
 def held_names(specification: Specification) -> set[str]:
