@@ -861,6 +861,7 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
         ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
         ("reach ur5 --voxel 7mm", "2.6"),
         ("reach ur5 --voxel 35mm --axis 0,0,1 --memory 0.05", "0.1"),
+        ("pave ur5 --columns --memory 0.5", "2.2"),
         ("sweep reach.toml -o swept --workers 2", "3.0"),
     ):
         status, out, err = run(capsys, line)

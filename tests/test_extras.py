@@ -17,6 +17,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from qbound import extras, find_region, load_robot
+from qbound.cli import command_parsers
 from qbound.extras import explained
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -209,6 +210,60 @@ def test_readme_knows_the_extras_and_what_they_bring() -> None:
     for extra in extras.EXTRAS.values():
         if extra.name != "notebooks":
             assert extra.library in rows[extra.name]
+
+
+# --- help -----------------------------------------------------------------------------------------
+
+HELP = {name: parser.format_help() for name, parser in command_parsers().items()}
+EXAMPLES = [
+    (name, line.removeprefix("example: qbound "))
+    for name, text in HELP.items()
+    for line in text.splitlines()
+    if line.startswith("example: ")
+]
+SWEEP = """
+schema = 1
+robot = "minervabot-v2"
+measure = ["region.area"]
+vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]
+"""
+ALONE = (
+    "import sys; sys.modules.update(dict.fromkeys(sys.argv.pop(1).split()));"
+    "from qbound.cli import main; sys.exit(main(sys.argv[1:]))"
+)
+"""The command, in a process that cannot import what its first argument lists."""
+
+
+def named(command: str) -> list[str]:
+    """The extras that the help of a command names."""
+    return sorted(set(re.findall(r"qbound\[(\w+)\]", HELP[command])))
+
+
+def run_alone(folder: Path, line: str) -> subprocess.CompletedProcess[str]:
+    """Run a command where only what its help names can be imported of all extras."""
+    command, *words = shlex.split(line)
+    brought = closure(required(named(command)))
+    homes = packages_distributions()
+    barred = [m for m in extras.EXTRAS if not {canonicalize_name(n) for n in homes[m]} & brought]
+    program = [sys.executable, "-c", ALONE, " ".join(barred), command, *words]
+    return subprocess.run(program, cwd=folder, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(("name", "line"), EXAMPLES, ids=lambda value: value)
+def test_an_example_of_help_runs_with_the_extras_that_its_help_names(tmp_path, name, line) -> None:
+    """And with no other: what a command takes besides, its help has to say."""
+    (tmp_path / "reach.toml").write_text(SWEEP, encoding="utf-8")
+    if name == "check":
+        assert run_alone(tmp_path, "certify minervabot-v2 --scale 0.96 -o cert.json").stderr == ""
+    done = run_alone(tmp_path, line)
+    assert done.stderr == ""
+    assert done.returncode in (0, 1)
+
+
+def test_without_what_its_help_names_a_command_does_not_run(tmp_path, monkeypatch) -> None:
+    monkeypatch.setitem(HELP, "draw", "")
+    done = run_alone(tmp_path, "draw minervabot-v2 -o arm.svg")
+    assert (done.returncode, done.stderr) == (2, f"qbound: {extras.how_to_install('matplotlib')}\n")
 
 
 # --- what is missing ------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ def add_to(commands: Any) -> None:
         description="Print the ledger's entries: one line each, or whole, with what was computed"
         " and the test, those chosen by id or verdict.",
         epilog="exit status: 0 printed, 1 a value is another than the recorded one; 2 bad input\n"
+        "needs qbound[notebooks] for --recompute\n"
         "example: qbound claims E-34 --recompute\n"
         "example: qbound claims --verdict refuted --verdict misprint",
     )

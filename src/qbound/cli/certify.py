@@ -13,7 +13,7 @@ from typing import Any
 
 from qbound import check
 from qbound.boundary.margins import violated
-from qbound.cli.chosen import add_robot
+from qbound.cli.chosen import FEWER, add_memory, add_robot, refuse_memory, region_bytes
 from qbound.cli.files import write_all
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
@@ -49,6 +49,7 @@ def add_to(commands: Any) -> None:
         description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
         "Certificates take robots of at most 6 joints, none of them a parallelogram.",
         epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
+        "needs qbound[proofs]\n"
         "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
     )
     add_robot(parser)
@@ -76,6 +77,7 @@ def add_to(commands: Any) -> None:
         metavar="DIR",
         help="put the certificate and check.py, which checks it with Python alone, into a folder",
     )
+    add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -87,6 +89,7 @@ def run(options: argparse.Namespace) -> int:
     robot = parse_robot(tomllib.loads(text))
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
+    refuse_memory(options, region_bytes(robot), FEWER)
     margin = as_decimal("--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")

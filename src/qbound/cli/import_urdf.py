@@ -23,6 +23,7 @@ def add_to(commands: Any) -> None:
         "import",
         help="make a robot file of a URDF, its links covered by balls",
         epilog="exit status: 0 imported, whether home is feasible or not; 2 bad input\n"
+        "needs qbound[arms]\n"
         "example: qbound import ur5.urdf --srdf ur5.srdf --excess 0.01 -o ur5.toml",
     )
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")

@@ -24,6 +24,9 @@ from qbound.proofs.reports import (
 STEPS = 1000
 """Of the progress that is shown."""
 
+COLUMNS = 4_000_000
+"""Bytes that columns take for each boundary in five minutes; measured on slices of a UR5."""
+
 SECONDS = 300
 """Time after which a paving stops, unless another is asked for."""
 
@@ -75,6 +78,7 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice)
     free = [j for j in range(len(robot.joints)) if j not in values]
     estimate = paving_bytes(len(robot.used), len(free))
+    estimate += COLUMNS * len(robot.used) if options.columns else 0
     refuse_memory(options, estimate, "hold some of the joints with --slice")
     problem = exact_problem(exact_robot(options.robot), values)
     shown = progress("paving", STEPS)

@@ -26,6 +26,7 @@ def add_to(commands: Any) -> None:
         "seed gives the same map. Of arms of points and balls; of bodies in a plane, qbound\n"
         "workspace measures two joints.",
         epilog="exit status: 0 mapped, 1 nothing feasible was found; 2 bad input\n"
+        "needs qbound[proofs], and qbound[figures] for --svg\n"
         "example: qbound reach ur5 --voxel 25cm --svg reach.svg",
     )
     add_robot(parser)

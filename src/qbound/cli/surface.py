@@ -30,6 +30,7 @@ def add_to(commands: Any) -> None:
         "page to turn by hand), .svg or .png, .ply or .glb. Joints that are neither an axis nor\n"
         "held are at home. What is smaller than a step of the grid may be missing.",
         epilog="exit status: 0 made, 1 nothing is feasible within the ranges; 2 bad input\n"
+        "needs qbound[arms], and qbound[figures] for .svg and .png\n"
         "example: qbound surface ur5 --joints shoulder_lift_joint elbow_joint"
         " wrist_1_joint --resolution 20 -o ur5.html",
     )

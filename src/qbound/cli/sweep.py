@@ -27,6 +27,7 @@ def add_to(commands: Any) -> None:
         "sweep",
         help="measures of many arms that differ in some numbers, on many processes",
         epilog="exit status: 0 every arm has every measure, 1 some lack one; 2 bad input\n"
+        "needs qbound[cluster], qbound[figures] for --svg, qbound[proofs] for reach\n"
         "example: qbound sweep reach.toml -o reach --workers 2 --svg reach.svg",
     )
     parser.add_argument("specification", help="a TOML file: robot, vary, measure")

@@ -30,6 +30,7 @@ def add_to(commands: Any) -> None:
         "others held, a paving is made. Of more than 6 joints, or a parallelogram, the answer\n"
         "has no certificate.",
         epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
+        "needs qbound[figures] for --svg, qbound[proofs] for what is proved by cells\n"
         "example: qbound why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)

@@ -30,6 +30,7 @@ def add_to(commands: Any) -> None:
         help="the exact geometric workspace",
         epilog="exit status: 0 done, 1 home, a place or the passage asked for is not safe;\n"
         "3 the region is unresolved; 2 bad input\n"
+        "needs qbound[figures] for --svg\n"
         "example: qbound workspace minervabot-v2 --rule paper --at=-20,40",
     )
     add_robot(parser)
