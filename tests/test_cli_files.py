@@ -14,6 +14,7 @@ import subprocess
 import sys
 import threading
 import warnings
+from email.message import Message
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
@@ -121,6 +122,28 @@ EXAMPLES = [
 def test_every_help_ends_with_an_example() -> None:
     for parser in command_parsers().values():
         assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: {parser.prog}")
+
+
+def test_the_help_of_all_leads_to_the_robot_file_and_to_the_manual(capsys) -> None:
+    """Who has the wheel alone has no page, and may be offline."""
+    out = run(capsys, "--help")[1]
+    [schema] = re.findall(r"robot file: every key is in (\S+)", out)
+    assert "joint" in json.loads(Path(schema).read_text(encoding="utf-8"))["properties"]
+    assert "qbound robots show minervabot-v2" in out
+    [code] = re.findall(r'manual: python -c "(.*)"', out)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    assert done.stdout.decode().startswith("# qbound")
+
+
+def test_the_help_names_our_addresses_and_no_other(monkeypatch, capsys) -> None:
+    found = ["Paper, https://doi.org/x", "Repository, https://example.org/qbound"]
+    for known, shown in ((found, True), (found[:1], False)):
+        about = Message()
+        for url in known:
+            about["Project-URL"] = url
+        monkeypatch.setattr("importlib.metadata.metadata", lambda _, about=about: about)
+        assert ("Repository: https://example.org/qbound" in run(capsys, "--help")[1]) == shown
+        assert "doi.org" not in run(capsys, "--help")[1]
 
 
 def test_every_help_says_what_the_exit_status_means() -> None:
@@ -861,7 +884,7 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
         ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
         ("reach ur5 --voxel 7mm", "2.6"),
         ("reach ur5 --voxel 35mm --axis 0,0,1 --memory 0.05", "0.1"),
-        ("pave ur5 --columns --memory 0.5", "2.2"),
+        ("pave ur5 --columns --memory 0.5", "2.3"),
         ("sweep reach.toml -o swept --workers 2", "3.0"),
     ):
         status, out, err = run(capsys, line)

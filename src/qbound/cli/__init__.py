@@ -181,6 +181,7 @@ def _parsers(
         import_module(f"qbound.cli.{name}").add_to(commands)
     if chosen is None:
         _add_others(commands)
+        parser.epilog = "\n".join(_where_to_read())
     return parser, dict(commands.choices)
 
 
@@ -201,6 +202,21 @@ def _add_others(commands: Any) -> None:
         except Exception as error:
             reason = explained(error) or type(error).__name__
             complain(f"warning: the command {found.name} ({found.value}) cannot be used: {reason}")
+
+
+def _where_to_read() -> Iterator[str]:
+    """Say where the formats and the manual are, for who has nothing but the package."""
+    from importlib import metadata, resources
+
+    schema = resources.files("qbound") / "schemas" / "robot.schema.json"
+    yield f"robot file: every key is in {schema}"
+    yield "  one to begin with: qbound robots show minervabot-v2"
+    code = "from importlib.metadata import metadata as m; print(m('qbound').json['description'])"
+    yield f'manual: python -c "{code}"'
+    for url in metadata.metadata("qbound").get_all("Project-URL") or ():
+        name, _, address = url.partition(", ")
+        if name != "Paper":
+            yield f"{name}: {address}"
 
 
 class _Version(argparse.Action):
