@@ -932,6 +932,25 @@ def test_the_library_speaks_of_no_option_and_a_command_of_no_argument_of_a_call(
         assert not [s for s in sentences(file) if re.search(r"\w=[{\[(]", s)], file.name
 
 
+def test_a_command_names_its_option_where_too_many_or_too_few_joints_move(capsys) -> None:
+    for line, moving in (
+        ("region ur5 --slice elbow_joint=1", "5 that are not held (shoulder_pan_joint, "),
+        ("workspace minervabot-v2 --slice q1=0", "1 that is not held (q2)"),
+    ):
+        status, _, err = run(capsys, line)
+        assert status == 2
+        assert moving in err
+        assert "--slice" in err
+        assert "held=" not in err
+
+
+def test_certify_names_the_file_that_is_wrong(capsys, arm) -> None:
+    for text in (ARM.replace("axis = [0, 0, 1]", "axis = [0, 0, 0]"), "a = ["):
+        Path("bad.toml").write_text(text)
+        status, _, err = run(capsys, "certify bad.toml")
+        assert (status, err.startswith("qbound: bad.toml: ")) == (2, True)
+
+
 def test_one_is_counted_as_one(capsys) -> None:
     assert "1 component, area" in run(capsys, "region rp-telescopic-boom")[1]
     assert run(capsys, "traverse minervabot-v2 1 2 --scale 0.5")[1].startswith("1 leg: ")

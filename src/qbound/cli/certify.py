@@ -85,8 +85,11 @@ def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
     if options.with_checker is not None:
         _check_folder(options.with_checker)
-    text, _ = robot_text(options.robot)
-    robot = parse_robot(tomllib.loads(text))
+    text, file = robot_text(options.robot)
+    try:
+        robot = parse_robot(tomllib.loads(text))
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
     refuse_memory(options, region_bytes(robot), FEWER)
