@@ -935,7 +935,7 @@ def test_the_library_speaks_of_no_option_and_a_command_of_no_argument_of_a_call(
 def test_a_command_names_its_option_where_too_many_or_too_few_joints_move(capsys) -> None:
     for line, moving in (
         ("region ur5 --slice elbow_joint=1", "5 that are not held (shoulder_pan_joint, "),
-        ("workspace minervabot-v2 --slice q1=0", "1 that is not held (q2)"),
+        ("workspace minervabot-v2 --slice q1=0", "1 that are not held (q2)"),
     ):
         status, _, err = run(capsys, line)
         assert status == 2

@@ -230,7 +230,7 @@ def map_bytes(robot: Robot, voxel: float | None, *, directions: bool = False) ->
     --------
     >>> from qbound import load_robot
     >>> map_bytes(load_robot("ur5"), 0.02) // 10**6  # megabytes
-    104
+    114
     """
     bins = BANDS * SECTORS if directions else 1
     cells = math.prod(_grid(robot, voxel, bins).shape)

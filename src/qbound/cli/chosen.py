@@ -59,7 +59,7 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
         raise ValueError("--slice: the paper's rule knows two joints only")
     if len(free := robot.free(values)) != 2:
         names = ", ".join(robot.joints[j].name for j in free)
-        moving = f"{len(free)} that {'is' if len(free) == 1 else 'are'} not held ({names})"
+        moving = f"{len(free)} that are not held ({names})"
         raise ValueError(f"a region has two joints; here are {moving}: hold all but two by --slice")
     count = len(robot.used)
     with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
