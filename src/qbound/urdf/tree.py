@@ -215,7 +215,7 @@ def _only_leaf(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
     leaves = [link for link in leaves if _carries(parents, start, link)]
     if len(leaves) > 1:
         text = f"{len(leaves)} links could be the last one: {listed(leaves)}"
-        raise RobotFileError(f"{called(urdf.file)}: {text}; choose it")
+        raise RobotFileError(f"{called(urdf.file)}: {text}; name it")
     return leaves[0]
 
 
