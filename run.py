@@ -15,8 +15,8 @@
     python3 run.py pack     make the files of a release in dist/, with their checksums
     python3 run.py clean    remove what the other commands made
 
-It needs Python alone. The tools are installed once, in .venv, as requirements.lock pins them.
-docs/decisions/0001-one-command.md says why this is one file of the standard library.
+It needs Python alone, because a reader who checks the paper may have nothing else. The tools are
+installed once, in .venv, as requirements.lock pins them.
 """
 
 import argparse

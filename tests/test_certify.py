@@ -39,7 +39,7 @@ from support.robot_files import box_of, robot_file
 from support.robots import OF_POINTS, drawn_robot, random_robot
 
 ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
-"""Random robots; a longer run is written down in docs/decisions/0233."""
+"""Random robots; benchmarks/README.md has a longer run."""
 
 REGIONS = int(os.environ.get("QBOUND_CERTIFY_REGIONS", "24"))
 """Random robots of two joints whose regions are proved; 260 of both kinds were, once."""

@@ -1515,7 +1515,20 @@ def test_the_lines_of_the_readme_run() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_whatever_the_readme_points_to_is_there() -> None:
-    targets = re.findall(r"\]\(([^)#:]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
-    assert len(targets) > 5
-    assert [target for target in targets if not (ROOT / target).exists()] == []
+PAGES = ("README.md", "CONTRIBUTING.md", "docs/ARCHITECTURE.md")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_whatever_a_page_points_to_is_there(page: str) -> None:
+    path = ROOT / page
+    targets = re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8"))
+    assert targets
+    assert [target for target in targets if not (path.parent / target).exists()] == []
+
+
+def test_every_file_that_the_architecture_names_is_there() -> None:
+    text = (ROOT / "docs/ARCHITECTURE.md").read_text(encoding="utf-8")
+    named = re.findall(r"`([\w./]+/[\w.]*|\w+\.py)`", text)
+    assert len(named) > 50
+    folders = (ROOT, ROOT / "src/qbound")
+    assert [name for name in named if not any((at / name).exists() for at in folders)] == []

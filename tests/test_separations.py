@@ -323,7 +323,7 @@ def accepted(checker, text):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_both_checkers_answer_alike_about_mutants_and_tell_the_truth(seed):
-    """Those of decision 418, of these certificates; what both accept is judged by brute force."""
+    """Mutants of these certificates; what both accept is judged by brute force."""
     rng = random.Random(seed)
     texts = [made().text for made in (certificate, round_certificate, slide_certificate)]
     for _ in range(60):

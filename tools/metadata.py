@@ -2,8 +2,11 @@
 
 CITATION.cff, .zenodo.json, codemeta.json, ro-crate-metadata.json, the paragraph of SECURITY.md that
 says where to report and the BibTeX entry of book/cite.md come from `[project]` and `[tool.qbound]`
-of pyproject.toml alone. `python3 run.py metadata` writes them; with `--check` the files that are
-out of date are named instead. docs/decisions/0428-metadata-from-one-place.md says why.
+of pyproject.toml alone, because facts that are kept by hand in several files drift apart.
+`python3 run.py metadata` writes them; with `--check` it names the files that are out of date.
+
+The DOI is the one for all versions; Zenodo makes the DOI of each record, so .zenodo.json has none.
+CITATION.cff has no word for the relation to the paper, so a note says it.
 """
 
 import json
@@ -27,7 +30,7 @@ PARTS = {
     "book/": "The pages of the book that are no notebooks, and its configuration",
     "results/": "Every number of the book, one JSON file a chapter",
     "tests/": "The tests",
-    "docs/decisions/": "Why things are as they are",
+    "docs/": "How the code is built, and the reasons for the main choices",
     "run.py": "The one command: makes the book, runs the tests, writes this file",
     "requirements.lock": "Every package that the book is computed with, by version and hash",
 }

@@ -97,7 +97,7 @@ def texts() -> list[Path]:
     kinds = {".md", ".ipynb", ".py", ".toml", ".js", ".html", ".yml"}
     past = {"CHANGELOG.md"}
     paths = [path for path in files() if path.suffix in kinds and path.is_file()]
-    return sorted(p for p in paths if p.name not in past and "decisions" not in p.parts)
+    return sorted(p for p in paths if p.name not in past)
 
 
 def files() -> list[Path]:

@@ -1,7 +1,7 @@
-"""How does a printed formula look? Its LaTeX, every term where the paper has it.
+"""LaTeX of printed formulas, with every term where the paper has it.
 
-SymPy orders terms by rules of its own; a reader who compares a formula with the print should not
-have to. So the plain text of `lizarraga2025.printed` is written out as it stands.
+SymPy orders terms by rules of its own, and a reader could not compare the formula with the print.
+So this module translates the plain text of `lizarraga2025.printed` term by term.
 """
 
 from __future__ import annotations

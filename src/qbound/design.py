@@ -1,7 +1,7 @@
-"""Which length, width or clearance is best? Numbers of a robot varied, and what it is worth then.
+"""Design studies: numbers of a robot varied, and exact measures for each value.
 
-A number is called by where it stands in the robot's file, such as ``joint.elbow.origin.0``; every
-measure is exact. Not in the paper.
+A number is named by its place in the robot's file, such as ``joint.elbow.origin.0``. Not in the
+paper.
 """
 
 from __future__ import annotations

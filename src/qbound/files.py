@@ -1,7 +1,7 @@
-"""How is a file written? Whole or not at all; several together or none.
+"""Writing of files: each whole or not at all, several together or none.
 
-Drafts stand beside their files under names that nobody can guess, and are renamed when all of them
-are complete. A file that is replaced keeps its permissions; a link stays a link, and the file that
+Drafts stand beside their files under names that nobody can guess. They are renamed when all of them
+are complete. A file that is replaced keeps its permissions. A link stays a link, and the file that
 it leads to is written.
 """
 

@@ -1,7 +1,8 @@
-"""How is a text from outside shown to people? On one line, with nothing in it that acts.
+"""Texts from outside, made safe to show: on one line, with every character that acts escaped.
 
-A name in a file, a path or a wrong value may hold what a terminal obeys (escape sequences), what
-turns a line round (bidirectional marks) or what begins another line.
+A name in a file, a path or a wrong value may hold a command for the terminal (escape sequences), a
+mark that reverses the text (bidirectional marks) or a line break. A name is escaped where it is
+shown and not where it is read, because machines must get the name as it is.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 It holds the results that the chapter writes, in ``reads`` what its process read, and ``ran`` when
 all is done and written. If ``run.py`` is killed, this run ends too. With ``QBOUND_TWICE=1`` each
-cell runs twice (docs/decisions/0481).
+cell runs twice, so that a cell that depends on its own earlier run is found.
 """
 
 import os

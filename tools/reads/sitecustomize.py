@@ -9,8 +9,8 @@ That file gets a line of JSON for each thing that is read, at the moment when it
 - ``["folder", NAME, HASH]``: a folder whose names were listed, as every import does;
 - ``["program", NAME]``: a program that was started, which may read anything.
 
-The environment is left out: its packages are known by the lock. docs/decisions/0455 says what is
-not seen here.
+The environment is left out, because the lock names its packages. Two things are not seen: a file
+that C code opens by itself, and the question whether a file exists if the file is not opened.
 """
 
 import hashlib

@@ -1,4 +1,4 @@
-"""What does each statement come to? A function for every entry of the ledger, found by its id.
+"""The computation of every entry of the ledger: a function for each, found by its id.
 
 `registry` collects them. Equations: `labels` (1) to (8), `constraints` to (12), `theorem_1` to
 (29), `theorem_2` to (39). Table 6: `bounds`; all rows: `tables`. Captions: `figures_region`,

@@ -1,4 +1,4 @@
-"""What do the computations start from? Each thing once, and cached.
+"""Arms, regions and proofs on which several computations rest, each made once and cached.
 
 `arms`: the paper's robot and its variants.  `joint_region`: its regions and the scaled polygon.
 `tool_paths`: traversals and the workspace.  `effort`: what an area costs by each method.

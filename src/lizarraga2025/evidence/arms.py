@@ -1,4 +1,4 @@
-"""Which arms are judged? The paper's robot as printed, and the variants it is compared with."""
+"""The arms that are judged: the paper's robot as printed, and the variants for comparison."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far may digits be off? Those of the print, what they do to a contact; those of doubles."""
+"""Errors of printed digits and of doubles, and the effect of printed digits on a contact."""
 
 from __future__ import annotations
 

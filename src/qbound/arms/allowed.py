@@ -1,13 +1,13 @@
-"""Which pairs of links can never meet, which always do? Proved over the whole joint space.
+"""Allowed collision matrix: pairs of links that meet never, always or sometimes, with proof.
 
 Other programs draw ten thousand poses and call a pair that was in contact in none of them "never".
-Here "never" rests on a bound of every form from below over cells that fill the ranges of the joints
-between both links, "always" on a bound of one of them from above in each cell, and "sometimes" on
-two configurations, one with contact and one without. The bounds are those of
-`qbound.proofs.dyadic`: no rounding spoils them. Not in the paper, whose Table 6 has the case of one
+Here the proofs use cells that fill the ranges of the joints between both links. "Never": every form
+has a bound above zero in each cell. "Always": in each cell one form has a bound below zero.
+"Sometimes": there are two configurations, one with contact and one without. The bounds are those of
+`qbound.proofs.dyadic` and include rounding. Not in the paper, whose Table 6 has the case of one
 joint.
 
-What is proved is about the balls. Where they cover a link, "never" holds for the link, too;
+The proofs are about the spheres. If the spheres cover a link, "never" holds for the link too;
 "always" and "sometimes" need not.
 """
 

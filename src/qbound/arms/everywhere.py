@@ -1,6 +1,6 @@
-"""Is there contact everywhere, or nowhere? Cells that fill the ranges, each with a proof.
+"""Proofs of contact everywhere or nowhere, over cells that fill the ranges of the joints.
 
-Bounds of forms over cells come from `qbound.proofs.dyadic`; rounding is in them.
+Bounds of forms over cells come from `qbound.proofs.dyadic` and include rounding.
 """
 
 from __future__ import annotations

@@ -1,14 +1,15 @@
-r"""How far may one joint move, the others held? Exact intervals, thousands of rows at a time.
+r"""Fibres: the exact feasible intervals of one joint while the others are held, many at once.
 
-About the joint's axis a ball is at a radius and a height, and a pair is nearest when both stand in
-one half-plane through the axis. It can touch only if their distance there is less than it must
-keep, which few pairs do; for these the forbidden angles are one arc (Theorem 2), whose half-width
-is :math:`2 \arctan\sqrt{(d^2 - r_0^2) / (r_\pi^2 - d^2)}` with the distances :math:`r_0` in one
-half-plane and :math:`r_\pi` in opposite ones. Along a slide they are one interval.
+About the joint's axis a sphere has a radius and a height. A pair is nearest when both stand in one
+half-plane through the axis. The pair can touch only if their distance there is less than the
+required distance, and few pairs can. For these the forbidden angles are one arc (Theorem 2). Its
+half-width is :math:`2 \arctan\sqrt{(d^2 - r_0^2) / (r_\pi^2 - d^2)}`, where d is the required
+distance, :math:`r_0` the distance in one half-plane and :math:`r_\pi` that in opposite ones. Along
+a slide the forbidden values are one interval.
 
-What fibres are for: the whole travel of a joint at once, exactly, with what ends it, where samples
-would miss a thin obstacle. What they are not: a better way to a volume. At equal time evenly spread
-points are as good (`benchmarks/fibres.py`). Not in the paper.
+A fibre gives the whole travel of a joint exactly, with the names of its ends; samples would miss a
+thin obstacle. A fibre is not a better way to a volume: in equal time, evenly spread points are as
+good (`benchmarks/fibres.py`). Not in the paper.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What do intervals leave free? Gaps between them, row by row, on a line or round a circle.
+"""Gaps between intervals, row by row, on a line or round a circle.
 
-Everything is in arrays, thousands of rows at once. Intervals are open, what is left of them closed;
-a single place between two that touch is left out.
+Arrays hold thousands of rows. Intervals are open and gaps are closed. A single place between two
+intervals that touch does not count as a gap.
 """
 
 from __future__ import annotations

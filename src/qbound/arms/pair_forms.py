@@ -1,8 +1,8 @@
-r"""How near do two links come? The forms of all pairs of their balls, exact and in floats.
+r"""Forms of all pairs of spheres of two links, in exact numbers and in floats.
 
-The form of balls i and j is :math:`\beta_{ij} = |B_{ij}|^2 - (r_i + r_j)^2` (eq. 11 without a
-clearance) in the joints between both links' frames. A joint about whose axis a form does not
-change is left out; what rounding leaves of it stays in the constant, as a ball.
+The form of spheres i and j is :math:`\beta_{ij} = |B_{ij}|^2 - (r_i + r_j)^2` (eq. 11 without a
+clearance) in the joints between both links' frames. If a form does not change with a joint except
+by rounding, the joint is left out, and a ball in the constant holds the rounding.
 """
 
 from __future__ import annotations

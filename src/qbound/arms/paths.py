@@ -1,4 +1,4 @@
-"""Along which path does one joint carry the tool? A circle or a line, and its direction with it."""
+"""Circles and lines along which one joint carries the tool, with the tool's direction on them."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
-r"""Where does the tool of an arm get to? A map of voxels, and the volume with an error bar.
+r"""Map of reach: voxels that the tool of an arm reaches, and their volume with an error estimate.
 
-All joints but one are drawn, evenly as scrambled Sobol points and then about those that have led to
-the edge of the map; the travel of the one that is left is exact (`fibres`), and so are the voxels
-that its circle or line goes through. So a voxel that is marked is reached, and one that is not may
-be, too: what is sampled is the other joints. Directions are those half-way through a voxel.
+All joints but one are sampled: first evenly as scrambled Sobol points, then near configurations
+that led to the edge of the map. The travel of the last joint is exact (`fibres`), and so are the
+voxels on its circle or line. So a marked voxel is reached; a voxel without a mark may be reached
+too, because the other joints are sampled. Directions are those half-way through a voxel.
 
-Voxels that a body touches have more volume than the body. On a grid that lies anywhere the surplus
-is proportional to the edge h, but for terms of second order, and the volume is
+Voxels that a body touches have more volume than the body. Averaged over the position of the grid,
+the surplus is proportional to the edge h, except for terms of second order. So the volume is
 :math:`2 V_h - V_{2h}`. Every scramble has a grid of its own.
 
 Not in the paper, whose workspaces are planar.

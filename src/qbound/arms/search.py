@@ -1,8 +1,8 @@
-"""Is there a path? A straight line first, then two trees that grow towards each other.
+"""Search for a path: a straight line first, then two trees that grow towards each other.
 
-A search in doubles that looks at points of each leg: what it finds is no proof, and that it finds
-nothing says nothing. `why` hands what is found to the certificates. Rapidly exploring random trees
-(Kuffner and LaValle 2000), then cutting corners; not in the paper.
+The search is in doubles and looks at points of each leg. So a path that it finds is not proved, and
+a failure does not show that there is no path. `why` gives a path to the certificates. Rapidly
+exploring random trees (Kuffner and LaValle 2000), then cutting corners; not in the paper.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which voxels does a path go through? All of them, exactly: cut where it crosses their faces."""
+"""Voxels that a path goes through: all of them, exactly, by its crossings with their faces."""
 
 from __future__ import annotations
 

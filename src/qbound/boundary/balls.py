@@ -1,9 +1,9 @@
-r"""How far are the balls of an arm apart? Many joints, many configurations, by kinematics.
+r"""Margins of a sphere model of many joints, by kinematics in place of forms.
 
 A form over n joints is a table of :math:`3^n` numbers, and an arm of six joints has hundreds of
-pairs. Here no form is made: the centres are carried along the chain once a configuration, and a
-pair costs the distance of its two centres. Along one joint a pair's form follows from where both
-stand about its axis.
+pairs. This module makes no forms. It carries the centres of all spheres along the chain, once for
+each configuration, and takes the distance of the two centres of each pair. Along one joint the form
+of a pair follows from the places of both spheres about the axis of the joint.
 """
 
 from __future__ import annotations

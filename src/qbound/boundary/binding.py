@@ -1,15 +1,14 @@
-r"""Which rows of a table can be the first to say no? Forms of one joint as arcs of that joint.
+r"""Drop rows that other rows imply, so that a stream of configurations evaluates fewer of them.
 
 A form of one turning joint, :math:`c + a \cos q + b \sin q`, is negative on one arc of its circle
-(Theorem 2). Where that arc lies within the union of those of other forms and of what the joint's
-limits exclude, the form never decides, and need not be evaluated. So of the forms of one joint
-those are left that bound its free intervals.
+(Theorem 2). If the arcs of other forms and the values beyond the joint's limits cover this arc, the
+form never decides and need not be evaluated. The forms that are left bound the free intervals.
 
 Notes
 -----
 Rows are in units of the bound of their error (`qbound.boundary.screen`). A row that is left out is
-at least `CERTAIN` wherever all others are at least `BELOW`, so that every way to evaluate it would
-have found it positive there; rounding here is a billionth of the unit that lies between.
+at least `CERTAIN` wherever all others are at least `BELOW`. So every way to evaluate it would find
+it positive there. The rounding of the arcs is a billionth of the unit between the two levels.
 """
 
 from __future__ import annotations

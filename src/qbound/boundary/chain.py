@@ -1,9 +1,9 @@
-"""Where do points stand, seen from the base or from a joint? Many configurations at a time.
+"""Points carried along the chain, seen from the base or from a joint, for many configurations.
 
-Every frame is turned here so that the axis of its joint is z: then a joint mixes two columns of a
-pose by its cosine and sine, or adds a multiple of the third. The other way along the chain is the
-same step undone, so that a joint may be the observer as well as the base. A parallelogram is two
-steps: its bar turns, and what the bar carries turns back.
+Every frame is turned so that the axis of its joint is z. Then a joint mixes two columns of a pose
+by its cosine and sine, or adds a multiple of the third column. The other way along the chain undoes
+the same step, so a joint can be the observer as well as the base. A parallelogram is two steps: its
+bar turns, and the frame that the bar carries turns back.
 """
 
 from __future__ import annotations

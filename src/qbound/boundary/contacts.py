@@ -1,14 +1,14 @@
-r"""How do two bodies of a planar arm touch? Contact features as harmonic forms of two joints.
+r"""Contact features of two bodies of a planar arm, as harmonic forms of two joints.
 
-Convex cores, thickened by radii, are apart by more than R (both radii and the clearance) exactly
-if an edge of one has all corners of the other more than R beyond it, or two corners are the nearest
-places of both and more than R apart. Each such test is made of features: an edge of one core and a
-corner of the other, or two corners. A feature has one form f, positive on the free side, and at
-most four side conditions g: ``f = 0, all g >= 0`` is a contact, and these contacts together are the
-whole boundary of what the pair forbids.
+A core is a convex part without its radius. Two cores are more than R apart (R holds both radii and
+the clearance) exactly if one of two conditions holds: all corners of one core are more than R
+beyond an edge of the other; or two corners are the nearest places and more than R apart. Each
+condition is made of features: an edge of one core and a corner of the other, or two corners. A
+feature has one form f, positive on the free side, and at most four side conditions g. A contact is
+``f = 0, all g >= 0``. These contacts together are the whole boundary of what the pair forbids.
 
-All is seen from the frame of the pair's first body, so that only the joints between the two occur,
-each in the first degree.
+Places are seen from the frame of the pair's first body. So only the joints between the two bodies
+occur, each in the first degree.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where are two bodies nearest? The corners and edges of a configuration, and their places."""
+"""The nearest places of two bodies at a configuration: their corners, edges and coordinates."""
 
 from __future__ import annotations
 

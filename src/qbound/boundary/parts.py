@@ -1,4 +1,4 @@
-"""Which bodies is a boundary about? They, and their parts in the plane of motion."""
+"""The bodies of a boundary, and their convex parts in the plane of motion."""
 
 from __future__ import annotations
 

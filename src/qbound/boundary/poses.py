@@ -1,7 +1,7 @@
-"""Where does a frame stand? Poses in the plane, seen from another frame, many at a time.
+"""Poses of a frame in the plane of motion, seen from another frame, many at a time.
 
-In the axes of the plane of motion a pose is a turn and a translation, and what a place of one frame
-does along a direction of the other is linear in them: a row of numbers times a column `POSE`.
+In the axes of the plane a pose is a turn and a translation. The coordinate of a place of one frame
+along a direction of the other is linear in the pose: a row of numbers times a column `POSE`.
 """
 
 from __future__ import annotations

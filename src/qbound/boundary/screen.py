@@ -1,18 +1,18 @@
-r"""Who is certainly feasible, and who certainly not? Forms in single precision, with their error.
+r"""Floating-point filter: signs in single precision where the error bound allows it.
 
-A sign needs few digits: most configurations are far from every boundary. Here the forms are taken
-in single precision, four times as fast, beside a bound of all that can be lost by it. Whoever is
-within that bound of a boundary, or beyond the reach for which it holds, is left to double
-precision. So the answers are those of double precision, by construction.
+Most configurations are far from every boundary, so their signs need few digits. The filter
+evaluates the forms in single precision, four times as fast, and bounds the error. If a value is
+within the bound, or a joint value is beyond the range for which the bound holds, double precision
+decides. So the answers are those of double precision, by construction.
 
 Notes
 -----
-Let :math:`u = 2^{-24}`. A joint value of at most R is right to :math:`R u` once it is rounded, so
-its sine and cosine are to :math:`(R + t) u`, where t is their own error (`SINES`); joint values and
-their squares are right to :math:`3 u` of their size. The product of p factors is right to the sum
-of these and :math:`p u`, and a sum of K terms, whose coefficients are rounded too, to
-:math:`(K + 2) u` more. Times the sizes of all terms of a form this bounds the error of its value,
-products of errors apart; `ROOM` is for them, and for the rounding of double precision.
+Let :math:`u = 2^{-24}`. A joint value of at most R is right to :math:`R u` once it is rounded. So
+its sine and cosine are right to :math:`(R + t) u`, where t is their own error (`SINES`). Joint
+values and their squares are right to :math:`3 u` of their size. The product of p factors is right
+to the sum of these errors and :math:`p u`. A sum of K terms with rounded coefficients adds
+:math:`(K + 2) u`. Times the sizes of all terms of a form, this bounds the error of the value, but
+for products of errors. `ROOM` allows for those and for the rounding of double precision.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""How far are the bodies of a planar arm apart? Signed distances at millions of configurations.
+"""Signed distances of the bodies of a planar arm, at millions of configurations.
 
-Two parts are as far apart as their cores, less both radii; where the cores overlap, minus the
-depth. Two bodies are as far apart as their nearest parts. No form: it serves any number of joints.
+The distance of two parts is that of their cores less both radii. Where the cores overlap, it is
+minus the depth. The distance of two bodies is that of their nearest parts. No form is needed, so
+any number of joints will do.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""What does a user type? The command ``qbound``: one thin module a command; radians on the way out.
+"""The command ``qbound``: one thin module for each command; radians become degrees at the end.
 
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
   `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
-- `chosen` (robot, rule and slice, which several commands share), `values` (joint values as people
-  type them), `files` (written whole or not at all), `terminal` (all that is printed, made safe),
-  `progress` (a line while work is long).
+- `chosen`: robot, rule and slice, which several commands share; `values`: joint values as people
+  type them; `files`: files written whole or not at all; `terminal`: everything that is printed,
+  made safe; `progress`: a line while work is long.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""What does it look like? Each function draws what it is handed and returns what it drew.
+"""Figures: each function draws what it is given and returns what it drew.
 
-Angles come in radians and are drawn in degrees. The colours (Okabe and Ito) hold for colour-blind
-readers, and no meaning rests on colour alone: lines differ in dash, points in marker.
+Angles come in radians and are drawn in degrees. Colour-blind readers can tell the colours (Okabe
+and Ito) apart, and no meaning rests on colour alone: lines differ in dash, points in marker.
 
-Here are the style and the parts of pictures.
+This module has the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
 - `workspace`: aspects and their images; `cells`: pavings; `reach`: sections of maps of reach;

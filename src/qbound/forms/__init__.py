@@ -1,7 +1,7 @@
-"""What does a joint do to a length? The one algebraic object, the harmonic form, and Theorem 2.
+"""Harmonic forms, the one algebraic object of the library, and Theorem 2 for their roots.
 
-- `factors`: what each kind of joint puts into a form, a row of a table;
+- `factors`: the factor of each kind of joint, a row of a table;
 - `harmonic`: the form: evaluation, gradient, restriction; of floats, SymPy expressions and balls;
-- `waves`, `bending`: the form as a sum of waves, and how far it may bend within a simplex;
+- `waves`: the form as a sum of waves; `bending`: a bound of its second derivative over a simplex;
 - `circle`: Theorem 2 for one joint; `angles`: full turns.
 """

@@ -1,8 +1,8 @@
-"""Is this outline a simple polygon, and into which convex parts is it cut? Decided exactly.
+"""Simple polygons, recognized and cut into convex parts by exact predicates.
 
-Floats are fractions with a power of two below: multiplied by one of them, all coordinates are whole
-numbers, and the side on which a corner lies is a whole number too. Nothing here is rounded; what a
-user's corners may be rounded by is stated in one place.
+Floats are fractions whose denominator is a power of two. Multiplied by one of these powers, all
+coordinates are whole numbers, and so is the number that tells on which side of a line a corner
+lies. Nothing here is rounded. How much a user's corners may be rounded is stated in one place.
 """
 
 from __future__ import annotations

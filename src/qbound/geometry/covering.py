@@ -1,7 +1,8 @@
-"""Do balls cover it? Proved by halving; and few of many balls chosen so that they do.
+"""Proof that balls cover a shape, by halving simplices; and a choice of few balls that do.
 
-A simplex whose corners lie in one ball lies in it, since a ball is convex. One that lies in no
-single ball is halved. Every comparison leaves room for rounding, so that what is called covered is.
+A ball is convex, so a simplex with all corners in one ball lies in that ball. A simplex that lies
+in no single ball is halved. Every comparison leaves room for rounding, so a shape that is called
+covered is covered.
 """
 
 from __future__ import annotations

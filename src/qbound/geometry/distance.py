@@ -1,7 +1,7 @@
-"""How far are two convex cores of the plane apart? And how deep do they overlap.
+"""Distance of two convex cores of the plane, or the depth of their overlap.
 
-A core is a point, a segment or a convex polygon. Everything is read from the corners of each core
-as the edges of the other see them: how far beyond the edge's line, and how far along it.
+A core is a point, a segment or a convex polygon. Everything follows from the corners of each core
+as seen from the edges of the other: how far beyond the line of the edge, and how far along it.
 """
 
 from __future__ import annotations

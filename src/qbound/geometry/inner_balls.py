@@ -1,9 +1,10 @@
-"""Which balls lie in a solid and touch its surface? Those that lie in no other such ball.
+"""Largest balls that lie in a solid, but for a given excess: the candidates for a cover.
 
-A ball about a place at depth d may be as large as d and the excess allowed. If the surface is
-nearest to it at x, moving away from x as long as x stays nearest gives a ball that holds it. So
-the balls worth trying stand where no x is nearest alone: on the medial axis. Each is found from a
-place of the surface, inward along the normal, its ball shrunk until the surface does not enter it.
+A ball about a place at depth d may have the radius d plus the allowed excess. Let x be the place
+of the surface nearest to the centre. If the centre moves away from x while x stays nearest, the new
+ball contains the old one. So only centres with two or more nearest places matter: these form the
+medial axis. The search starts at a place of the surface, goes inward along the normal, and shrinks
+the ball until the surface does not enter it.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""How are the triangles of a mesh covered by few balls? Proved, triangle by triangle.
+"""Covers of a mesh by few balls, proved triangle by triangle.
 
-A ball about a place of the solid, at least a depth d below its surface, sticks out of the solid by
-its radius less d at most. So every place has a largest ball for an excess. Balls are chosen
-greedily from the largest (`inner_balls`) to hold samples of the triangles; what halving then finds
-uncovered is asked for too, until nothing is.
+Let the centre of a ball lie inside the solid, at least a depth d below the surface. Then the ball
+sticks out of the solid by at most its radius less d. So each centre has a largest ball for a given
+excess. Balls are chosen greedily from the largest (`inner_balls`) until they hold samples of the
+triangles. Halving then looks for uncovered places; these join the samples until none is left.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Which solid do the triangles of a mesh enclose? Convex or not, a box or not, and where is inside.
+"""The solid that a mesh encloses: whether it is convex or a box, and which places are inside.
 
-A mesh that is nearly convex, or nearly a box, counts as such with how nearly it is: that is taken
-off every depth, so that what is said of depths holds of the mesh itself.
+A mesh that is nearly convex, or nearly a box, is treated as such. The distance by which it differs
+is subtracted from every depth, so bounds of depths hold for the mesh itself.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""How is a capsule, a cylinder or a box covered by few balls? All of the solid, proved.
+"""Covers of capsules, cylinders and boxes by few balls, proved for the whole solid.
 
-Each takes the excess that is allowed: how far a ball may stick out of the shape. Shapes stand about
-the origin, capsules and cylinders along z.
+Each function takes the allowed excess: how far a ball may stick out of the shape. Shapes stand
+about the origin, capsules and cylinders along z.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
-"""How far is a surface at least, known from samples of it? With work that is counted beforehand.
+"""Lower bounds of the distance to a surface, from samples of it, with a bounded amount of work.
 
-Samples are put into groups, and the distance of a group from a place is told from one of its
-samples and its radius. That says beforehand how many samples a search has to look at: all of them,
-about the middle of a sphere, where a tree takes a hundred times as long as elsewhere. Where they
-would be too many, what the groups say, a lower bound as well, is the answer.
+Samples are put into groups. One sample and the radius of a group bound the distance of the whole
+group from a place. So the number of samples that a search has to look at is known in advance. That
+matters near the middle of a sphere, where a search has to look at all of them: a tree takes a
+hundred times as long there as elsewhere. Where the number is too large, the bound from the groups
+is the answer.
 """
 
 from __future__ import annotations

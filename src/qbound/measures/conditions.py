@@ -1,9 +1,10 @@
-"""When is a configuration feasible? Forms that must be positive, and tests that part two bodies.
+"""Conditions of a feasible configuration: forms that must be positive, and clauses for bodies.
 
-Two convex parts are apart exactly if one of their clauses holds: an edge with all corners of the
-other part beyond it, or two corners that are the nearest places and far enough apart. All in all a
-configuration is feasible where every condition has a clause of which every form is positive. As
-this only compares, it turns lower bounds of the forms into proofs, and safe steps into safe steps.
+Two convex parts are apart exactly if one of their clauses holds: all corners of one part lie beyond
+an edge of the other, or two corners are the nearest places and far enough apart. So a configuration
+is feasible if every condition has a clause in which every form is positive. This only compares
+values. So it turns lower bounds of the forms into proofs, and safe steps of forms into safe steps
+of bodies.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""How near do two bodies come while the joints stay in a polygon? By halving simplices.
+"""Least distance of two bodies while the joints stay in a polygon, by halving simplices.
 
-A signed distance is the most of what the features say: of an edge the least height of the other
-core's corners, of two corners that are the nearest places their distance. Each is bounded from
-below over a simplex by bounds of its forms, so that no simplex with the least value is left out.
+A signed distance is the maximum over features: for an edge the least height of the other core's
+corners, for two corners that are the nearest places their distance. Bounds of the forms bound each
+of these from below over a simplex. So no simplex that contains the least value is left out.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What keeps a robot apart, as data? A type of boundary is a class.
+"""Types of boundaries, a class for each: pairs of points or bodies, and half-spaces.
 
-A new one needs its class and its table here, and its forms in `boundary.functions`.
+A new type needs a class and a table here, and its forms in `boundary.functions`.
 """
 
 from abc import ABC, abstractmethod

@@ -1,7 +1,8 @@
-"""What joints are there, and what does each know of itself? A type of joint is a class.
+"""Types of joints, a class for each: its motion, unit, limits and row in a robot file.
 
-A new one needs its class here and its name in `JointRow.type`: frames, units, limits and files
-follow. Its factor in a harmonic form (`kind`) is one that `forms` knows.
+A new type needs a class here, its name in `JointRow.type`, its motion in `boundary.functions`
+(`MOTIONS`) and in `boundary.chain`, and its numbers in `model.exact`. Its factor in a harmonic form
+(`kind`) must be one that `forms` knows.
 """
 
 import math

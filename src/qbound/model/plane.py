@@ -1,8 +1,8 @@
-"""In which plane does an arm move? Its axes, and what leaves it.
+"""The plane in which an arm moves: its axes, and the parts of the robot that leave it.
 
-An arm is planar where the axes of all joints that turn are parallel and every slide runs at right
-angles to them. A turn about such an axis keeps its direction, so what holds at all joint values 0
-holds at every configuration.
+An arm is planar if the axes of all turning joints are parallel and every slide runs at right
+angles to them. A turn about such an axis keeps the direction of the axis. So a property of
+directions that holds at all joint values 0 holds at every configuration.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What has a place in a frame? Points (with a radius, spheres), and bodies of a shape.
+"""Points (with a radius: spheres) and bodies of a shape, fixed to a frame.
 
-A shape is a class: it has convex `parts`, which is what distances are taken of, and an `outline`,
-which is what is drawn. A new one needs its class and its table here, and a row in `SHAPES`.
+A shape is a class. Distances use its convex `parts`; pictures use its `outline`. A new shape needs
+a class and a table here, and a row in `SHAPES`.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Are these the values of some joints? What the public doors of a robot ask of numbers."""
+"""Checks of joint values: real, finite, and as many as the robot has joints."""
 
 from __future__ import annotations
 

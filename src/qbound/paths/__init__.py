@@ -1,8 +1,8 @@
-"""How does the arm go through a region? Paths, what they meet, and when each joint is where.
+"""Paths of the arm through a region, margins along them, and their timing.
 
 - `traversal`: vertices or arcs in an order, the joint path and the tool's;
-- `encounters`: where a path crosses itself or the singular curve, and its margins;
-- `asymmetry`: how far a path of the tool is from the mirror image of another;
+- `encounters`: crossings of a path with itself or with the singular curve, and its margins;
+- `asymmetry`: distance of a path of the tool from the mirror image of another;
 - `trajectory`: the path in time;
-- `route`: vertices or arcs by number; `report`: what a route meets, gathered.
+- `route`: vertices or arcs by number; `report`: crossings, margins and singular poses of a route.
 """

@@ -1,4 +1,4 @@
-"""How far is one path of the tool from the mirror image of another? To within a stated error."""
+"""Distance of one path of the tool from the mirror image of another, with a stated error."""
 
 from __future__ import annotations
 

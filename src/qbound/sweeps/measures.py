@@ -1,8 +1,8 @@
-"""Which measures has an arm? A table of names and functions; a new measure is one more row.
+"""Measures of an arm: a table of names and functions; a new measure is one more row.
 
-Areas are exact up to rounding (Theorem 2, cell by cell), and so are the lengths of fibres; pavings
-are proved brackets and take any number of joints. A volume of reach is an estimate, and its error
-another; the seed is 0, so that the same arm has the same. The paper has samples in their place.
+Areas and lengths of fibres are exact up to rounding (Theorem 2, cell by cell). Pavings are proved
+brackets and take any number of joints. The volume of reach is an estimate, and so is its error. The
+seed of the volume is 0, so the same arm always has the same volume. The paper uses samples instead.
 """
 
 from __future__ import annotations

@@ -1,15 +1,15 @@
-"""What is to be swept? A TOML file, checked as a robot file is, and the robot that it names.
+"""The specification of a sweep: a TOML file, checked as robot files are, and its robot.
 
     schema = 1
     robot = "arm.toml"      # seen from this file's folder; or a packaged robot's name
     measure = ["region.area", "workspace.area"]
     vary = [{ number = "joint.elbow.origin.0", from = 0.2, to = 0.6, count = 41 }]
 
-Numbers are named as `qbound.design.varied` has them, measures by `measures`; ``held.wrist`` is the
-value of a joint that is held. Optional: `also` in a row of `vary`, numbers that take its values,
-too; `slice`, joints that are held at one value; `rule`; `tolerance`, of pavings; `fibre`, the joint
-whose travel is measured; `voxel`, of maps of reach; `chunk`, arms that are measured together. Every
-number is in the robot file's unit.
+Numbers are named as in `qbound.design.varied`, measures as in `measures`; ``held.wrist`` is the
+value of a joint that is held. Optional keys: `also` in a row of `vary`: further numbers that take
+its values; `slice`: joints that are held at one value; `rule`; `tolerance` of pavings; `fibre`: the
+joint whose travel is measured; `voxel` of maps of reach; `chunk`: how many arms are measured
+together. Every number is in the robot file's unit.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""What does a URDF say of an arm? Its chain and its links, covered by balls, as a robot.
+"""Import of URDF: the chain of an arm and its links, covered by balls, as a robot.
 
-- `xml`: files of strangers, read safely; `document`, `shapes`: a URDF as data; `srdf`: an SRDF;
-- `tree`: the chain between two links, what is fixed to each, and poses (`poses`) in it;
+- `xml`: files from strangers, read safely; `document`, `shapes`: a URDF as data; `srdf`: an SRDF;
+- `tree`: the chain between two links, the links fixed to each, and poses (`poses`) in the chain;
 - `meshes`: triangles of files; `covers`: the balls that cover a link;
-- `arm`: the robot of all this; `robot_text`: its file.
+- `arm`: the robot made from these; `robot_text`: its file.
 """

@@ -1,4 +1,4 @@
-"""Which balls cover a link? Each shape by its own kind of cover, seen from the link's frame."""
+"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What does a URDF say? Its links and joints as data, lengths in metres and angles in radians.
+"""A URDF as data: links and joints, lengths in metres and angles in radians.
 
-https://docs.ros.org/en/rolling/p/urdfdom has the format; `capsule` is of its version 1.2. Visual
-shapes, inertias, transmissions and what simulators add are not read.
+https://docs.ros.org/en/rolling/p/urdfdom defines the format; `capsule` is part of version 1.2.
+Visual shapes, inertias, transmissions and extensions of simulators are not read.
 """
 
 from __future__ import annotations

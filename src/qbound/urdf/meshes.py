@@ -1,7 +1,8 @@
-"""Which triangles does a mesh have? A file beside the URDF, and never one elsewhere.
+"""Triangles of a mesh file that lies below the folder of its URDF or package.
 
-A name such as ``package://NAME/meshes/arm.stl`` leads below a folder of that name; any other leads
-below the URDF's own folder. Links are followed first, then it is checked where the file lies.
+A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
+name means a file below the URDF's own folder. Links are followed before the place of the file is
+checked, so a link cannot lead elsewhere.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where does one frame stand in another? A rotation and a translation, composed."""
+"""Poses of one frame in another: a rotation and a translation, and their composition."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""How is an imported robot written? A robot file with a row a line, and where it comes from on top.
+"""The text of an imported robot's file: one row on one line, and its origin in a comment on top.
 
-Half a thousand pairs of balls would fill thousands of lines as tables of their own.
+Five hundred pairs of balls would fill thousands of lines if each were a table of its own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What may collide? The shapes of a URDF as data; lengths in metres."""
+"""Collision shapes of a URDF as data; lengths in metres."""
 
 from __future__ import annotations
 

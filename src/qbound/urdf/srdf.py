@@ -1,4 +1,4 @@
-"""What does an SRDF say? Which pairs of links are not to be checked, and named poses."""
+"""An SRDF as data: pairs of links that are not checked, and named poses."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Which links does an arm carry? The tree of a URDF, a chain in it, and what is fixed to each link.
+"""The tree of a URDF, a chain in it, and the links that are fixed to each link of the chain.
 
-A chain runs outward from one link to another. What fixed joints hold together is one rigid group;
-the groups of the chain are 0 (the base), 1 (behind the first joint that moves), and so on.
+A chain runs outward from one link to another. Links that fixed joints hold together are one rigid
+group. The groups of the chain are 0 (the base), 1 (behind the first joint that moves), and so on.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Where does the tool go? The geometric workspace of two joints: areas, postures, passages.
+"""The geometric workspace of two joints: areas, inverse kinematics, passages between postures.
 
 - `planar`: the arm in its plane: det J, its zeros, inverse kinematics;
 - `fibres`: the region as intervals of the first joint, one set for each value of the second;
 - `cover`, `layers`: these intervals laid over each other on the circles or lines of the tool;
-- `image_crossings`: where the images of two postures' boundaries cross;
-- `areas`: the workspace, its aspects and areas; `passage`: which poses it joins;
+- `image_crossings`: crossings of the images of two postures' boundaries;
+- `areas`: the workspace, its aspects and areas; `passage`: the poses that a region joins;
 - `report`: all of these, as they were asked for.
 """
 

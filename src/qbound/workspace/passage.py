@@ -1,4 +1,4 @@
-"""Can the arm go from one configuration to another? Within a component yes, else a loop is between.
+"""Passages between two configurations: within a component, or the loops that separate them.
 
 Not in the paper, whose Section 4 asks whether the last link can come to its mirrored pose.
 """
