@@ -23,6 +23,7 @@ from support.region_judge import Outline, agreement, faults, kinds, raster, read
 SCENES = Path(__file__).with_name("once_wrong")
 HARD = Path(__file__).with_name("not_decided")
 COMPONENTS = {
+    "acute-10728": 1,
     "far-slide": 4,
     "slide-20": 1,
     "slide-20-scaled": 1,

@@ -429,6 +429,9 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
     found, least = [], ON * scene.size
     lines = [_along(arc) * scene.scale for arc in arcs]
     for arc, line in zip(arcs, lines, strict=True):
+        steps = np.abs(np.diff(line, axis=0))
+        if (np.abs(steps - 2 * pi) <= MEET)[:, [step.turns for step in scene.steps]].any():
+            found.append(f"jump: an arc of {arc.boundary} by a whole turn, {_shown(line[0])}")
         margin = scene.margin_of(arc.boundary, line)
         if margin is None:
             found.append(f"label: no boundary {arc.boundary}")
@@ -453,14 +456,16 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
 def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
     """Say where the margin to an arc's boundary falls to the left, or rises to the right alone.
 
-    It rises on both sides of a curve where two bodies touch and no more: that is a wall too.
+    It rises on both sides of a curve where two bodies touch and no more: that is a wall too. More
+    than half of the arc's length decides: near its ends the neighbours' side may be what is seen,
+    and most places lie there where a short piece, which has as many, is part of the arc.
     """
     chord = line[2:] - line[:-2]
     length = np.hypot(*chord.T)
     if not len(length) or length.max() < 100 * ASIDE:
         return ""
-    middle = line[1:-1][length > 0]
-    across = (chord[:, ::-1] * [-1.0, 1.0])[length > 0] / length[length > 0, None]
+    middle, chord, length = (x[length > 0] for x in (line[1:-1], chord, length))
+    across = chord[:, ::-1] * [-1.0, 1.0] / length[:, None]
     here, left, right = (
         scene.margin_of(name, middle + side * ASIDE * across) for side in (0.0, 1.0, -1.0)
     )
@@ -468,9 +473,9 @@ def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
     assert left is not None
     assert right is not None
     least = ON * scene.size
-    if (left < -least).sum() > len(left) / 2:
+    if length[left < -least].sum() > length.sum() / 2:
         return f"left: margin {left.min():.2g} to {name}, at {_shown(middle[left.argmin()])}"
-    if ((right > least) & (left <= ROUNDED * scene.size)).sum() > len(right) / 2:
+    if length[(right > least) & (left <= ROUNDED * scene.size)].sum() > length.sum() / 2:
         return f"right: margin {right.max():.2g} to {name}, at {_shown(middle[right.argmax()])}"
     return ""
 

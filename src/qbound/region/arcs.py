@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.values import real_numbers
 from qbound.printable import printable
@@ -83,6 +84,11 @@ class Pieces:
         values = (
             self.plane.follow(self.roots[curved], q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
         )
+        if self.plane.lift_kind == "revolute":  # an angle may jump by a turn at an end
+            reach = SAME_POINT * self.plane.base_unit
+            for end in (start[curved], self.end[curved][:, None]):
+                off = whole_turns(values - end[..., 1])
+                values -= TURN * np.where(np.abs(q[curved][..., 0] - end[..., 0]) <= reach, off, 0)
         inside = np.abs(angle) < math.pi / 2  # the ends are given
         q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
         return ordered(q, self.base)

@@ -190,7 +190,8 @@ class CellComplex:
         """Lower and upper root of every cell at its left and its right line, and their errors.
 
         Shape (k, 2, 2) both. There an angle may jump by a turn, and where a form vanishes on a
-        whole fibre it has no roots to speak of: their limit from inside the slab is meant.
+        whole fibre it has no roots to speak of: their limit from inside the slab is meant. Of a
+        slab so narrow that no double is surely inside, it is the turn that was counted that tells.
         """
         lines = self.decomposition.critical
         start, end = self.abscissae[:-1][self.slabs, None], self.abscissae[1:][self.slabs, None]
@@ -200,12 +201,16 @@ class CellComplex:
         c = self.plane.coefficients(roots[..., 0], t)
         values = self.plane.values(roots, c).reshape(2, -1, 2, 4)
         at, near = values[..., 0], values[..., 1]
+        radius = lines.radius[self.slabs[:, None] + np.array([0, 1])]
         if self.plane.lift_kind == "revolute":
+            counted = self.plane.follow(roots, self.decomposition.inside[self.slabs, None])
+            doubt = 8 * radius + 64 * UNIT * np.abs(t[:, ::4])
+            near = np.where(inset[:, 1:2] > doubt, near, counted)
             at = at + TURN * whole_turns(near - at)
         blank = self.plane.blank(roots[..., 0], c[..., ::4])
         if blank.any():
             at = np.where(blank, 3 * near - 3 * values[..., 2] + values[..., 3], at)
-        radius = lines.radius[self.slabs[:, None] + np.array([0, 1])] / self.plane.base_unit
+        radius = radius / self.plane.base_unit
         form = np.maximum(roots[..., 0], 0)[..., None] * np.ones(2, dtype=np.int64)
         if len(self.plane.eps):
             _, errors, _ = self.plane.roots_and_errors(form, c[..., ::4], 2 * radius)

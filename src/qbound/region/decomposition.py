@@ -66,6 +66,8 @@ class Decomposition:
     plane : Plane
     critical : Lines
         Slab i lies between lines i and i + 1.
+    inside : ndarray, shape (s,)
+        A base value inside each slab: there the full turns of its roots were counted.
     slabs : ndarray of int, shape (k,)
         Slab of each cell, ascending.
     roots : ndarray of int, shape (k, 2, 3)
@@ -80,6 +82,7 @@ class Decomposition:
 
     plane: Plane
     critical: Lines
+    inside: Floats
     slabs: Ints
     roots: Ints
     sets: Ints
@@ -139,8 +142,8 @@ def decompose(precise: Precise) -> Decomposition:
     pieces = find_pieces(plane, finder)
     lines = critical_lines(plane, pieces, finder)
     standing = _standing(plane, lines, pieces, finder)
-    slabs, roots, sets, names = _Fibres(plane, lines, pieces, precise).cells()
-    found = Decomposition(plane, lines, slabs, roots, sets, names, standing)
+    fibres = _Fibres(plane, lines, pieces, precise)
+    found = Decomposition(plane, lines, fibres.t, *fibres.cells(), standing)
     return _without_idle_lines(found)
 
 
@@ -149,7 +152,8 @@ def nothing_in(precise: Precise) -> Decomposition:
     plane = precise.plane
     lines = find_lines(Finder(plane, precise), NO_EVENTS)
     none, roots = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
-    return Decomposition(plane, lines, none, roots, np.zeros((0, 2), dtype=np.int64), [], {})
+    inside, sets = np.zeros(len(lines.t) - 1), np.zeros((0, 2), dtype=np.int64)
+    return Decomposition(plane, lines, inside, none, roots, sets, [], {})
 
 
 # --- critical base values -------------------------------------------------------------------------
@@ -763,6 +767,7 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     return replace(
         found,
         critical=found.critical.only(kept),
+        inside=found.inside[kept[:-1]],
         slabs=renumbered[slabs[left]],
         roots=roots[left],
         sets=sets[left],
