@@ -505,3 +505,13 @@ def test_what_is_no_question_about_two_joints_is_refused_with_its_place(name) ->
 def test_complex_coefficients_are_refused() -> None:
     with pytest.raises(ValueError, match="complex"):
         HarmonicForm(np.zeros((3, 3), dtype=complex), ("revolute", "revolute"))
+
+
+def test_regions_of_one_problem_are_equal():
+    """A robot read twice is one robot; another rule, joint or held value makes another region."""
+    one, again = (find_region(load_robot("minervabot-v2")) for _ in range(2))
+    assert one == again
+    assert len({one, again}) == 1
+    assert one != find_region(load_robot("minervabot-v2"), rule="paper")
+    assert one != find_region(load_robot("minervabot-v2-corrected"))
+    assert one != "a region"

@@ -110,6 +110,21 @@ class Problem:
         joints, count = printable(", ".join(self.joint_names)), len(self.names)
         return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
 
+    def __eq__(self, other: object) -> bool:
+        """Tell whether the same is asked: the same forms, names, ranges, held values and rule."""
+        if not isinstance(other, Problem):
+            return NotImplemented
+        same = self._key == other._key and self.held == other.held and self.robot == other.robot
+        return same and np.array_equal(self.forms.coefficients, other.forms.coefficients)
+
+    def __hash__(self) -> int:
+        """Return a number that equal problems share."""
+        return hash(self._key)
+
+    @property
+    def _key(self) -> tuple[object, ...]:
+        return self.forms.kinds, self.names, self.ranges, self.limits, self.joints, self.rule
+
     @cached_property
     def evaluator(self) -> Evaluator:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
@@ -262,8 +277,7 @@ def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
         names = ", ".join(joint.name for joint in robot.joints)
         raise ValueError(
             f"a region has two joints; {printable(robot.name)} has {len(free)} that are not held"
-            f" (of {printable(names)}):"
-            " hold all but two, with held={name: value} or with --slice"
+            f" (of {printable(names)}): hold all but two"
         )
     return free[0], free[1]
 

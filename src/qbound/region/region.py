@@ -106,6 +106,14 @@ class Region:
     unresolved: tuple[str, ...] = field(default_factory=tuple)
     inner: Problem | None = None
 
+    def __eq__(self, other: object) -> bool:
+        """Tell whether it is the region of the same problem: a problem has one region."""
+        return self.problem == other.problem if isinstance(other, Region) else NotImplemented
+
+    def __hash__(self) -> int:
+        """Return a number that equal regions share."""
+        return hash(self.problem)
+
     def __repr__(self) -> str:
         """Say in a line what was found."""
         robot = self.problem.robot
