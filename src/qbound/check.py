@@ -39,14 +39,20 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from operator import lt, mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
 SCHEMA = "qbound/certificate/6"
+
+Table = dict[str, Any]
+Reader = Callable[[Any, str], Any]
+Exact = tuple[Fraction, ...]
+"""A configuration in the units of the robot file, or three coordinates."""
 
 
 class Refused(ValueError):
@@ -200,7 +206,7 @@ def rotation(axis: Vector, angle: int) -> Matrix:
 class Step:
     """A translation, a fixed rotation, and a turn about an axis or a slide along it.
 
-    Its value is factor * (value of its joint) + offset. `reach` is at least the distance that it
+    Its value is factor * (value of its joint). `reach` is at least the distance that it
     carries its frame from the one before, `sweep` at least the distance of a slide from the middle
     of its range, whatever the joint's value within its limits.
     """
@@ -208,7 +214,6 @@ class Step:
     joint: int
     turns: bool
     factor: int
-    offset: int
     origin: Vector
     mount: Matrix
     axis: Vector
@@ -229,7 +234,7 @@ class Pose:
             turned = product(turned, step.mount)
             axis = image(turned, step.axis)
             self.axes.append((axis, at))
-            value = (step.factor * q[step.joint] >> BITS) + step.offset
+            value = step.factor * q[step.joint]
             if step.turns:
                 turned = product(turned, rotation(step.axis, value))
             else:
@@ -321,7 +326,7 @@ def motion(
 
 def width_of(step: Step, widths: Sequence[int]) -> int:
     """Return how far the own value of a step can be from the middle: |factor| * width."""
-    return abs(step.factor * widths[step.joint] >> BITS) + (1 if widths[step.joint] else 0)
+    return abs(step.factor) * widths[step.joint]
 
 
 # --- the inequality -------------------------------------------------------------------------------
@@ -341,6 +346,7 @@ class Keep:
 
     near : of the frame that is not beyond that of `far`; None for a plane.
     along : the coordinate of the near frame along which both are seen; None in space.
+    asked : whether `gap`, which is rounded, stands for more than 0.
     normal : unit vector; normal . place is at least `gap`; None for two hulls.
     """
 
@@ -348,6 +354,7 @@ class Keep:
     near: Hull | None
     far: Hull
     gap: int
+    asked: bool
     along: int | None
     normal: Vector | None
 
@@ -372,7 +379,7 @@ def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cel
         found = motion(steps, pose, keep.first, keep.far.frame, corner, cell.widths, held)
         slopes = [0] * len(held)
         for k, slope in found.slopes.items():
-            slopes[steps[k].joint] += steps[k].factor * dot(w, slope) >> BITS
+            slopes[steps[k].joint] += steps[k].factor * dot(w, slope)
         low = dot(w, minus(found.place, at)) + cell.least(slopes) - found.bend
         if low <= nearest + keep.gap + SLACK:
             return False
@@ -407,7 +414,7 @@ def is_violated(
         Work.add(10 + 3 * len(found.slopes))
         w = start
         for k, slope in found.slopes.items():
-            w = plus(w, times(steps[k].factor * corner[steps[k].joint] >> BITS, slope))
+            w = plus(w, times(steps[k].factor * corner[steps[k].joint], slope))
         if keep.normal is not None:
             if dot(keep.normal, w) >= allowed:
                 return False
@@ -537,20 +544,18 @@ def ended(letters: Iterator[str], where: str) -> None:
 def prove_safe(arm: "Arm", cells: Sequence[Cell], proof: Any) -> None:
     """Verify the trees of all things to keep, cell by cell.
 
-    All trees of a cell are walked together, so that a part of the cell which several trees have is
-    placed once.
+    All trees of a cell are walked together, so that the arm is placed once in a part of the cell
+    that several trees have.
     """
-    table = table_of(proof, "proof", ("directions", "trees"))
-    rows = list_of(table["directions"], "proof: directions", 0, MAX_CELLS)
-    directions = [_direction(row, f"proof: directions[{k}]") for k, row in enumerate(rows)]
-    count = len(arm.keeps)
-    trees = list_of(table["trees"], "proof: trees", count, count)
+    count, some = len(arm.keeps), items(anything, 0, len(cells))
+    spec = {"directions": items(_direction, 0, MAX_CELLS), "trees": items(some, count, count)}
+    directions, trees = (table(spec)(proof, "proof")[key] for key in spec)
     for k, row in enumerate(trees):
         wanted = len(cells) if arm.needs_proof[k] else 0
-        list_of(row, f"proof: trees[{k}]", wanted, wanted)
+        demand(len(row) == wanted, f"proof.trees[{k}]: {wanted} trees are wanted")
     for c, cell in enumerate(cells):
         walked = [
-            (k, tokens(row[c], f"proof: trees[{k}][{c}]")) for k, row in enumerate(trees) if row
+            (k, tokens(row[c], f"proof.trees[{k}][{c}]")) for k, row in enumerate(trees) if row
         ]
         todo = [(cell, walked, 0)]
         while todo:
@@ -558,7 +563,7 @@ def prove_safe(arm: "Arm", cells: Sequence[Cell], proof: Any) -> None:
             Work.add(10 * len(cursors))
             cuts, pose = dict[str, list[tuple[int, Iterator[str]]]](), None
             for k, letters in cursors:
-                where = f"proof: trees[{k}][{c}]"
+                where = f"proof.trees[{k}][{c}]"
                 token = next_of(letters, where)
                 if not token.endswith("."):
                     cuts.setdefault(token, []).append((k, letters))
@@ -572,14 +577,14 @@ def prove_safe(arm: "Arm", cells: Sequence[Cell], proof: Any) -> None:
                 first, second = part.halves(ord(letter) - ord("a"))
                 todo += [(second, group, depth + 1), (first, group, depth + 1)]
         for k, letters in walked:
-            ended(letters, f"proof: trees[{k}][{c}]")
+            ended(letters, f"proof.trees[{k}][{c}]")
 
 
 def _direction(value: Any, where: str) -> tuple[Vector, list[int]]:
-    """Return a direction as a unit vector, and as the three integers that are written."""
-    row = list_of(value, where, 3, 3)
-    known = all(type(x) is int and abs(x) < 10**9 for x in row) and any(row)
-    demand(known, f"{where}: three integers of at most nine digits, not all 0, are wanted")
+    """Read a direction; return it as a unit vector, and as the three integers that are written."""
+    row: list[int] = items(anything, 3, 3)(value, where)
+    known = all(type(x) is int for x in row) and any(row)
+    demand(known, f"{where}: three integers, not all 0, are wanted")
     return unit(row), row
 
 
@@ -600,37 +605,37 @@ def _direction_of(
 
 def refute(arm: "Arm", claim: "Claim", value: Any) -> str:
     """Verify a witness, and say what is violated where."""
-    at = ("at",) if claim.kind == "box" else ("cell", "weights")
     kind = "limit" if type(value) is dict and "limit" in value else "place"
-    table = table_of(value, "witness", (*at, kind))
+    spec: dict[str, Reader] = {kind: anything}
     if claim.kind == "box":
-        q = configuration(table["at"], "witness: at", arm)
+        q = table(spec | {"at": configuration(arm.robot)})(value, "witness")["at"]
         ends = zip(*claim.loops[0], q, strict=True)
-        demand(all(a <= x <= b for a, b, x in ends), "witness: at: not in the box")
+        demand(all(a <= x <= b for a, b, x in ends), "witness.at: not in the box")
     else:
-        corners = claim.corners[index_of(table["cell"], "witness: cell", len(claim.corners))]
-        weights = weights_of(table["weights"], "witness: weights", len(corners))
-        q = mean(weights, corners)
+        spec |= {"cell": index(len(claim.corners)), "weights": weights(len(claim.corners[0]))}
+        found = table(spec)(value, "witness")
+        q = mean(found["weights"], claim.corners[found["cell"]])
+    robot, name = arm.robot, value[kind]
     values = (
-        f"{joint.name!a} = {exactly(q[j])} {arm.unit_of(j)}" for j, joint in enumerate(arm.joints)
+        f"{j.name!a} = {exactly(x)} {robot.unit_of(k)}"
+        for k, (j, x) in enumerate(zip(robot.joints, q, strict=True))
     )
-    said = ", ".join(values)
+    said = f"is violated at {', '.join(values)}"
     if kind == "limit":
-        name = table["limit"]
-        beyond = type(name) is str and name in arm.beyond(q)
-        demand(beyond, "witness: limit: no limit of that name is violated")
-        return f"the limit {name!a} is violated at {said}"
-    keep, place = read_place(arm, table["place"], "witness: place")
+        beyond = type(name) is str and name in robot.beyond(q)
+        demand(beyond, "witness.limit: no limit of that name is violated")
+        return f"the limit {name!a} {said}"
+    keep, place = read_place(arm)(name, "witness.place")
     point = Box(arm.placed(q), arm.placed(q))
     pose, held = Pose(arm.steps, point.low), [False] * len(q)
     violated = is_violated(arm.steps, pose, keep, place, point, held) or _cross(pose, keep)
     demand(violated, f"witness: {shown(keep.name)} is not violated there")
-    return f"{keep.name!a} is violated at {said}"
+    return f"{keep.name!a} {said}"
 
 
 def _cross(pose: Pose, keep: Keep) -> bool:
     """Tell whether two segments that keep no distance cross, seen along the common axis."""
-    if keep.gap or keep.along is None or not keep.near:
+    if keep.asked or keep.along is None or not keep.near:
         return False
     hulls = [[pose.place(hull.frame, p) for p in hull.corners] for hull in (keep.near, keep.far)]
     if [len(corners) for corners in hulls] != [2, 2]:
@@ -644,42 +649,42 @@ def _cross(pose: Pose, keep: Keep) -> bool:
     return all(min(pair) < -SLACK and max(pair) > SLACK for pair in sides)
 
 
-def read_place(arm: "Arm", value: Any, where: str) -> tuple[Keep, Place]:
-    """Read a place of each hull of a thing to keep, and the discs about them."""
-    table = table_of(value, where, ("keep", "near", "far"), ("inside",))
-    k = index_of(table["keep"], f"{where}: keep", len(arm.keeps))
-    keep, row = arm.keeps[k], arm.robot.keeps[k]
-    sides, radius = list[Exact](), Fraction(0)
-    radii = list_of(table.get("inside", ["0", "0"]), f"{where}: inside", 2, 2)
-    demand("inside" not in table or keep.along is not None, f"{where}: inside: of bodies only")
-    for side, number, written in zip(("near", "far"), (row.near, row.far), radii, strict=True):
-        if number is None:
-            demand(table[side] == [], f"{where}: {side}: an empty list is wanted")
-            sides.append((Fraction(0), Fraction(0), Fraction(0)))
-            continue
-        frame, corners = arm.robot.hulls[number]
-        weights = weights_of(table[side], f"{where}: {side}", len(corners))
-        sides.append(mean(weights, corners))
-        own = decimal(written, f"{where}: inside")
-        demand(own >= 0, f"{where}: inside: a radius of 0 or more is wanted")
-        within = own == 0 or _holds_disc(corners, arm.across(frame), sides[-1], own)
-        demand(within, f"{where}: inside: the disc does not lie within the part")
-        radius += own
-    near, far = (arm.scaled(side) for side in sides)
-    return keep, Place(near, far, in_units(radius / arm.largest))
+def read_place(arm: "Arm") -> Reader:
+    """Return the reader of a place of each hull of a thing to keep, and the discs about them."""
+    radii = items(not_negative(decimal), 2, 2)
+    spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything, "inside?": radii}
+
+    def read(value: Any, where: str) -> tuple[Keep, Place]:
+        found = table(spec)(value, where)
+        keep, row = arm.keeps[found["keep"]], arm.robot.keeps[found["keep"]]
+        inside, sides = found.get("inside", [Fraction(0)] * 2), list[Vector]()
+        demand(not any(inside) or keep.along is not None, f"{where}.inside: of bodies only")
+        for key, hull, radius in zip(("near", "far"), (row.near, row.far), inside, strict=True):
+            if hull is None:
+                demand(found[key] == [], f"{where}.{key}: an empty list is wanted")
+                sides.append((0, 0, 0))
+                continue
+            frame, corners = arm.robot.hulls[hull]
+            at = mean(weights(len(corners))(found[key], f"{where}.{key}"), corners)
+            seen = [k for k in range(3) if k != arm.robot.flat.get(frame)]
+            within = not radius or _holds_disc(corners, seen, at, radius)
+            demand(within, f"{where}.inside: the disc does not lie within the part")
+            sides.append(arm.scaled(at))
+        near, far = sides
+        return keep, Place(near, far, in_units(sum(inside) / arm.largest))
+
+    return read
 
 
-def _holds_disc(corners: Sequence[Any], seen: tuple[int, int], at: Any, radius: Fraction) -> bool:
+def _holds_disc(corners: Sequence[Exact], seen: Sequence[int], at: Exact, radius: Fraction) -> bool:
     """Tell whether a disc lies within a convex part: every edge is that far from its middle."""
-    if len(corners) < 3:
-        return False
     i, k = seen
     flat = [(p[i], p[k]) for p in corners]
     sense = 1 if doubled_area(flat) > 0 else -1
-    for a, b in around(flat):
-        (x, y), (u, v) = (b[0] - a[0], b[1] - a[1]), (at[i] - a[0], at[k] - a[1])
-        inwards = sense * (x * v - y * u)
-        if inwards < 0 or inwards**2 < radius**2 * (x * x + y * y):
+    for (a, b), (c, d) in around(flat):
+        x, y = c - a, d - b
+        inwards = sense * (x * (at[k] - b) - y * (at[i] - a))
+        if inwards <= 0 or inwards**2 < radius**2 * (x * x + y * y):
             return False
     return True
 
@@ -689,14 +694,17 @@ TOUCH = 1 << BITS - 100
 
 
 class Leaves:
-    """The boxes of a tree in preorder; each knows where the boxes that it contains end."""
+    """The boxes of a tree in preorder: each is known with the number that follows its last part."""
 
-    def __init__(self, turn: Sequence[int | None]) -> None:
-        self.spans: list[Box] = []
-        self.is_open: list[bool] = []
-        self.after: list[int] = []
-        shifts = [(0,) if t is None else (-t, 0, t) for t in turn]
-        self.shifts = [*itertools.product(*shifts)]
+    def __init__(self, shifts: Sequence[Point]) -> None:
+        self.spans, self.is_open, self.after = list[Box](), list[bool](), list[int]()
+        self.shifts = shifts
+
+    def add(self, cell: Box, is_open: bool) -> None:
+        """Add the next box."""
+        self.spans.append(cell)
+        self.is_open.append(is_open)
+        self.after.append(0)
 
     def touching(self, box: Box) -> Iterator[int]:
         """Yield the open leaves that touch a box, over the seams of joints too."""
@@ -707,9 +715,7 @@ class Leaves:
             while k < len(self.spans):
                 Work.add(2)
                 span = self.spans[k]
-                apart = any(b < x for b, x in zip(span.high, low, strict=True)) or any(
-                    a > x for a, x in zip(span.low, high, strict=True)
-                )
+                apart = any(map(lt, span.high, low)) or any(map(lt, high, span.low))
                 if self.is_open[k] and not apart:
                     yield k
                 k = self.after[k] if apart else k + 1
@@ -721,66 +727,63 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     A path that keeps everything lies in open leaves. They are closed and finitely many, so a path
     stays within a group of leaves that touch.
     """
-    table = table_of(proof, "proof", ("places", "tree"))
-    rows = list_of(table["places"], "proof: places", 0, MAX_CELLS)
-    places = [read_place(arm, row, f"proof: places[{k}]") for k, row in enumerate(rows)]
-    [[start, goal]] = claim.loops
-    for q in (start, goal):
-        demand(not arm.beyond(q), "claim: points: start and goal are within all limits")
-    free, moves = (
-        [kind == "any" for kind in claim.joints],
-        [kind == "moves" for kind in claim.joints],
-    )
-    at = arm.placed(start)
-    ranges = [arm.whole_range(j) if moves[j] or free[j] else (at[j], at[j]) for j in range(len(at))]
-    middle = [(a + b >> 1,) * 2 if free[j] else (a, b) for j, (a, b) in enumerate(ranges)]
-    low, high = zip(*middle, strict=True)
-    turns = [
-        arm.turn if m and joint.limits is None else None
-        for m, joint in zip(moves, arm.joints, strict=True)
-    ]
-    found, letters = Leaves(turns), tokens(table["tree"], "proof: tree")
-    inside: list[int] = []
-    todo = [(Box(low, high), 0)]
+    places = items(read_place(arm), 0, MAX_CELLS)
+    found = table({"places": places, "tree": anything})(proof, "proof")
+    places, letters = found["places"], tokens(found["tree"], "proof.tree")
+    [[start, goal]], joints = claim.loops, range(len(claim.joints))
+    demand(not arm.robot.beyond(start), "claim.points: the start is beyond a limit")
+    demand(not arm.robot.beyond(goal), "claim.points: the goal is beyond a limit")
+    free, turns = [kind == "any" for kind in claim.joints], list[int]()
+    low, high = [*arm.placed(start)], [*arm.placed(start)]
+    for j in joints:
+        if claim.joints[j] != "held":
+            low[j], high[j] = arm.whole_range(j)
+        if free[j]:  # of a slide the middle is where its sweep is measured from
+            low[j] = high[j] = low[j] + high[j] >> 1
+        around_it = claim.joints[j] == "moves" and arm.robot.joints[j].limits is None
+        turns.append(arm.turn if around_it else 0)
+    leaves = Leaves([*itertools.product(*({-t, 0, t} for t in turns))])
+    todo, above = [(Box(tuple(low), tuple(high)), 0)], list[int]()
     while todo:
         cell, depth = todo.pop()
         Work.add(20)
-        token = next_of(letters, "proof: tree")
-        while len(inside) > depth:
-            found.after[inside.pop()] = len(found.spans)
-        inside.append(len(found.spans))
-        found.spans.append(cell)
-        found.is_open.append(token == ".")
-        found.after.append(0)
+        token = next_of(letters, "proof.tree")
+        while len(above) > depth:
+            leaves.after[above.pop()] = len(leaves.spans)
+        above.append(len(leaves.spans))
+        leaves.add(cell, token == ".")
         if not token.endswith("."):
-            demand(depth < MAX_DEPTH, f"proof: more than {MAX_DEPTH} cuts in a tree")
+            demand(
+                depth < MAX_DEPTH, f"proof.tree: more than {MAX_DEPTH} cuts on top of each other"
+            )
             first, second = cell.halves(ord(token) - ord("a"))
             todo += [(second, depth + 1), (first, depth + 1)]
         elif token != ".":
-            demand(int(token[:-1]) < len(places), "proof: tree: a leaf names no place of the list")
+            demand(int(token[:-1]) < len(places), "proof.tree: a leaf names no place of the list")
             keep, place = places[int(token[:-1])]
             pose = Pose(arm.steps, cell.middle)
             violated = is_violated(arm.steps, pose, keep, place, cell, free)
-            demand(violated, f"proof: tree: {shown(keep.name)} is not violated all over a leaf")
-    ended(letters, "proof: tree")
-    for k in inside:
-        found.after[k] = len(found.spans)
+            demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
+    ended(letters, "proof.tree")
+    for k in above:
+        leaves.after[k] = len(leaves.spans)
     ends = []
-    for q in (start, goal):
-        at = tuple(low[j] if free[j] else x for j, x in enumerate(arm.placed(q, turns)))
-        ends.append({*found.touching(Box(at, at))})
-        demand(ends[-1], "proof: tree: the start or the goal is on no open leaf")
-    reached, todo_next = {*ends[0]}, [*ends[0]]
-    while todo_next:
-        new = {*found.touching(found.spans[todo_next.pop()])} - reached
-        reached |= new
-        todo_next += new
-    demand(not reached & ends[1], "proof: tree: open leaves lead from the start to the goal")
+    for q in map(arm.placed, (start, goal)):
+        at = [x - (x + t // 2) // t * t if t else x for x, t in zip(q, turns, strict=True)]
+        place = tuple(a if f else x for a, x, f in zip(low, at, free, strict=True))
+        ends.append({*leaves.touching(Box(place, place))})
+        demand(ends[-1], "proof.tree: the start or the goal is on no open leaf")
+    reached, new = {*ends[0]}, [*ends[0]]
+    while new:
+        near = {*leaves.touching(leaves.spans[new.pop()])} - reached
+        reached |= near
+        new += near
+    demand(not reached & ends[1], "proof.tree: open leaves lead from the start to the goal")
 
 
 # --- reading: values ------------------------------------------------------------------------------
-# Each of these returns a value of its type, or refuses the file and names the place. `True` is an
-# integer to `isinstance`, so types are compared by `type(...) is`.
+# A reader takes a value and the name of its place. It returns what the value says, or refuses the
+# file. `True` is an integer to `isinstance`, so types are compared by `type(...) is`.
 
 MAX_FILE, MAX_ROBOT = 4_000_000, 500_000
 """Bytes of a certificate; characters of the robot's text."""
@@ -794,12 +797,6 @@ MAX_CELLS, MAX_KEEPS = 20_000, 20_000
 MAX_DIGITS, LARGEST = 40, Fraction(10**100)
 """Digits of a number, and its size; one that is not 0 is at least 1 / LARGEST."""
 
-LARGEST_ANGLE = {"deg": Fraction(1800), "rad": Fraction(30)}
-
-Table = dict[str, Any]
-Exact = tuple[Fraction, ...]
-"""A configuration in the units of the robot file, or three coordinates."""
-
 
 def shown(value: Any) -> str:
     """Write a value for a message: short, in ASCII, on one line."""
@@ -809,94 +806,122 @@ def shown(value: Any) -> str:
     return names.get(type(value), "a value of another type")
 
 
-def table_of(
-    value: Any, where: str, required: Iterable[str], optional: Iterable[str] = ()
-) -> Table:
-    """Return a table that has all required keys, and no others but the optional ones."""
-    demand(type(value) is dict, f"{where}: a table is wanted")
-    needed, allowed = {*required}, {*required, *optional}
-    unknown = [key for key in value if key not in allowed]
-    demand(not unknown, f"{where}: unknown key {shown(next(iter(unknown), ''))}")
-    missing = sorted(needed - {*value})
-    demand(not missing, f"{where}: the key {shown(next(iter(missing), ''))} is missing")
-    return {**value}
+def table(spec: dict[str, Reader]) -> Reader:
+    """Return the reader of a table: a reader for each key; a key with ? may be missing."""
+    readers = {key.rstrip("?"): reader for key, reader in spec.items()}
+
+    def read(value: Any, where: str) -> Table:
+        demand(type(value) is dict, f"{where}: a table is wanted")
+        for key in value:
+            demand(key in readers, f"{where}: unknown key {shown(key)}")
+        for key in spec:
+            demand(key[-1] == "?" or key in value, f"{where}: the key {key!r} is missing")
+        return {key: readers[key](value[key], f"{where}.{key}") for key in value}
+
+    return read
 
 
-def list_of(value: Any, where: str, least: int, most: int) -> list[Any]:
-    """Return a list of `least` to `most` items."""
+def items(reader: Reader, least: int, most: int) -> Reader:
+    """Return the reader of a list of `least` to `most` values of one kind."""
     wanted = str(least) if least == most else f"{least} to {most}"
-    fits = type(value) is list and least <= len(value) <= most
-    demand(fits, f"{where}: a list of {wanted} is wanted")
-    return [*value]
+
+    def read(value: Any, where: str) -> list[Any]:
+        fits = type(value) is list and least <= len(value) <= most
+        demand(fits, f"{where}: a list of {wanted} is wanted")
+        return [reader(item, f"{where}[{i}]") for i, item in enumerate(value)]
+
+    return read
 
 
-def text_of(value: Any, where: str, most: int) -> str:
-    """Return a text of 1 to `most` characters."""
-    fits = type(value) is str and 1 <= len(value) <= most
-    demand(fits, f"{where}: a text of 1 to {most} characters is wanted")
-    return str(value)
+def text(most: int) -> Reader:
+    """Return the reader of a text of 1 to `most` characters, none of them half of one."""
+
+    def read(value: Any, where: str) -> str:
+        fits = type(value) is str and 1 <= len(value) <= most
+        demand(fits, f"{where}: a text of 1 to {most} characters is wanted")
+        demand(not re.search("[\ud800-\udfff]", value), f"{where}: half a character")
+        return str(value)
+
+    return read
 
 
-def one_of(value: Any, where: str, choices: Sequence[str]) -> str:
-    """Return a text that is among some."""
-    fits = type(value) is str and value in choices
-    demand(fits, f"{where}: {' or '.join(choices)} is wanted")
-    return str(value)
+def one_of(*choices: Any) -> Reader:
+    """Return the reader of a value that is among some."""
+    wanted = " or ".join(map(str, choices))
+
+    def read(value: Any, where: str) -> Any:
+        fits = any(type(value) is type(choice) and value == choice for choice in choices)
+        demand(fits, f"{where}: {wanted} is wanted")
+        return value
+
+    return read
 
 
-def index_of(value: Any, where: str, count: int) -> int:
-    """Return a number from 0 to `count` - 1."""
-    demand(type(value) is int and 0 <= value < count, f"{where}: 0 to {count - 1} is wanted")
-    return int(value)
+def index(count: int) -> Reader:
+    """Return the reader of a number from 0 to `count` - 1."""
+
+    def read(value: Any, where: str) -> int:
+        demand(type(value) is int and 0 <= value < count, f"{where}: 0 to {count - 1} is wanted")
+        return int(value)
+
+    return read
 
 
-NUMBER = re.compile("([+-]?)([0-9]+)(?:[.]([0-9]+))?(?:[eE][+-]?[0-9]{1,3})?")
+def anything(value: Any, where: str) -> Any:
+    """Return a value as it is: it is read later."""
+    del where
+    return value
 
 
-def exact(text: str, where: str) -> Fraction:
-    """Return the value of a decimal whose digits and size are bounded."""
-    found = NUMBER.fullmatch(text)
-    demand(found, f"{where}: {shown(text)} is no decimal number")
-    digits = len(found[2]) + len(found[3] or "") if found else 0
+NUMBER = re.compile("[+-]?([0-9]+)(?:[.]([0-9]+))?(?:[eE][+-]?[0-9]{1,3})?")
+
+
+def exact(written: str, where: str) -> Fraction:
+    """Return the value of a decimal; its digits and its size are bounded."""
+    found = NUMBER.fullmatch(written)
+    demand(found, f"{where}: {shown(written)} is no decimal number")
+    digits = sum(map(len, found.groups(""))) if found else 0
     demand(digits <= MAX_DIGITS, f"{where}: a number of more than {MAX_DIGITS} digits")
-    value = Fraction(text)
+    value = Fraction(written)
     fits = not value or 1 / LARGEST <= abs(value) <= LARGEST
     demand(fits, f"{where}: a number that is not 0 has a size between 1e-100 and 1e100")
     return value
 
 
 def decimal(value: Any, where: str) -> Fraction:
-    """Return the exact value of a decimal of a certificate: a string such as "-12.5"."""
-    known = type(value) is str and len(value) <= 60 and value[:1] != "+" and value.isascii()
+    """Read a decimal of a certificate: a string such as "-12.5"."""
+    known = type(value) is str and len(value) <= 60 and value.isascii() and value[:1] != "+"
     demand(known, f'{where}: a decimal number in quotes is wanted, such as "-12.5"')
     return exact(value, where)
 
 
-def exactly(x: Fraction) -> str:
-    """Write a decimal with all its digits and without an exponent."""
-    digits, scale = 0, x.denominator
-    while scale % 10 == 0:
-        scale, digits = scale // 10, digits + 1
-    while scale != 1:  # powers of 2 or of 5 are left
-        scale, digits = (scale // 2 if scale % 2 == 0 else scale // 5), digits + 1
-    whole = str(abs(x.numerator) * 10**digits // x.denominator).rjust(digits + 1, "0")
-    point = len(whole) - digits
-    return "-" * (x < 0) + whole[:point] + ("." + whole[point:] if digits else "")
+def not_negative(reader: Reader) -> Reader:
+    """Return the reader of a number of 0 or more."""
+
+    def read(value: Any, where: str) -> Fraction:
+        found: Fraction = reader(value, where)
+        demand(found >= 0, f"{where}: a number of 0 or more is wanted")
+        return found
+
+    return read
 
 
-def weights_of(value: Any, where: str, count: int) -> list[Fraction]:
-    """Return the weights of a mean of some corners."""
-    weights = [decimal(x, where) for x in list_of(value, where, count, count)]
-    is_mean = min(weights) >= 0 and sum(weights) == 1
-    demand(is_mean, f"{where}: numbers of 0 or more whose sum is 1 are wanted")
-    return weights
+def weights(count: int) -> Reader:
+    """Return the reader of the weights of a mean of corners."""
+
+    def read(value: Any, where: str) -> list[Fraction]:
+        found: list[Fraction] = items(not_negative(decimal), count, count)(value, where)
+        demand(sum(found) == 1, f"{where}: weights whose sum is 1 are wanted")
+        return found
+
+    return read
 
 
-def mean(weights: Sequence[Fraction], corners: Sequence[Exact]) -> Exact:
+def mean(shares: Sequence[Fraction], corners: Sequence[Exact]) -> Exact:
     """Return a mean of corners."""
-    Work.add(len(weights))
-    pairs = [zip(weights, column, strict=True) for column in zip(*corners, strict=True)]
-    return tuple(sum((w * x for w, x in pair), Fraction(0)) for pair in pairs)
+    Work.add(len(shares))
+    columns = zip(*corners, strict=True)
+    return tuple(sum(map(mul, shares, column), Fraction(0)) for column in columns)
 
 
 def read_json(data: bytes) -> Any:
@@ -907,8 +932,8 @@ def read_json(data: bytes) -> Any:
             data.decode("utf-8"),
             object_pairs_hook=_unique,
             parse_int=_integer,
-            parse_float=_no_number,
-            parse_constant=_no_number,
+            parse_float=_integer,
+            parse_constant=_integer,
         )
     except UnicodeDecodeError:
         raise Refused("the file is not UTF-8 text") from None
@@ -920,22 +945,18 @@ def read_json(data: bytes) -> Any:
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Table:
-    table = dict(pairs)
-    demand(len(table) == len(pairs), "the file has a key twice in one object")
-    return table
+    found = dict(pairs)
+    demand(len(found) == len(pairs), "the file has a key twice in one object")
+    return found
 
 
-def _integer(text: str) -> int:
-    known = re.fullmatch("0|-?[1-9][0-9]{0,8}", text)
-    demand(known, f"the file has the number {shown(text)}: integers have at most nine digits")
-    return int(text)
+def _integer(written: str) -> int:
+    known = re.fullmatch("0|-?[1-9][0-9]{0,8}", written)
+    demand(known, f"the file has the number {shown(written)}: decimals are written as strings")
+    return int(written)
 
 
-def _no_number(text: str) -> Any:
-    raise Refused(f"the file has the number {shown(text)}: decimals are written as strings")
-
-
-# --- reading: the robot's text as TOML ------------------------------------------------------------
+# --- reading: TOML --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -960,14 +981,14 @@ LONGEST = {"string": 302, "word": 100}
 MAX_NESTED = 8
 
 
-def read_toml(text: str) -> Any:
+def read_toml(written: str) -> Any:
     """Read TOML after a look at its marks, on which the reader of TOML could work for long.
 
     Dotted keys cost that reader the square of their number of parts, tables in tables more. No
     robot needs either: between two marks there is at most one string or word.
     """
     line, depth, between = 1, 0, list[str]()
-    for token in TOKEN.finditer(text):
+    for token in TOKEN.finditer(written):
         kind, found, where = str(token.lastgroup), token.group(), f"robot: line {line}"
         demand(kind != "other", f"{where}: a string that does not end")
         demand(len(found) <= LONGEST.get(kind, MAX_ROBOT), f"{where}: {shown(found)} is too long")
@@ -983,13 +1004,13 @@ def read_toml(text: str) -> Any:
             line += found == "\n"
             between.clear()
     try:
-        return tomllib.loads(text, parse_float=TomlFloat)
+        return tomllib.loads(written, parse_float=TomlFloat)
     except ValueError as error:  # also an integer of thousands of digits
         raise Refused(f"robot: no TOML: {error}") from None
 
 
 def number(value: Any, where: str) -> Fraction:
-    """Return the exact value of an integer or a float of TOML."""
+    """Read an integer or a float of TOML."""
     if type(value) is int:
         demand(abs(value) < 10**MAX_DIGITS, f"{where}: a number of more than {MAX_DIGITS} digits")
         return Fraction(value)
@@ -997,57 +1018,83 @@ def number(value: Any, where: str) -> Fraction:
     return exact(value.text.replace("_", ""), where)
 
 
-def vector_of(value: Any, where: str) -> Exact:
-    """Return three numbers."""
-    return tuple(number(x, where) for x in list_of(value, where, 3, 3))
-
-
-def direction_of(value: Any, where: str) -> Exact:
-    """Return three numbers that are not all 0."""
-    vector = vector_of(value, where)
-    demand(any(vector), f"{where}: a direction must not be 0")
-    return vector
-
-
-def size_of(value: Any, where: str) -> Fraction:
-    """Return a number of 0 or more."""
-    found = number(value, where)
-    demand(found >= 0, f"{where}: a number of 0 or more is wanted")
+def direction(value: Any, where: str) -> Exact:
+    """Read three numbers that are not all 0."""
+    found = tuple(vector(value, where))
+    demand(any(found), f"{where}: a direction must not be 0")
     return found
 
 
-def label_of(value: Any, where: str) -> str:
-    """Return a name."""
-    return text_of(value, where, 200)
+label, vector, size_of = text(200), items(number, 3, 3), not_negative(number)
+corner, two_labels = items(number, 2, 3), items(label, 2, 2)
+
+KINDS = ("revolute", "prismatic", "parallelogram")
+JOINT: dict[str, Reader] = {
+    "name": label,
+    "type": one_of(*KINDS),
+    "parent": label,
+    "frame": label,
+    "origin": vector,
+    "rpy?": vector,
+    "axis": direction,
+    "limits?": items(number, 2, 2),
+    "velocity?": number,
+    "crank?": vector,
+    "bar?": label,
+}
+POINT: dict[str, Reader] = {"name": label, "frame": label, "at": vector, "radius?": size_of}
+SHAPES: dict[str, Reader] = {
+    "polygon?": items(corner, 3, MAX_CORNERS),
+    "capsule?": table({"from": corner, "to": corner, "radius": size_of}),
+    "disc?": table({"at": corner, "radius": size_of}),
+}
+HEAD: dict[str, Reader] = {"name": label, "type": anything, "used?": one_of(True, False)}
+ABOVE: dict[str, Reader] = {"normal": direction, "offset": number, "point?": label, "body?": label}
+BOUNDARY = {
+    "pair": table({**HEAD, "points": two_labels, "clearance?": size_of}),
+    "bodies": table({**HEAD, "bodies": two_labels, "clearance?": size_of}),
+    "half-space": table({**HEAD, **ABOVE}),
+}
 
 
-def known_of(value: Any, where: str, names: Iterable[str]) -> str:
-    """Return a name that is one of some."""
-    name = label_of(value, where)
-    demand(name in names, f"{where}: nothing is called {shown(name)}")
-    return name
+def boundary_row(value: Any, where: str) -> Any:
+    """Read a boundary by its type."""
+    kind = value.get("type") if type(value) is dict else None
+    return BOUNDARY[one_of(*BOUNDARY)(kind, f"{where}.type")](value, where)
 
 
-def different(what: str, names: Sequence[str]) -> None:
-    """Refuse a name that stands for two things."""
-    demand(len({*names}) == len(names), f"robot: {what}: a name is used twice")
-
+FILE = table(
+    {
+        "schema": one_of(1),
+        "name": label,
+        "length_unit": one_of("m", "cm", "mm"),
+        "angle_unit": one_of("deg", "rad"),
+        "home": anything,
+        "tool": label,
+        "joint": items(table(JOINT), 1, MAX_JOINTS),
+        "point": items(table(POINT), 1, MAX_ROWS),
+        "boundary?": items(boundary_row, 0, MAX_ROWS),
+        "body?": items(table({"name?": label, "frame": label, **SHAPES}), 0, MAX_ROWS),
+        "obstacle?": items(table({"name?": label, **SHAPES}), 0, MAX_ROWS),
+        "collisions?": one_of("all"),
+        "clearance?": size_of,
+        "allowed?": items(two_labels, 0, MAX_ROWS),
+    }
+)
 
 # --- reading: the robot ---------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class JointRow:
-    """A joint: its name, whether it turns, and its limits in the units of the file."""
+class Joint(NamedTuple):
+    """A joint; its limits are in the units of the file."""
 
     name: str
     turns: bool
     limits: tuple[Fraction, Fraction] | None
 
 
-@dataclass(frozen=True)
-class StepRow:
-    """A step of the normal form."""
+class StepRow(NamedTuple):
+    """A step of the normal form, in the units of the file."""
 
     joint: int
     factor: int
@@ -1056,8 +1103,7 @@ class StepRow:
     axis: Exact
 
 
-@dataclass(frozen=True)
-class Thing:
+class Thing(NamedTuple):
     """A point, or a body: a core of one corner, of a segment, or of an outline, with a radius."""
 
     name: str
@@ -1067,8 +1113,7 @@ class Thing:
     radius: Fraction
 
 
-@dataclass(frozen=True)
-class Boundary:
+class Boundary(NamedTuple):
     """Two things that keep `distance` plus their radii apart; with a normal, one above a plane."""
 
     name: str
@@ -1076,15 +1121,9 @@ class Boundary:
     normal: Exact | None
     distance: Fraction
 
-    @property
-    def gap(self) -> Fraction:
-        """Return the distance between cores, or of a core from the plane through the origin."""
-        return self.distance + sum(thing.radius for thing in self.things)
 
-
-@dataclass(frozen=True)
-class KeepRow:
-    """A thing to keep of the normal form: hulls by their numbers."""
+class KeepRow(NamedTuple):
+    """A thing to keep of the normal form; `near` and `far` are numbers of hulls."""
 
     name: str
     near: int | None
@@ -1096,264 +1135,237 @@ class KeepRow:
 
 @dataclass(frozen=True)
 class Robot:
-    """What a robot's text says, as far as it bears on claims: the normal form before it is written.
+    """What a robot's text says, as far as it bears on claims.
 
     Attributes
     ----------
-    hulls : tuple of (frame, corners)
-    flat : of frames with bodies, the coordinate along the common axis
     left_out : what is not to be kept, in words
+    flat : of each frame with bodies, its coordinate along the common axis
     """
 
     name: str
     length_unit: str
     angle_unit: str
-    joints: tuple[JointRow, ...]
+    joints: tuple[Joint, ...]
     steps: tuple[StepRow, ...]
     frames: tuple[str, ...]
     boundaries: tuple[Boundary, ...]
+    left_out: tuple[str, ...]
+    flat: dict[int, int]
     hulls: tuple[tuple[int, tuple[Exact, ...]], ...]
     keeps: tuple[KeepRow, ...]
-    flat: dict[int, int]
-    left_out: tuple[str, ...]
+
+    def unit_of(self, j: int) -> str:
+        """Return the unit of a joint's values."""
+        return self.angle_unit if self.joints[j].turns else self.length_unit
+
+    def beyond(self, q: Exact) -> list[str]:
+        """Return the names of the limits that a configuration is beyond: compared exactly."""
+        found = []
+        for (name, _, limits), value in zip(self.joints, q, strict=True):
+            low, high = limits or (value, value)
+            found += [f"{name}.lower"] * (value < low) + [f"{name}.upper"] * (value > high)
+        return found
 
     @property
     def form(self) -> Table:
         """Return the normal form."""
-        return {
-            "name": self.name,
-            "length_unit": self.length_unit,
-            "angle_unit": self.angle_unit,
-            "joints": [
-                {"name": j.name, "turns": j.turns, "limits": j.limits and [*map(exactly, j.limits)]}
-                for j in self.joints
-            ],
-            "steps": [
-                {
-                    "joint": s.joint,
-                    "factor": str(s.factor),
-                    "offset": "0",
-                    **{key: [*map(exactly, getattr(s, key))] for key in ("origin", "rpy", "axis")},
-                }
-                for s in self.steps
-            ],
-            "hulls": [
-                {"frame": frame, "corners": [[*map(exactly, p)] for p in corners]}
-                for frame, corners in self.hulls
-            ],
-            "keep": [
-                {"name": k.name, "far": k.far, "gap": exactly(k.gap)}
-                | (
-                    {"near": k.near, "along": k.along}
-                    if k.normal is None
-                    else {"normal": [*map(exactly, k.normal)]}
-                )
-                for k in self.keeps
-            ],
-        }
+        joints = [joint._asdict() for joint in self.joints]
+        steps = [step._asdict() | {"offset": Fraction(0)} for step in self.steps]
+        for step in steps:
+            step["factor"] = Fraction(step["factor"])
+        hulls = [{"frame": frame, "corners": corners} for frame, corners in self.hulls]
+        keeps = [keep._asdict() for keep in self.keeps]
+        for keep in keeps:
+            for key in ("normal",) if keep["normal"] is None else ("near", "along"):
+                del keep[key]
+        units = {"name": self.name, "length_unit": self.length_unit, "angle_unit": self.angle_unit}
+        found: Table = _written(
+            units | {"joints": joints, "steps": steps, "hulls": hulls, "keep": keeps}
+        )
+        return found
 
 
-def read_robot(text: str, parts: Any) -> Robot:
-    """Read a robot's text and bring it to its normal form: every table, key and type is known."""
-    required = ("schema", "name", "length_unit", "angle_unit", "home", "tool", "joint", "point")
-    optional = ("boundary", "body", "obstacle", "collisions", "clearance", "allowed")
-    file = table_of(read_toml(text), "robot", required, optional)
-    demand(type(file["schema"]) is int and file["schema"] == 1, "robot: schema: 1 is wanted")
-    unit_name = one_of(file["angle_unit"], "robot: angle_unit", ("deg", "rad"))
-    length_unit = one_of(file["length_unit"], "robot: length_unit", ("m", "cm", "mm"))
-    joints, steps, frames = _read_joints(file["joint"], unit_name)
-    points = _read_points(file["point"], frames)
-    known_of(file["tool"], "robot: tool", points)
-    for name, value in table_of(file["home"], "robot: home", [j.name for j in joints]).items():
-        number(value, f"robot: home: {shown(name)}")
-    bodies = _read_bodies(file.get("body", []), file.get("obstacle", []), frames)
-    boundaries, left_out = _read_boundaries(file, points, bodies, joints)
+def _written(value: Any) -> Any:
+    """Return a value for JSON: decimals are written in full."""
+    if isinstance(value, Fraction):
+        return exactly(value)
+    if isinstance(value, dict):
+        return {key: _written(item) for key, item in value.items()}
+    return [*map(_written, value)] if isinstance(value, list | tuple) else value
+
+
+def exactly(x: Fraction) -> str:
+    """Write a decimal with all its digits and without an exponent."""
+    digits = 0
+    while x.denominator != 1:
+        x, digits = x * 10, digits + 1
+    whole = str(abs(x.numerator)).rjust(digits + 1, "0")
+    point = len(whole) - digits
+    return "-" * (x < 0) + whole[:point] + ("." + whole[point:] if digits else "")
+
+
+def read_robot(written: str, parts: Any) -> Robot:
+    """Read a robot's text and bring it to its normal form."""
+    file = FILE(read_toml(written), "robot")
+    joints, steps, frames = _joints(file)
+    bounds = {key: file[key] for key in ("name", "length_unit", "angle_unit")}
+
+    def frame_of(name: str) -> int:
+        demand(name in frames, f"robot: no frame is called {shown(name)}")
+        return frames.index(name)
+
+    points = _named(
+        "point",
+        (
+            Thing(
+                row["name"],
+                "point",
+                frame_of(row["frame"]),
+                (tuple(row["at"]),),
+                row.get("radius", Fraction(0)),
+            )
+            for row in file["point"]
+        ),
+    )
+    demand(not {*points} & {*frames}, "robot: a point has the name of a frame")
+    demand(file["tool"] in points, "robot: the tool is no point")
+    table({joint.name: number for joint in joints})(file["home"], "robot.home")
+    links = [_body(row, frame_of(row["frame"])) for row in file.get("body", [])]
+    others = [_body(row, 0) for row in file.get("obstacle", [])]
+    bodies = _named("body", _called([*links, *others], len(links), frames))
+    boundaries, left_out = _boundaries(file, points, bodies, joints)
     used = [t for boundary in boundaries for t in boundary.things if t.kind != "point"]
-    flat = _common_axis(steps, joints, unit_name, sorted({thing.frame for thing in used}))
-    lifted = {t.name: tuple(_lifted(p, flat[t.frame]) for p in t.corners) for t in used}
-    hulls, keeps = _normalised(boundaries, lifted, flat, parts)
-    name = label_of(file["name"], "robot: name")
-    args = (joints, steps, frames, boundaries, hulls, keeps, flat, left_out)
-    return Robot(name, length_unit, unit_name, *args)
+    flat = _common_axis(joints, steps, file["angle_unit"], {thing.frame for thing in used})
+    hulls, keeps = _keeps(boundaries, flat, parts)
+    return Robot(
+        **bounds,
+        joints=joints,
+        steps=steps,
+        frames=frames,
+        boundaries=boundaries,
+        left_out=left_out,
+        flat=flat,
+        hulls=hulls,
+        keeps=keeps,
+    )
 
 
-def _read_joints(
-    value: Any, unit_name: str
-) -> tuple[tuple[JointRow, ...], tuple[StepRow, ...], tuple[str, ...]]:
-    joints, steps, frames = list[JointRow](), list[StepRow](), list[str]()
-    for j, item in enumerate(list_of(value, "robot: joint", 1, MAX_JOINTS)):
-        where = f"robot: joint[{j}]"
-        required = ("name", "type", "parent", "frame", "origin", "axis")
-        kinds = ("revolute", "prismatic", "parallelogram")
-        kind = one_of(item.get("type") if type(item) is dict else None, f"{where}: type", kinds)
-        more = ("crank", "bar") if kind == "parallelogram" else ()
-        row = table_of(item, where, (*required, *more), ("rpy", "limits", "velocity"))
-        turns = kind != "prismatic"
+def _named(what: str, things: Iterable[Any]) -> dict[str, Any]:
+    """Return things by name; refuse a name that stands for two."""
+    found = dict[str, Any]()
+    for thing in things:
+        demand(thing.name not in found, f"robot: {what}: two are called {shown(thing.name)}")
+        found[thing.name] = thing
+    return found
+
+
+LARGEST_ANGLE = {"deg": Fraction(1800), "rad": Fraction(30)}
+
+
+def _joints(file: Table) -> tuple[tuple[Joint, ...], tuple[StepRow, ...], tuple[str, ...]]:
+    """Return joints, the steps that they make, and the names of frames, the base first."""
+    joints, steps, frames = list[Joint](), list[StepRow](), [file["joint"][0]["parent"]]
+    turn = {"deg": Fraction(360), "rad": 2 * PI}[file["angle_unit"]]
+    for j, row in enumerate(file["joint"]):
+        where, turns, bar = f"robot.joint[{j}]", row["type"] != "prismatic", row["type"] == KINDS[2]
+        demand(row["parent"] == frames[-1], f"{where}: its parent is not the frame before")
+        fits = ("crank" in row) == ("bar" in row) == bar
+        demand(fits, f"{where}: crank and bar belong to a parallelogram")
         demand(turns or "limits" in row, f"{where}: a prismatic joint needs limits")
-        rpy = vector_of(row.get("rpy", [0, 0, 0]), f"{where}.rpy")
-        fits = all(abs(angle) <= LARGEST_ANGLE[unit_name] for angle in rpy)
-        demand(fits, f"{where}.rpy: an angle of more than five turns")
-        speed = number(row.get("velocity", 1), f"{where}.velocity")
-        demand(speed > 0, f"{where}.velocity: a number of more than 0 is wanted")
-        limits = (
-            _limits(row["limits"], f"{where}.limits", turns, unit_name) if "limits" in row else None
-        )
-        joints.append(JointRow(label_of(row["name"], f"{where}.name"), turns, limits))
-        axis, parent = (
-            direction_of(row["axis"], f"{where}.axis"),
-            label_of(row["parent"], f"{where}.parent"),
-        )
-        demand(
-            not frames or parent == frames[-1],
-            "robot: joint: each parent is the frame of the joint before",
-        )
-        frames += [] if frames else [parent]
-        steps.append(StepRow(j, 1, vector_of(row["origin"], f"{where}.origin"), rpy, axis))
-        if more:
-            frames.append(label_of(row["bar"], f"{where}.bar"))
-            crank = vector_of(row["crank"], f"{where}.crank")
-            steps.append(StepRow(j, -1, crank, (Fraction(0),) * 3, axis))
-        frames.append(label_of(row["frame"], f"{where}.frame"))
-    different("joint", [joint.name for joint in joints])
-    different("frames", frames)
+        demand(row.get("velocity", 1) > 0, f"{where}.velocity: a number of more than 0 is wanted")
+        rpy = tuple(row.get("rpy", [Fraction(0)] * 3))
+        small = all(abs(angle) <= LARGEST_ANGLE[file["angle_unit"]] for angle in rpy)
+        demand(small, f"{where}.rpy: an angle of more than five turns")
+        low, high = row.get("limits", (0, 1))
+        demand(low < high, f"{where}.limits: the first one must be less")
+        demand(not turns or high - low <= 100 * turn, f"{where}.limits: more than 100 turns apart")
+        joints.append(Joint(row["name"], turns, (low, high) if "limits" in row else None))
+        steps.append(StepRow(j, 1, tuple(row["origin"]), rpy, row["axis"]))
+        if bar:
+            frames.append(row["bar"])
+            steps.append(StepRow(j, -1, tuple(row["crank"]), (Fraction(0),) * 3, row["axis"]))
+        frames.append(row["frame"])
+    _named("joint", joints)
+    demand(len({*frames}) == len(frames), "robot: a frame has the name of another one")
     return tuple(joints), tuple(steps), tuple(frames)
 
 
-def _limits(value: Any, where: str, turns: bool, unit_name: str) -> tuple[Fraction, Fraction]:
-    low, high = (number(x, where) for x in list_of(value, where, 2, 2))
-    demand(low < high, f"{where}: the first one must be less")
-    widest = 100 * (Fraction(360) if unit_name == "deg" else 2 * PI)
-    demand(not turns or high - low <= widest, f"{where}: more than 100 turns apart")
-    return low, high
-
-
-def _read_points(value: Any, frames: Sequence[str]) -> dict[str, Thing]:
-    points = dict[str, Thing]()
-    for i, item in enumerate(list_of(value, "robot: point", 1, MAX_ROWS)):
-        where = f"robot: point[{i}]"
-        row = table_of(item, where, ("name", "frame", "at"), ("radius",))
-        name = label_of(row["name"], f"{where}.name")
-        demand(name not in points, f"{where}: the name {shown(name)} is used twice")
-        demand(name not in frames, f"{where}: {shown(name)} is the name of a frame")
-        frame = frames.index(known_of(row["frame"], f"{where}.frame", frames))
-        radius = size_of(row.get("radius", 0), f"{where}.radius")
-        points[name] = Thing(name, "point", frame, (vector_of(row["at"], f"{where}.at"),), radius)
-    return points
-
-
-SHAPES = ("polygon", "capsule", "disc")
-
-
-def _read_bodies(links: Any, obstacles: Any, frames: Sequence[str]) -> dict[str, Thing]:
-    """Return all bodies by name, in their order along the chain, obstacles last.
-
-    One without a name is called by its frame: 1, 1/2, 1/3 and so on. A corner is written with two
-    numbers or with three.
-    """
-    kinds = (("body", links), ("obstacle", obstacles))
-    found = list[Thing]()
-    for kind, items in kinds:
-        for i, item in enumerate(list_of(items, f"robot: {kind}", 0, MAX_ROWS)):
-            where = f"robot: {kind}[{i}]"
-            own = ("frame",) if kind == "body" else ()
-            row = table_of(item, where, own, ("name", *SHAPES))
-            label = known_of(row["frame"], f"{where}.frame", frames) if own else frames[0]
-            frame = frames.index(label)
-            count = 1 + sum(body.frame == frame for body in found)
-            usual = label if count == 1 else f"{label}/{count}"
-            name = label_of(row["name"], f"{where}.name") if "name" in row else usual
-            found.append(Thing(name, *_read_shape(row, where, frame)))
-        if kind == "body":
-            found.sort(key=lambda body: body.frame)
-    different("body", [body.name for body in found])
-    return {body.name: body for body in found}
-
-
-def _read_shape(row: Table, where: str, frame: int) -> tuple[str, int, tuple[Exact, ...], Fraction]:
-    shapes = [shape for shape in SHAPES if shape in row]
-    demand(len(shapes) == 1, f"{where}: {' or '.join(SHAPES)} is wanted, one of them")
-    shape, where, radius = shapes[0], f"{where}.{shapes[0]}", Fraction(0)
-    if shape == "polygon":
-        written = list_of(row[shape], where, 3, MAX_CORNERS)
-    else:
-        ends = ("from", "to") if shape == "capsule" else ("at",)
-        table = table_of(row[shape], where, (*ends, "radius"))
-        written, radius = [table[end] for end in ends], size_of(table["radius"], where)
-    corners = [tuple(number(x, where) for x in list_of(p, where, 2, 3)) for p in written]
-    return shape, frame, tuple(corners), radius
-
-
-KEYS_OF = {
-    "pair": (("points",), ("clearance",)),
-    "bodies": (("bodies",), ("clearance",)),
-    "half-space": (("normal", "offset"), ("point", "body")),
-}
-"""For each type of boundary: the keys that it needs, and those that it may have."""
-
-
-def _read_boundaries(
-    file: Table, points: dict[str, Thing], bodies: dict[str, Thing], joints: Sequence[JointRow]
-) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
-    """Read all boundaries, add the pairs that `collisions` makes; return those in use."""
-    rows = [
-        _read_boundary(item, f"robot: boundary[{i}]", points, bodies)
-        for i, item in enumerate(list_of(file.get("boundary", []), "robot: boundary", 0, MAX_ROWS))
+def _body(row: Table, frame: int) -> Thing:
+    """Return a body; its corners have two numbers or three."""
+    [kind, *more] = [
+        shape for shape in ("polygon", "capsule", "disc", "") if shape in row or not shape
     ]
-    named = {frozenset(t.name for t in b.things) for b, _ in rows if b.things[0].kind != "point"}
-    clearance = size_of(file.get("clearance", 0), "robot: clearance")
-    allowed = list_of(file.get("allowed", []), "robot: allowed", 0, MAX_ROWS)
-    apart = {_two_names(row, "robot: allowed", bodies) for row in allowed}
+    demand(kind and more == [""], "robot: a body has one shape: a polygon, a capsule or a disc")
+    shape = row[kind]
+    corners = (
+        shape if kind == "polygon" else [shape[end] for end in ("at", "from", "to") if end in shape]
+    )
+    radius = Fraction(0) if kind == "polygon" else shape["radius"]
+    return Thing(row.get("name", ""), kind, frame, tuple(map(tuple, corners)), radius)
+
+
+def _called(bodies: Sequence[Thing], links: int, frames: Sequence[str]) -> list[Thing]:
+    """Order bodies along the chain, obstacles last; one without a name is called by its frame."""
+    found = list[Thing]()
+    for k, body in enumerate(bodies):
+        count = 1 + sum(other.frame == body.frame for other in bodies[:k])
+        usual = frames[body.frame] + (f"/{count}" if count > 1 else "")
+        found.append(body if body.name else body._replace(name=usual))
+    return sorted(found[:links], key=lambda body: body.frame) + found[links:]
+
+
+def _boundaries(
+    file: Table, points: dict[str, Thing], bodies: dict[str, Thing], joints: Sequence[Joint]
+) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
+    """Return the boundaries in use, those that `collisions` makes last, and what is left out."""
+    rows, found = file.get("boundary", []), list[Boundary]()
+    apart = [_things(names, bodies, "allowed", 2) for names in file.get("allowed", [])]
+    named = len(apart)
+    for i, row in enumerate(rows):
+        where = f"robot.boundary[{i}]"
+        if row["type"] == "half-space":
+            demand(("point" in row) != ("body" in row), f"{where}: a point or a body is wanted")
+            names, known = [row.get("point", row.get("body"))], points if "point" in row else bodies
+        else:
+            names = row.get("points", row.get("bodies"))
+            known = points if row["type"] == "pair" else bodies
+        things = _things(names, known, where, len(names))
+        frames = {thing.frame for thing in things}
+        demand(row["type"] != "bodies" or len(frames) == 2, f"{where}: two bodies of one frame")
+        apart += [things] if row["type"] == "bodies" else []
+        distance = row.get("offset", row.get("clearance", Fraction(0)))
+        found.append(Boundary(row["name"], things, row.get("normal"), distance))
+    is_used = [row.get("used", True) for row in rows]
     if "collisions" in file:
-        one_of(file["collisions"], "robot: collisions", ("all",))
-        pairs = itertools.combinations(bodies.values(), 2)
-        for one, other in ((a, b) for a, b in pairs if a.frame != b.frame):
-            demand(len(rows) <= 2 * MAX_BOUNDARIES, "robot: collisions: too many pairs of bodies")
-            if frozenset((one.name, other.name)) not in apart | named:
-                name = f"{one.name}, {other.name}"
-                rows.append((Boundary(name, (one, other), None, clearance), True))
-    limits = [f"{joint.name}.{side}" for joint in joints for side in ("lower", "upper")]
-    names = [boundary.name for boundary, _ in rows]
-    different("boundary", names)
-    demand(not {*names} & {*limits}, "robot: boundary: the name of a joint limit")
-    used = tuple(boundary for boundary, is_used in rows if is_used)
+        settled = {frozenset(thing.name for thing in pair) for pair in apart}
+        for pair in itertools.combinations(bodies.values(), 2):
+            names = [thing.name for thing in pair]
+            if pair[0].frame == pair[1].frame or frozenset(names) in settled:
+                continue
+            demand(len(found) < 2 * MAX_ROWS, "robot: too many pairs of bodies")
+            found.append(Boundary(", ".join(names), pair, None, file.get("clearance", Fraction(0))))
+            is_used.append(True)
+    limits = {f"{joint.name}.{side}" for joint in joints for side in ("lower", "upper")}
+    demand(not limits & {*_named("boundary", found)}, "robot: a boundary has the name of a limit")
+    used = tuple(b for b, is_in in zip(found, is_used, strict=True) if is_in)
     demand(len(used) <= MAX_BOUNDARIES, f"robot: more than {MAX_BOUNDARIES} boundaries in use")
-    unused = [f"{boundary.name!a} (used = false)" for boundary, is_used in rows if not is_used]
-    left_out = [*unused, *[f"{len(apart)} allowed pairs"] * bool(apart)]
-    if bodies:
-        left_out.append("bodies of one frame" if "collisions" in file else "other pairs of bodies")
+    left_out = [
+        f"{b.name!a} (used = false)" for b, is_in in zip(found, is_used, strict=True) if not is_in
+    ]
+    left_out += [f"{named} allowed pairs"] * bool(named)
+    left_out += ["bodies of one frame" if "collisions" in file else "other bodies"] * bool(bodies)
     return used, tuple(left_out)
 
 
-def _two_names(value: Any, where: str, known: Iterable[str]) -> frozenset[str]:
-    names = frozenset(known_of(name, where, known) for name in list_of(value, where, 2, 2))
-    demand(len(names) == 2, f"{where}: two different names are wanted")
-    return names
-
-
-def _read_boundary(
-    value: Any, where: str, points: dict[str, Thing], bodies: dict[str, Thing]
-) -> tuple[Boundary, bool]:
-    """Return a boundary, and whether it is in use."""
-    kind = one_of(value.get("type") if type(value) is dict else None, f"{where}: type", [*KEYS_OF])
-    required, optional = KEYS_OF[kind]
-    row = table_of(value, where, ("name", "type", *required), ("used", *optional))
-    used = row.get("used", True)
-    demand(type(used) is bool, f"{where}.used: true or false is wanted")
-    normal, distance = None, size_of(row.get("clearance", 0), f"{where}.clearance")
-    if kind == "half-space":
-        demand(("point" in row) != ("body" in row), f"{where}: a point or a body is wanted")
-        key = "point" if "point" in row else "body"
-        names, known = [row[key]], points if key == "point" else bodies
-        normal = direction_of(row["normal"], f"{where}.normal")
-        distance = number(row["offset"], f"{where}.offset")
-    else:
-        key, known = required[0], points if kind == "pair" else bodies
-        names = list_of(row[key], f"{where}.{key}", 2, 2)
-        _two_names(names, f"{where}.{key}", known)
-    things = tuple(known[known_of(name, f"{where}.{key}", known)] for name in names)
-    frames = {thing.frame for thing in things}
-    demand(kind != "bodies" or len(frames) == 2, f"{where}.bodies: both are of one frame")
-    return Boundary(label_of(row["name"], f"{where}.name"), things, normal, distance), used
+def _things(
+    names: Sequence[str], known: dict[str, Thing], where: str, count: int
+) -> tuple[Thing, ...]:
+    """Return some different things by their names."""
+    for name in names:
+        demand(name in known, f"{where}: nothing is called {shown(name)}")
+    demand(len({*names}) == count, f"{where}: two different names are wanted")
+    return tuple(known[name] for name in names)
 
 
 # --- reading: the normal form ---------------------------------------------------------------------
@@ -1378,7 +1390,7 @@ NEARLY = 1 << BITS - 30
 
 
 def _common_axis(
-    steps: Sequence[StepRow], joints: Sequence[JointRow], unit_name: str, frames: Sequence[int]
+    joints: Sequence[Joint], steps: Sequence[StepRow], unit_name: str, frames: set[int]
 ) -> dict[int, int]:
     """Return for each frame with bodies its coordinate along the common axis of the joints."""
     if not frames:
@@ -1388,103 +1400,79 @@ def _common_axis(
         turned = product(turned, mount_of(step.rpy, unit_name))
         axes.append((joints[step.joint].turns, image(turned, unit(step.axis))))
         every.append(turned)
-    found = next((axis for turns, axis in axes if turns), None)
-    for axis in (AXES[1], AXES[2], AXES[0]):
-        across = all(abs(dot(axis, slide)) <= NEARLY for _, slide in axes)
-        found = axis if found is None and across else found
-    if found is None:
+    still = [
+        e for e in (AXES[1], AXES[2], AXES[0]) if all(abs(dot(e, z)) <= NEARLY for _, z in axes)
+    ]
+    common = next((axis for turns, axis in axes if turns), still[0] if still else None)
+    if common is None:
         raise Refused("robot: the joints slide across no axis of the base: bodies have no plane")
     for turns, axis in axes:
-        off = size(cross(found, axis)) if turns else abs(dot(found, axis))
+        off = size(cross(common, axis)) if turns else abs(dot(common, axis))
         demand(off <= NEARLY, "robot: bodies keep apart in a plane only, and the arm leaves it")
     flat = dict[int, int]()
     for frame in frames:
-        along = [k for k in range(3) if size(cross(found, every[frame][k])) <= NEARLY]
+        along = [k for k in range(3) if size(cross(common, every[frame][k])) <= NEARLY]
         demand(along, "robot: no axis of a frame with bodies is along the common axis")
         flat[frame] = along[0]
     return flat
 
 
-def _lifted(corner: Exact, flat: int) -> Exact:
-    """Return a corner of three numbers; one of two has a 0 along the common axis."""
-    return corner if len(corner) == 3 else (*corner[:flat], Fraction(0), *corner[flat:])
-
-
-def _normalised(
-    boundaries: Sequence[Boundary],
-    lifted: dict[str, tuple[Exact, ...]],
-    flat: dict[int, int],
-    parts: Any,
+def _keeps(
+    boundaries: Sequence[Boundary], flat: dict[int, int], parts: Any
 ) -> tuple[tuple[tuple[int, tuple[Exact, ...]], ...], tuple[KeepRow, ...]]:
     """Return the hulls and the things to keep of the normal form."""
-    outlines = {
-        thing.name: thing
-        for boundary in boundaries
-        if boundary.normal is None
-        for thing in boundary.things
-        if thing.kind == "polygon"
-    }
-    cut = {name: _convex(lifted[name], flat[thing.frame], name) for name, thing in outlines.items()}
-    table = table_of(parts, "parts", [name for name, convex in cut.items() if not convex])
-    loops = {}
-    for name, value in table.items():
-        where = f"parts: {shown(name)}"
-        rows = [
-            list_of(row, where, 3, MAX_CORNERS) for row in list_of(value, where, 1, MAX_CORNERS)
-        ]
-        count = len(lifted[name])
-        loops[name] = [tuple(index_of(k, where, count) for k in row) for row in rows]
-        outline = _seen(lifted[name], flat[outlines[name].frame])
-        demand_filled([outline], [[outline[k] for k in loop] for loop in loops[name]], where)
-    hulls, numbers = (
-        list[tuple[int, tuple[Exact, ...]]](),
-        dict[tuple[str, str, tuple[int, ...]], int](),
+    pairs = [thing for boundary in boundaries if not boundary.normal for thing in boundary.things]
+    outlines = {t.name: t for t in pairs if t.kind == "polygon"}
+    seen = {name: _seen(_lifted(t, flat), flat[t.frame]) for name, t in outlines.items()}
+    for name, outline in seen.items():
+        demand(doubled_area(outline), f"robot: the outline of {shown(name)} has no area")
+    pieces = items(items(anything, 3, MAX_CORNERS), 1, MAX_CORNERS)
+    cut = table({name: pieces for name, outline in seen.items() if not is_convex(outline)})(
+        parts, "parts"
     )
+    for name, loops in cut.items():
+        where, known = f"parts.{name!a}", index(len(seen[name]))
+        corners = [[seen[name][known(k, where)] for k in loop] for loop in loops]
+        demand_filled([seen[name]], corners, where)
+    hulls, numbers = list[tuple[int, tuple[Exact, ...]]](), dict[Any, int]()
 
-    def hull(thing: Thing, loop: Sequence[int]) -> int:
-        corners = lifted.get(thing.name, thing.corners) if thing.kind != "point" else thing.corners
-        key = "point" if thing.kind == "point" else "body", thing.name, tuple(loop)
+    def hull(thing: Thing, loop: Sequence[int] | None = None) -> int:
+        key = thing.kind == "point", thing.name, None if loop is None else tuple(loop)
         if key not in numbers:
             numbers[key] = len(hulls)
-            hulls.append((thing.frame, tuple(corners[k] for k in loop)))
+            corners = _lifted(thing, flat)
+            hulls.append(
+                (thing.frame, corners if loop is None else tuple(corners[k] for k in loop))
+            )
         return numbers[key]
 
     keeps = list[KeepRow]()
-    for boundary in boundaries:
-        near, far = boundary.things[0], boundary.things[-1]
-        if boundary.normal is not None:
-            whole = hull(far, range(len(far.corners)))
-            keeps.append(KeepRow(boundary.name, None, whole, boundary.gap, None, boundary.normal))
+    for name, things, normal, distance in boundaries:
+        gap = distance + sum(thing.radius for thing in things)
+        if normal is not None:
+            keeps.append(KeepRow(name, None, hull(things[0]), gap, None, normal))
             continue
-        if far.frame < near.frame:
-            near, far = far, near
+        near, far = sorted(things, key=lambda thing: thing.frame)
         along = None if near.kind == "point" else flat[near.frame]
-        every = [
-            [tuple(range(len(t.corners)))]
-            if t.name not in loops or t.kind == "point"
-            else loops[t.name]
-            for t in (near, far)
-        ]
-        for one, other in itertools.product(*every):
+        loops = [cut.get(t.name, [None]) if t.kind == "polygon" else [None] for t in (near, far)]
+        for one, other in itertools.product(*loops):
             demand(len(keeps) < MAX_KEEPS, f"robot: more than {MAX_KEEPS} pairs of parts")
-            numbered = hull(near, one), hull(far, other)
-            keeps.append(KeepRow(boundary.name, *numbered, boundary.gap, along, None))
+            keeps.append(KeepRow(name, hull(near, one), hull(far, other), gap, along, None))
     return tuple(hulls), tuple(keeps)
+
+
+def _lifted(thing: Thing, flat: dict[int, int]) -> tuple[Exact, ...]:
+    """Return the corners of a thing; one of two numbers has a 0 along the common axis."""
+    k, zero = flat.get(thing.frame, 0), (Fraction(0),)
+    return tuple(p if len(p) == 3 else (*p[:k], *zero, *p[k:]) for p in thing.corners)
 
 
 def _seen(corners: Sequence[Exact], flat: int) -> list[tuple[int, int]]:
     """Return an outline along the common axis, anticlockwise, in whole numbers."""
-    pairs = [tuple(x for k, x in enumerate(p) if k != flat) for p in corners]
+    pairs = [[x for k, x in enumerate(p) if k != flat] for p in corners]
     whole = math.lcm(*(x.denominator for pair in pairs for x in pair))
     found = [(int(x * whole), int(y * whole)) for x, y in pairs]
     return found if doubled_area(found) > 0 else [(-x, y) for x, y in found]
-
-
-def _convex(corners: Sequence[Exact], flat: int, name: str) -> bool:
-    """Tell whether an outline is convex; refuse one without an area."""
-    outline = _seen(corners, flat)
-    demand(doubled_area(outline), f"robot: the outline of {shown(name)} has no area")
-    return is_convex(outline) and len({*map(str, outline)}) == len(outline)
 
 
 def around(loop: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
@@ -1542,19 +1530,15 @@ def demand_filled(
 
 
 class Arm:
-    """A robot in units: lengths as parts of the largest one, with the margin of a claim."""
+    """A robot in units, and what it has to keep with the margin of a claim."""
 
     def __init__(self, robot: Robot, margin: Fraction) -> None:
-        self.robot, self.joints = robot, robot.joints
-        self.corners = [corners for _, corners in robot.hulls]
-        slides = [x for joint in robot.joints if not joint.turns for x in joint.limits or ()]
-        places = [x for corners in self.corners for p in corners for x in p]
-        origins = [x for step in robot.steps for x in step.origin]
+        self.robot, self.turn = robot, 2 * in_units(PI)
         gaps = [keep.gap + margin for keep in robot.keeps]
-        self.largest = max(
-            map(abs, [*slides, *places, *origins, *gaps]), default=Fraction(0)
-        ) or Fraction(1)
-        self.turn = 2 * in_units(PI)
+        lengths = [x for _, corners in robot.hulls for p in corners for x in p] + gaps
+        lengths += [x for step in robot.steps for x in step.origin]
+        lengths += [x for joint in robot.joints if not joint.turns for x in joint.limits or ()]
+        self.largest = max(map(abs, lengths), default=Fraction(0)) or Fraction(1)
         self.steps = [self._step(row) for row in robot.steps]
         hulls = [Hull(frame, tuple(map(self.scaled, corners))) for frame, corners in robot.hulls]
         self.keeps = [
@@ -1562,166 +1546,112 @@ class Arm:
                 row.name,
                 None if row.near is None else hulls[row.near],
                 hulls[row.far],
-                in_units(gap / self.largest) + 1,
+                in_units(gap / self.largest),
+                gap != 0,
                 row.along,
                 None if row.normal is None else unit(row.normal),
             )
             for row, gap in zip(robot.keeps, gaps, strict=True)
         ]
         self.needs_proof = [
-            keep.near is None or gap != 0 or len(keep.near.corners) + len(keep.far.corners) > 3
-            for keep, gap in zip(self.keeps, gaps, strict=True)
+            keep.near is None or keep.asked or len(keep.near.corners) + len(keep.far.corners) > 3
+            for keep in self.keeps
         ]
 
     def _step(self, row: StepRow) -> Step:
-        joint, origin = self.joints[row.joint], self.scaled(row.origin)
-        low, high = (0, 0) if joint.turns else self.whole_range(row.joint)
-        sweep = (high - low + 1 >> 1) + 1
-        reach = size(origin) + max(abs(low), abs(high))
+        turns, origin = self.robot.joints[row.joint].turns, self.scaled(row.origin)
+        low, high = (0, 0) if turns else self.whole_range(row.joint)
+        reach, sweep = size(origin) + max(abs(low), abs(high)), high - low + 2 >> 1
         mount = mount_of(row.rpy, self.robot.angle_unit)
-        return Step(
-            row.joint,
-            joint.turns,
-            row.factor << BITS,
-            0,
-            origin,
-            mount,
-            unit(row.axis),
-            reach,
-            sweep,
-        )
+        return Step(row.joint, turns, row.factor, origin, mount, unit(row.axis), reach, sweep)
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
         """Return three lengths in units."""
         x, y, z = (in_units(x / self.largest) for x in place)
         return x, y, z
 
-    def value(self, j: int, x: Fraction) -> int:
-        """Return a value of a joint in units."""
-        return (
-            in_radians(x, self.robot.angle_unit)
-            if self.joints[j].turns
-            else in_units(x / self.largest)
-        )
+    def placed(self, q: Exact) -> Point:
+        """Return a configuration in units."""
+        return tuple(itertools.starmap(self._value, enumerate(q)))
 
-    def placed(self, q: Exact, turns: Sequence[int | None] | None = None) -> Point:
-        """Return a configuration in units; where a turn is given, within half of it about 0."""
-        found = [self.value(j, x) for j, x in enumerate(q)]
-        for j, turn in enumerate(turns or ()):
-            if turn is not None:
-                found[j] -= (found[j] + turn // 2) // turn * turn
-        return tuple(found)
+    def _value(self, j: int, x: Fraction) -> int:
+        turns = self.robot.joints[j].turns
+        return in_radians(x, self.robot.angle_unit) if turns else in_units(x / self.largest)
 
     def whole_range(self, j: int) -> tuple[int, int]:
         """Return the limits of a joint; without limits a turn, in radians a little more."""
         ends = {"deg": Fraction(180), "rad": Fraction("3.1416")}[self.robot.angle_unit]
-        low, high = self.joints[j].limits or (-ends, ends)
-        return self.value(j, low), self.value(j, high)
-
-    def across(self, frame: int) -> tuple[int, int]:
-        """Return the two coordinates of a frame in which its bodies are seen."""
-        i, k = (k for k in range(3) if k != self.robot.flat[frame])
-        return i, k
-
-    def unit_of(self, j: int) -> str:
-        """Return the unit of a joint's values."""
-        return self.robot.angle_unit if self.joints[j].turns else self.robot.length_unit
-
-    def beyond(self, q: Exact) -> list[str]:
-        """Return the names of the limits that a configuration is beyond: compared exactly."""
-        found = []
-        for joint, value in zip(self.joints, q, strict=True):
-            low, high = joint.limits or (value, value)
-            found += [f"{joint.name}.lower"] * (value < low)
-            found += [f"{joint.name}.upper"] * (value > high)
-        return found
+        low, high = self.robot.joints[j].limits or (-ends, ends)
+        return self._value(j, low), self._value(j, high)
 
 
-@dataclass(frozen=True)
-class Claim:
+# --- reading: the claim ---------------------------------------------------------------------------
+
+
+class Claim(NamedTuple):
     """What a certificate claims: a set with the corners of its cells, or two configurations."""
 
     kind: str
     margin: Fraction
-    loops: tuple[tuple[Exact, ...], ...]
-    corners: tuple[tuple[Exact, ...], ...]
-    joints: tuple[str, ...]
+    loops: list[list[Exact]]
+    corners: list[Sequence[Exact]]
+    joints: list[str]
 
 
-def configuration(value: Any, where: str, arm: "Robot | Arm") -> Exact:
-    """Return one value for each joint; angles are no larger than the page says."""
-    robot = arm if isinstance(arm, Robot) else arm.robot
-    row = list_of(value, where, len(robot.joints), len(robot.joints))
-    q = tuple(decimal(x, where) for x in row)
-    largest = LARGEST_ANGLE[robot.angle_unit]
-    fits = all(abs(x) <= largest for x, j in zip(q, robot.joints, strict=True) if j.turns)
-    demand(fits, f"{where}: an angle of more than {largest} {robot.angle_unit}")
-    return q
+def configuration(robot: Robot) -> Reader:
+    """Return the reader of one value for each joint; angles are not too large."""
+    count, largest = len(robot.joints), LARGEST_ANGLE[robot.angle_unit]
+
+    def read(value: Any, where: str) -> Exact:
+        q = tuple(items(decimal, count, count)(value, where))
+        fits = all(abs(x) <= largest for x, j in zip(q, robot.joints, strict=True) if j.turns)
+        demand(fits, f"{where}: an angle of more than {largest} {robot.angle_unit}")
+        return q
+
+    return read
 
 
 def read_claim(value: Any, robot: Robot) -> Claim:
     """Read a claim and the cells of its set."""
-    sets = ("box", "path", "polygon", "no path")
-    kind = one_of(value.get("set") if type(value) is dict else None, "claim: set", sets)
-    more = {"polygon": ("triangles",), "no path": ("joints",)}.get(kind, ())
-    table = table_of(value, "claim", ("set", "margin", "points", *more))
-    margin = decimal(table["margin"], "claim: margin")
-    demand(margin >= 0, "claim: margin: a length of 0 or more is wanted")
-    most, count = 1 if kind in ("box", "no path") else MAX_CELLS, 0
-    loops = list[tuple[Exact, ...]]()
-    for i, item in enumerate(list_of(table["points"], "claim: points", 1, most)):
-        where = f"claim: points[{i}]"
-        row = list_of(item, where, 3 if kind == "polygon" else 2, 2 if most == 1 else MAX_CELLS)
-        count += len(row)
-        demand(count <= MAX_CELLS, f"{where}: more than {MAX_CELLS} configurations in all")
-        loops.append(tuple(configuration(q, f"{where}[{k}]", robot) for k, q in enumerate(row)))
-    joints, corners = tuple[str, ...](), list[tuple[Exact, ...]]()
+    kinds, joint_kinds = one_of("box", "path", "polygon", "no path"), one_of("moves", "held", "any")
+    kind = kinds(value.get("set") if type(value) is dict else None, "claim.set")
+    most, least = (2, 2) if kind in ("box", "no path") else (MAX_CELLS, 2 + (kind == "polygon"))
+    loops = items(items(configuration(robot), least, most), 1, 1 if most == 2 else MAX_CELLS)
+    spec = {"set": kinds, "margin": not_negative(decimal), "points": loops}
+    count = len(robot.joints)
+    spec |= {"triangles": items(anything, 1, MAX_CELLS)} if kind == "polygon" else {}
+    spec |= {"joints": items(joint_kinds, count, count)} if kind == "no path" else {}
+    found = table(spec)(value, "claim")
+    loops, joints = found["points"], found.get("joints", [])
+    points, corners = [q for loop in loops for q in loop], list[Sequence[Exact]]()
+    demand(len(points) <= MAX_CELLS, f"claim.points: more than {MAX_CELLS} configurations")
     if kind == "box":
-        low, high = loops[0]
-        rises = all(a <= b for a, b in zip(low, high, strict=True))
-        demand(rises, "claim: points[0]: the first corner is the low one in every joint")
-        corners = [loops[0]]
+        rises = all(a <= b for a, b in zip(*points, strict=True))
+        demand(rises, "claim.points: the first corner is the low one in every joint")
+        corners = [points]
     elif kind == "path":
         corners = [pair for loop in loops for pair in itertools.pairwise(loop)]
     elif kind == "polygon":
-        corners = _triangles(loops, table["triangles"])
+        flat = _flat(loops)
+        numbered = items(items(index(len(points)), 3, 3), 1, MAX_CELLS)
+        rows = numbered(found["triangles"], "claim.triangles")
+        places = [place for loop in flat for place in loop]
+        demand_filled(flat, [[places[k] for k in row] for row in rows], "claim.triangles")
+        corners = [tuple(points[k] for k in row) for row in rows]
     else:
-        joints = _read_moving(table["joints"], *loops[0])
-    return Claim(kind, margin, tuple(loops), tuple(corners), joints)
+        demand("moves" in joints, "claim.joints: at least one joint moves")
+        held = [a == b for a, b, each in zip(*points, joints, strict=True) if each == "held"]
+        demand(all(held), "claim.joints: start and goal differ in a joint that is held")
+    return Claim(kind, found["margin"], loops, corners, joints)
 
 
-def _read_moving(value: Any, start: Exact, goal: Exact) -> tuple[str, ...]:
-    where, kinds = "claim: joints", ("moves", "held", "any")
-    joints = tuple(one_of(x, where, kinds) for x in list_of(value, where, len(start), len(start)))
-    demand("moves" in joints, f"{where}: at least one joint moves")
-    agree = all(a == b for a, b, kind in zip(start, goal, joints, strict=True) if kind == "held")
-    demand(agree, f"{where}: start and goal differ in a joint that is held")
-    return joints
-
-
-def _triangles(loops: Sequence[Sequence[Exact]], value: Any) -> list[tuple[Exact, ...]]:
-    """Return the triangles of a polygon after a look at how they fill its loops."""
-    points = [q for loop in loops for q in loop]
-    columns = [*zip(*points, strict=True)]
+def _flat(loops: Sequence[Sequence[Exact]]) -> list[list[tuple[int, int]]]:
+    """Return the loops of a polygon in the two joints that vary, in whole numbers."""
+    columns = [*zip(*(q for loop in loops for q in loop), strict=True)]
     plane = [j for j, column in enumerate(columns) if min(column) != max(column)]
-    demand(len(plane) == 2, f"claim: points: {len(plane)} joints of a polygon vary, not two")
-    scales = [math.lcm(*(x.denominator for x in columns[j])) for j in plane]
-    i, k = plane
-    places = [(int(q[i] * scales[0]), int(q[k] * scales[1])) for q in points]
-    rows = list_of(value, "claim: triangles", 1, MAX_CELLS)
-    numbers = [
-        [
-            index_of(k, f"claim: triangles[{i}]", len(points))
-            for k in list_of(row, f"claim: triangles[{i}]", 3, 3)
-        ]
-        for i, row in enumerate(rows)
-    ]
-    flat, first = list[Any](), 0
-    for loop in loops:
-        flat.append(places[first : first + len(loop)])
-        first += len(loop)
-    demand_filled(flat, [[places[k] for k in row] for row in numbers], "claim: triangles")
-    return [tuple(points[k] for k in row) for row in numbers]
+    demand(len(plane) == 2, f"claim.points: {len(plane)} joints of a polygon vary, not two")
+    (i, m), (k, n) = ((j, math.lcm(*(x.denominator for x in columns[j]))) for j in plane)
+    return [[(int(q[i] * m), int(q[k] * n)) for q in loop] for loop in loops]
 
 
 # --- the answer -----------------------------------------------------------------------------------
@@ -1734,53 +1664,20 @@ class Answer(NamedTuple):
     said: str
 
 
-def normal_form(text: str, parts: Any) -> Table:
+def normal_form(written: str, parts: Any) -> Table:
     """Return the normal form of a robot's text; for those who write certificates."""
     Work.done = 0
-    return read_robot(text, parts).form
+    return read_robot(written, parts).form
 
 
 def canonical(form: Table) -> str:
-    """Return the text whose hash stands in a certificate."""
+    """Return the text of a normal form, whose hash stands in a certificate."""
     return json.dumps(form, indent=1, sort_keys=True) + "\n"
 
 
-def digest(text: str) -> str:
+def digest(written: str) -> str:
     """Return the SHA-256 of a text."""
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def check(data: str | bytes, robot: str | None = None, file: str = "the file given") -> Answer:
-    """Return what a certificate shows, and what is to be said of it.
-
-    data : the certificate.
-    robot : the text of a robot file that the certificate must be about; `file` is its name.
-
-    Raises `Refused`, a `ValueError` that names what is wrong and where, if it shows nothing.
-    """
-    content, found = read(data)
-    pinned = "not compared with any robot file"
-    if robot is not None:
-        other = robot == content["robot"] or read_robot(robot, content["parts"]) == found
-        demand(other, f"the robot is not that of {shown(file)}")
-        pinned = f"compared with {shown(file)}: the same"
-    claim = read_claim(content["claim"], found)
-    arm = Arm(found, claim.margin)
-    heading = f"robot {found.name!a}, sha256 of its normal form {content['sha256']}, {pinned}"
-    if "witness" in content:
-        demand(claim.kind != "no path", "witness: of a claim of no path there is none")
-        refuted = refute(arm, claim, content["witness"])
-        return Answer(True, "\n".join([heading, f"refuted: {refuted}", *described(arm, claim)]))
-    if claim.kind == "no path":
-        prove_no_path(arm, claim, content["proof"])
-    else:
-        for q in (q for cell in claim.corners for q in cell):
-            beyond = arm.beyond(q)
-            demand(not beyond, f"claim: beyond the limit {shown(next(iter(beyond), ''))}")
-        shape = Box if claim.kind == "box" else lambda *ends: Simplex(ends)
-        cells = [shape(*map(arm.placed, cell)) for cell in claim.corners]
-        prove_safe(arm, cells, content["proof"])
-    return Answer(False, "\n".join([heading, *proved(arm, claim), *described(arm, claim)]))
+    return hashlib.sha256(written.encode()).hexdigest()
 
 
 def read(data: str | bytes) -> tuple[Table, Robot]:
@@ -1788,112 +1685,110 @@ def read(data: str | bytes) -> tuple[Table, Robot]:
     Work.done = 0
     cos_sin.cache_clear()  # so that the work does not depend on what was checked before
     content = read_json(data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data)
-    demand(type(content) is dict, "the file is no JSON object")
-    schema = content.get("schema")
+    schema = content.get("schema") if type(content) is dict else None
     demand(schema == SCHEMA, f"schema: {SCHEMA} is wanted; older formats are not read any more")
-    shows = "witness" if "witness" in content else "proof"
-    table = table_of(content, "the file", ("schema", "robot", "parts", "sha256", "claim", shows))
-    text = text_of(table["robot"], "robot", MAX_ROBOT)
-    demand(not re.search("[\ud800-\udfff]", text), "robot: half a character")
-    found = read_robot(text, table["parts"])
-    sha256 = digest(canonical(found.form))
-    demand(table["sha256"] == sha256, f"sha256: the hash of the normal form is {sha256}")
-    return table, found
+    spec = {"robot": text(MAX_ROBOT), "parts": anything, "sha256": text(64), "claim": anything}
+    spec |= {"schema": anything, "witness" if "witness" in content else "proof": anything}
+    content = table(spec)(content, "the file")
+    robot = read_robot(content["robot"], content["parts"])
+    sha256 = digest(canonical(robot.form))
+    demand(content["sha256"] == sha256, f"sha256: the hash of the normal form is {sha256}")
+    return content, robot
 
 
-def proved(arm: Arm, claim: Claim) -> Iterator[str]:
-    """Say what was proved, and what was not claimed."""
-    robot, spare = arm.robot, f"{exactly(claim.margin)} {arm.robot.length_unit}"
-    limited = ", ".join(ascii(joint.name) for joint in robot.joints if joint.limits)
-    if claim.kind == "no path":
-        [[start, goal]] = claim.loops
-        yield f"proved: no path from {_point(start)} to {_point(goal)} keeps all of the following"
-        for j, (joint, kind) in enumerate(zip(robot.joints, claim.joints, strict=True)):
-            told = {
-                "held": f"is held at {exactly(start[j])} {arm.unit_of(j)}",
-                "any": "takes any value, even jumps",
-            }
-            if kind in told:
-                yield f"  {joint.name!a} {told[kind]}"
-    elif not arm.keeps and not limited:
-        yield "proved: nothing was to be kept; the robot has no boundary in use and no limit"
+def check(data: str | bytes, pin: str | None = None, file: str = "the file given") -> Answer:
+    """Return what a certificate shows, and what is to be said of it.
+
+    data : the certificate.
+    pin : the text of a robot file that the certificate must be about; `file` is its name.
+
+    Raises `Refused`, a `ValueError` that names what is wrong and where, if it shows nothing.
+    """
+    content, robot = read(data)
+    compared = "not compared with any robot file"
+    if pin is not None:
+        same = pin == content["robot"] or read_robot(pin, content["parts"]).form == robot.form
+        demand(same, f"the robot is not that of {shown(file)}")
+        compared = f"compared with {shown(file)}: the same"
+    claim = read_claim(content["claim"], robot)
+    arm = Arm(robot, claim.margin)
+    if "witness" in content:
+        demand(claim.kind != "no path", "witness: a claim of no path has a proof")
+        said = f"refuted: {refute(arm, claim, content['witness'])}"
+    elif claim.kind == "no path":
+        prove_no_path(arm, claim, content["proof"])
+        said = "proved: no path within the limits keeps all of the following"
     else:
-        yield "proved: at every configuration of the set all of this is kept"
-    if arm.keeps:
-        yield f"with {spare} to spare:"
-    for boundary in robot.boundaries:
-        yield f"  {boundary.name!a}: {_in_words(robot, boundary)}"
-    if limited:
-        yield f"  the limits of {limited}"
+        for q in (q for cell in claim.corners for q in cell):  # the limits of cells, exactly
+            beyond = robot.beyond(q)
+            demand(not beyond, f"claim: beyond the limit {shown(next(iter(beyond), ''))}")
+        placed = ([*map(arm.placed, corners)] for corners in claim.corners)
+        box = claim.kind == "box"
+        prove_safe(arm, [Box(*c) if box else Simplex(tuple(c)) for c in placed], content["proof"])
+        said = "proved: at every configuration of the set all of the following is kept"
+    heading = f"robot {robot.name!a}, sha256 of its normal form {content['sha256']}, {compared}"
+    lines = [heading, said, *kept(robot, claim), *described(robot, claim)]
+    return Answer("witness" in content, "\n".join(lines))
+
+
+def kept(robot: Robot, claim: Claim) -> Iterator[str]:
+    """Say what was to be kept, and what was not."""
+    margin = f"{exactly(claim.margin)} {robot.length_unit}"
+    yield f"all limits of joints, and with {margin} to spare each of"
+    shapes = {"polygon": "outline", "point": "point", "capsule": "capsule", "disc": "disc"}
+    for name, things, normal, distance in robot.boundaries:
+        ends = []
+        for thing in things:
+            radius = f", radius {exactly(thing.radius)} {robot.length_unit}" if thing.radius else ""
+            frame = f"frame {robot.frames[thing.frame]!a}"
+            ends.append(f"{shapes[thing.kind]} {thing.name!a} of {frame}{radius}")
+        least = f"at least {exactly(distance)} {robot.length_unit}"
+        if normal is not None:
+            vector = ", ".join(map(exactly, normal))
+            told = f"{least} of height along ({vector}), in all its places"
+        else:
+            told = f"{least} apart" if distance else "not overlapping"
+            told += "" if things[0].kind == "point" else ", seen along the common axis"
+        yield f"  {name!a}: {' and '.join(ends)}: {told}"
     if robot.left_out:
         yield f"not claimed: {', '.join(robot.left_out)}"
-
-
-def _in_words(robot: Robot, boundary: Boundary) -> str:
-    """Say what a boundary asks for."""
-    unit_name, kinds = (
-        robot.length_unit,
-        {"polygon": "outline", "capsule": "capsule", "disc": "disc"},
-    )
-    names = []
-    for thing in boundary.things:
-        kind = kinds.get(thing.kind, "point")
-        radius = f" with radius {exactly(thing.radius)} {unit_name}" if thing.radius else ""
-        names.append(f"{kind} {thing.name!a} of frame {robot.frames[thing.frame]!a}{radius}")
-    if boundary.normal is not None:
-        normal, least = ", ".join(map(exactly, boundary.normal)), exactly(boundary.distance)
-        whole = "" if boundary.things[0].kind == "point" else "all of "
-        place = f"{whole}{names[0]} has normal . place >= {least} {unit_name}"
-        return f"{place} for the normal ({normal}) scaled to length 1"
-    both = " and ".join(names)
-    seen = "" if boundary.things[0].kind == "point" else ", seen along the joints' common axis"
-    if boundary.distance:
-        return f"{both} are at least {exactly(boundary.distance)} {unit_name} apart{seen}"
-    return f"{both} do not overlap{seen}"
 
 
 MOST_SHOWN = 50
 """Configurations that are printed; of larger sets their hash is, and what else names them."""
 
 
-def described(arm: Arm, claim: Claim) -> Iterator[str]:
+def described(robot: Robot, claim: Claim) -> Iterator[str]:
     """Describe the set by the numbers that were verified."""
-    if claim.kind == "no path":
-        return
-    names = ", ".join(f"{joint.name!a} in {arm.unit_of(j)}" for j, joint in enumerate(arm.joints))
     points = [q for loop in claim.loops for q in loop]
-    kinds = _kinds(claim)
-    counted = f"{len(points)} configurations"
+    printed = [" ".join(f"({', '.join(map(exactly, q))})" for q in loop) for loop in claim.loops]
+    names = ", ".join(
+        f"{joint.name!a} / {robot.unit_of(j)}" for j, joint in enumerate(robot.joints)
+    )
+    kinds = {"box": ["from low to high"], "no path": ["from start to goal"]}
+    told = kinds.get(claim.kind, ["path"] * len(printed))
     if claim.kind == "polygon":
-        counted += f", {kinds.count('outline')} outline(s), {kinds.count('hole')} hole(s)"
-    yield f"set: {claim.kind} of {counted}, in ({names})"
-    printed = [" ".join(map(_point, loop)) for loop in claim.loops]
+        areas = map(doubled_area, _flat(claim.loops))
+        told = ["outline" if area > 0 else "hole" for area in areas]
+    counted = [f"{told.count(kind)} {kind}(s)" for kind in ("outline", "hole") if kind in told]
+    yield f"set: {', '.join([claim.kind, *counted])}; {len(points)} configurations ({names})"
     if len(points) <= MOST_SHOWN:
-        yield from (f"  {kind}: {said}" for kind, said in zip(kinds, printed, strict=True))
+        yield from (f"  {kind}: {said}" for kind, said in zip(told, printed, strict=True))
     else:
-        for j, (joint, column) in enumerate(
-            zip(arm.joints, zip(*points, strict=True), strict=True)
-        ):
-            low, high = exactly(min(column)), exactly(max(column))
-            yield f"  {joint.name!a} is between {low} and {high} {arm.unit_of(j)} in the set"
-        for loop in claim.loops if claim.kind == "path" else ():
-            yield f"  path from {_point(loop[0])} to {_point(loop[-1])}"
-        yield f"  sha256 of the text of all configurations: {digest(chr(10).join(printed))}"
-    for joint, j in ((joint, j) for j, joint in enumerate(arm.joints) if joint.turns):
-        if _longest(claim, j) >= (
-            360 if arm.robot.angle_unit == "deg" else 2 * PI + Fraction(1, 10**70)
-        ):
+        yield f"  their text is in the certificate; its sha256 is {digest(chr(10).join(printed))}"
+        for said in printed if claim.kind == "path" else ():
+            yield f"  path from {said[: said.index(')') + 1]} to {said[said.rindex('(') :]}"
+    for j, (joint, column) in enumerate(zip(robot.joints, zip(*points, strict=True), strict=True)):
+        unit_name, kind = robot.unit_of(j), claim.joints[j] if claim.joints else ""
+        moved = {"any": "takes any value, even jumps", "held": "is held", "moves": "moves"}
+        if kind:
+            yield f"  {joint.name!a} {moved[kind]}"
+        elif len(points) > MOST_SHOWN:
+            ends = f"{exactly(min(column))} and {exactly(max(column))} {unit_name}"
+            yield f"  {joint.name!a} is between {ends} in the set"
+        turn = 360 if robot.angle_unit == "deg" else 2 * PI + Fraction(1, 10**70)
+        if joint.turns and not kind and _longest(claim, j) >= turn:
             yield f"  {joint.name!a} takes every angle"
-
-
-def _kinds(claim: Claim) -> list[str]:
-    """Return what each list of configurations is: a hole of a polygon goes round clockwise."""
-    if claim.kind != "polygon":
-        return [{"box": "corners", "path": "path"}[claim.kind]] * len(claim.loops)
-    points = [q for loop in claim.loops for q in loop]
-    x, y = (j for j, column in enumerate(zip(*points, strict=True)) if min(column) != max(column))
-    areas = [doubled_area([(q[x], q[y]) for q in loop]) for loop in claim.loops]
-    return ["outline" if area > 0 else "hole" for area in areas]
 
 
 def _longest(claim: Claim, j: int) -> Fraction:
@@ -1906,16 +1801,13 @@ def _longest(claim: Claim, j: int) -> Fraction:
     return longest
 
 
-def _point(q: Exact) -> str:
-    return f"({', '.join(map(exactly, q))})"
-
-
 # --- the command ----------------------------------------------------------------------------------
 
 PROVED, REFUTED, NO_ANSWER = 0, 3, 2
 """Exit statuses; not 1, which a Python that cannot run this file ends with."""
 
-USAGE = """usage: python -I check.py FILE [--robot ARM.toml] [--print robot]
+USAGE = """usage: python -I check.py FILE [--robot ARM.toml]
+       python -I check.py FILE --print robot
 
 Check a certificate of qbound: 0 proved, 3 refuted, 2 anything else.
 
@@ -1927,55 +1819,41 @@ Check a certificate of qbound: 0 proved, 3 refuted, 2 anything else.
 
 def main(arguments: Sequence[str]) -> int:
     """Do what the arguments ask for, print the answer, and return the exit status."""
+    status, said = NO_ANSWER, "not proved: a fault of the checker itself"
     try:
-        status, said = _answer(arguments)
-        return status if _printed(said) else NO_ANSWER
-    except KeyboardInterrupt:
-        _printed("not proved: interrupted")
-        return 130
-
-
-def _answer(arguments: Sequence[str]) -> tuple[int, str]:
-    """Return the exit status and what is to be printed, whatever a file sets off."""
-    reason = "a fault of the checker itself"
-    try:
-        return _asked([*arguments])
+        status, said = _answer([*arguments])
     except Refused as error:
-        reason = str(error)
+        said = f"not proved: {error}"
     except MemoryError:
-        reason = "the file needs more memory than there is"
+        said = "not proved: the file needs more memory than there is"
+    except KeyboardInterrupt:
+        status, said = 130, "not proved: interrupted"
     except Exception:  # whatever a hostile file sets off
         pass
-    return NO_ANSWER, f"not proved: {reason}"
+    return status if _printed(said) else NO_ANSWER
 
 
-def _asked(arguments: list[str]) -> tuple[int, str]:
+def _answer(arguments: list[str]) -> tuple[int, str]:
+    """Return the exit status and what is to be printed."""
     told = {"--help": USAGE, "--version": f"check.py of {SCHEMA}"}
     if len(arguments) == 1 and arguments[0] in told:
         return PROVED, told[arguments[0]]
-    options = dict[str, str]()
-    for name in ("--robot", "--print"):
-        if name in arguments[:-1]:
-            at = arguments.index(name)
-            options[name], arguments[at : at + 2] = arguments[at + 1], []
-    demand(len(arguments) == 1 and arguments[0] and arguments[0][:2] != "--", USAGE)
-    demand("" not in options.values(), f"an empty argument; {USAGE}")
+    known = 1 <= len(arguments) <= 3 and len(arguments) != 2 and "" not in arguments
+    demand(known and arguments[0][:2] != "--", USAGE)
+    option = arguments[1] if len(arguments) > 1 else ""
+    demand(option in ("", "--robot") or arguments[1:] == ["--print", "robot"], USAGE)
     data = _read_file(arguments[0])
-    if "--print" in options:
-        demand(options == {"--print": "robot"}, USAGE)
+    if option == "--print":
         return PROVED, canonical(read(data)[1].form)[:-1]
-    robot = _decoded(options["--robot"]) if "--robot" in options else None
-    answer = check(data, robot, options.get("--robot", ""))
+    if not option:
+        answer = check(data)
+    else:
+        try:  # as qbound reads a robot file: without a mark, with one sort of line end
+            pin = _read_file(arguments[2]).decode("utf-8-sig")
+        except UnicodeDecodeError:
+            raise Refused(f"{shown(arguments[2])}: not UTF-8 text") from None
+        answer = check(data, pin.replace("\r\n", "\n").replace("\r", "\n"), arguments[2])
     return (REFUTED if answer.refuted else PROVED), answer.said
-
-
-def _decoded(file: str) -> str:
-    """Return the text of a robot file as qbound reads it: no mark, one sort of line end."""
-    try:
-        text = _read_file(file).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise Refused(f"{shown(file)}: not UTF-8 text") from None
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _read_file(file: str) -> bytes:
