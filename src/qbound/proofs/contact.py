@@ -141,7 +141,7 @@ def _deepest(near: Floats, far: Floats) -> Floats:
         turn = np.array([[np.cos(k), -np.sin(k)], [np.sin(k), np.cos(k)]])  # other ways each round
         tries = best[:, None] + size[:, None, None] * 0.75**k * (ways @ turn)
         best = tries[rows, (_depth(one, tries) + _depth(other, tries)).argmax(axis=1)]
-    return best
+    return np.asarray(best)
 
 
 def _depth(hull: Floats, places: Floats) -> Floats:

@@ -205,18 +205,7 @@ class Arm:
         """
         corners = kind.corners[rows] if corners is None else corners
         steps, count = self.steps[kind.near : kind.far], len(cells)
-        at, turned = np.zeros((count, 3)), np.broadcast_to(np.eye(3), (count, 3, 3))
-        axes, pivots = list[Floats](), list[Floats]()
-        for step in steps:
-            at = at + turned @ step.origin
-            axes.append((turned @ (step.mount @ step.axis))[:, None])
-            pivots.append(at[:, None])
-            value = step.factor * cells.centres[:, step.joint]
-            if step.turns:
-                turned = turned @ step.turned(value)
-            else:
-                at, turned = at + value[:, None] * axes[-1][:, 0], turned @ step.mount
-        r = at[:, None] + corners @ turned.transpose(0, 2, 1)
+        r, axes, pivots = self._posed(kind, corners, cells.centres)
         reach = [abs(step.factor) * cells.reach[:, step.joint, None] for step in steps]
         spread, moves = np.zeros(r.shape[:2]), dict[int, Floats]()
         for k, step in reversed([*enumerate(steps)]):
@@ -242,6 +231,34 @@ class Arm:
                 table[..., kind.along] = 0
         normals = None if kind.normals is None else kind.normals[rows]
         return Seen(places, r, slopes, bend, spread, kind.distances[rows], normals, kind.along)
+
+    def still(self, kind: Kind, rows: Ints, q: Floats) -> Seen:
+        """Return what the near frame sees at configurations, shape (T, n), without any motion."""
+        r, *_ = self._posed(kind, kind.corners[rows], q)
+        places = kind.places[rows]
+        if kind.along is not None:
+            places[..., kind.along] = r[..., kind.along] = 0
+        normals = None if kind.normals is None else kind.normals[rows]
+        none = np.zeros(r.shape[:2])
+        slopes = np.zeros((len(q), 0, *r.shape[1:]))
+        return Seen(places, r, slopes, none, none, kind.distances[rows], normals, kind.along)
+
+    def _posed(
+        self, kind: Kind, corners: Floats, q: Floats
+    ) -> tuple[Floats, list[Floats], list[Floats]]:
+        """Return places of the far frame, and the axes of all steps: directions and pivots."""
+        at, turned = np.zeros((len(q), 3)), np.broadcast_to(np.eye(3), (len(q), 3, 3))
+        axes, pivots = list[Floats](), list[Floats]()
+        for step in self.steps[kind.near : kind.far]:
+            at = at + turned @ step.origin
+            axes.append((turned @ (step.mount @ step.axis))[:, None])
+            pivots.append(at[:, None])
+            value = step.factor * q[:, step.joint]
+            if step.turns:
+                turned = turned @ step.turned(value)
+            else:
+                at, turned = at + value[:, None] * axes[-1][:, 0], turned @ step.mount
+        return at[:, None] + corners @ turned.transpose(0, 2, 1), axes, pivots
 
     def _bend(
         self, kind: Kind, chain: Floats, moves: Mapping[int, Floats], reach: Sequence[Floats]

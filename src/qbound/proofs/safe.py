@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.proofs.inequality import Arm, Floats, Ints, Kind, Seen
-from qbound.proofs.subdivide import Boxes, Cells, Judged, Search, Tell, silent, subdivide
+from qbound.proofs.subdivide import Cells, Judged, Search, Tell, silent, subdivide
 
 FIRST_LOOK = 1000
 """Cells opened for one thing once another is violated: enough to see what else is."""
@@ -108,7 +108,7 @@ class _Judge:
         cuts, margins = np.full(count, -1), np.zeros(count)
         places = cells.centres.copy()
         for kind, positions, rows in self.arm.by_kind(things):
-            step = batch(kind, cells)
+            step = batch(kind, cells.centres.shape[1])
             for k in range(0, len(positions), step):
                 at, own = positions[k : k + step], rows[k : k + step]
                 found = self._judged(kind, own, cells[at])
@@ -170,20 +170,19 @@ class _Judge:
         return np.where(wide.any(axis=1), scores.argmax(axis=1), -1)
 
 
-def batch(kind: Kind, cells: Cells) -> int:
+def batch(kind: Kind, joints: int) -> int:
     """Return how many cells are judged at a time."""
     m, c = kind.places.shape[1], kind.corners.shape[1]
-    numbers = (m * c + 2 * (m + c)) * (m + c + 3) + 10 * c * cells.centres.shape[1]
+    numbers = (m * c + 2 * (m + c)) * (m + c + 3) + 10 * c * joints
     return max(1, int(BLOCK // numbers))
 
 
 def margins_at(arm: Arm, kind: Kind, rows: Ints, q: Floats) -> Floats:
     """Return by how much things are kept at configurations, shape (T, n): below 0 they are not."""
     found = np.zeros(len(q))
-    points = Boxes(q, np.zeros_like(q))
-    step = batch(kind, points)
+    step = batch(kind, q.shape[1])
     for k in range(0, len(q), step):
-        seen = arm.seen(kind, rows[k : k + step], points[k : k + step])
+        seen = arm.still(kind, rows[k : k + step], q[k : k + step])
         found[k : k + step] = seen.margins(seen.directions())
     return found
 

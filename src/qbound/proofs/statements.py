@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -112,6 +113,16 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     points = [[list(point) for point in loop] for loop in loops]
     triangles = [list(triangle) for triangle in triangulate(places)]
     return {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
+
+
+def corners_of(statement: Statement) -> list[list[Point]]:
+    """Return the corners of a statement's cells as they are written; of a box its two ends."""
+    points = [point for loop in statement["points"] for point in loop]
+    if statement["set"] == "polygon":
+        return [[points[k] for k in triangle] for triangle in statement["triangles"]]
+    if statement["set"] == "path":
+        return [[a, b] for loop in statement["points"] for a, b in pairwise(loop)]
+    return [points]
 
 
 def opened(points: Sequence[Sequence[str]]) -> list[list[str]]:

@@ -6,6 +6,7 @@ halved. Cells have joint values in rad or length. Doubles: the checkers decide.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -199,6 +200,28 @@ class Forest:
             if number in self.children:
                 todo += [self.children[number] + 1, self.children[number]]
         return "".join(written)
+
+
+def leaves(corners: Floats, trees: Sequence[str]) -> Floats:
+    """Return the simplices on which a proof rests, shape (M, k, n).
+
+    Parameters
+    ----------
+    corners : ndarray, shape (N, k, n)
+        Of the cells, in any unit.
+    trees : sequence of str
+        One for each cell.
+    """
+    found = []
+    for cell, tree in zip(corners, trees, strict=True):
+        todo = [cell]
+        for token in re.findall("[a-z]|[0-9]*[.]", tree):
+            top = todo.pop()
+            if token.endswith("."):
+                found.append(top)
+            else:
+                todo += [*simplices.halved(top[None], np.array([ord(token) - ord("a")]))[::-1]]
+    return np.array(found)
 
 
 # --- the driver -----------------------------------------------------------------------------------

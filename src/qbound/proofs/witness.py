@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from qbound.proofs.contact import Contacts, contacts
 from qbound.proofs.inequality import Arm, Floats
 from qbound.proofs.safe import margins
-from qbound.proofs.statements import Point, Statement, decimal
+from qbound.proofs.statements import Statement, corners_of, decimal
 from qbound.proofs.subdivide import Boxes, Simplices
 
 Evidence = dict[str, Any]
@@ -42,16 +41,6 @@ class Witness:
     boundary: str
     q: tuple[float, ...]
     depth: float
-
-
-def corners_of(statement: Statement) -> list[list[Point]]:
-    """Return the corners of a statement's cells as they are written; of a box its two ends."""
-    points = [point for loop in statement["points"] for point in loop]
-    if statement["set"] == "polygon":
-        return [[points[k] for k in triangle] for triangle in statement["triangles"]]
-    if statement["set"] == "path":
-        return [[a, b] for loop in statement["points"] for a, b in pairwise(loop)]
-    return [points]
 
 
 def cells_of(arm: Arm, statement: Statement) -> Boxes | Simplices:
