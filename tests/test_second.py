@@ -11,14 +11,15 @@ import pytest
 
 pytest.importorskip("flint")
 
-from flint import arb, ctx, fmpq
+from flint import acb_mat, arb, ctx, fmpq
 
 from qbound.model.robotfile import packaged_robots, parse_robot, robot_text
 from qbound.proofs.second import proof, verify
-from qbound.proofs.second.cells import Box, Simplex, numbered
+from qbound import check
+from qbound.proofs.second.cells import HOLDS, Box, Simplex, cells_of, numbered
 from qbound.proofs.second.normal import canonical, is_convex, normal_form, text
-from qbound.proofs.second.reading import Claim, Work, exact
-from qbound.proofs.second.waves import Form, halved
+from qbound.proofs.second.reading import Claim, Work, exact, read_claim
+from qbound.proofs.second.waves import Form, halved, held
 from qbound.proofs.verdict import Verdict
 
 
@@ -120,37 +121,162 @@ def scene_of(table, joints=()):
     return proof.Scene(form, claim, Work())
 
 
+def seen_in(robot, table, q):
+    """The first point of the pair, seen from the frame of the second one; (N, 3)."""
+    frames = robot.frames(q)
+    far, near = table["boundary"][0]["points"]
+    observer = next(p["frame"] for p in table["point"] if p["name"] == near)
+    return np.broadcast_to(frames.position(observer, far, observer), (len(q), 3))
+
+
 @pytest.mark.parametrize("seed", range(60))
 def test_a_place_along_a_direction_is_within_the_bound(seed):
     rng = np.random.default_rng(seed)
     table = random_robot(rng)
-    robot, cell = parse_robot(table), random_cell(rng, table)
+    cell, u = random_cell(rng, table), rng.integers(-9, 10, 3).tolist()
     with ctx.workprec(192):
         scene = scene_of(table)
         keep = scene.keep[0]
         terms = halved(scene.seen(keep, keep.far.corners), ())
-        u = rng.integers(-9, 10, 3).tolist()
-        from flint import acb_mat
-
         rows = {key: acb_mat([u]) * value for key, value in terms.items()}
         form = Form(scene.chain, scene.between(keep), rows, scene.reach)
-        linear, errors = form.over(cell)
-        least = min(
-            float((v[0] - e[0]).lower())
-            for v, e in zip(linear.tolist(), errors.tolist(), strict=True)
-        )
-        most = max(
-            float((v[0] + e[0]).upper())
-            for v, e in zip(linear.tolist(), errors.tolist(), strict=True)
-        )
+        linear, errors = (matrix.tolist() for matrix in form.over(cell))
+    ends = [(float(v[0]), float(e[0])) for v, e in zip(linear, errors, strict=True)]
     q = in_units(table, places_in(rng, cell, 300))
-    frames = robot.frames(q)
-    far, near = (frames.names.index(x) for x in table["boundary"][0]["points"])
-    names = table["boundary"][0]["points"]
-    where = {p["name"]: p["frame"] for p in table["point"]}
-    seen = np.broadcast_to(
-        frames.position(where[names[1]], names[0], where[names[1]]), (len(q), 3)
-    )
-    found = seen @ np.array(u)
-    assert least <= found.min() + 1e-12
-    assert found.max() - 1e-12 <= most
+    found = seen_in(parse_robot(table), table, q) @ np.array(u)
+    assert min(v - e for v, e in ends) <= found.min() + 1e-12
+    assert found.max() - 1e-12 <= max(v + e for v, e in ends)
+
+
+@pytest.mark.parametrize("seed", range(120))
+def test_a_distance_is_within_the_bound_whatever_the_other_joints_are(seed):
+    rng = np.random.default_rng(seed)
+    table = random_robot(rng)
+    cell, count = random_cell(rng, table), len(table["joint"])
+    kinds = rng.choice(["moves", "held", "any"], count).tolist()
+    weights = {"keep": seed % 2, "near": [] if seed % 2 else ["1"], "far": ["1"]}
+    with ctx.workprec(192):
+        scene = scene_of(table)
+        moving = [j for j in range(count) if kinds[j] == "moves"]
+        fixed = [j for j in range(count) if kinds[j] == "held"]
+        start = [(cell.low if isinstance(cell, Box) else cell.corners[0])[j] for j in fixed]
+        values = dict(zip(fixed, scene.chain.scaled(fixed, start), strict=True))
+        bound = float(proof._Place(scene, weights, moving, values).distance(cell)[0])
+    places = places_in(rng, cell, 400)
+    for j, joint in enumerate(table["joint"]):
+        low, high = joint.get("limits", (-180, 180))
+        if kinds[j] == "any":
+            places[:, j] = rng.uniform(low, high, 400)
+    places[:, fixed] = [float(x) for x in start]
+    q, robot = in_units(table, places), parse_robot(table)
+    if seed % 2:
+        wall = robot.boundary("wall")
+        found = robot.frames(q).position("base", wall.point, "base") @ wall.normal
+    else:
+        near = next(p for p in table["point"] if p["name"] == table["boundary"][0]["points"][1])
+        found = np.linalg.norm(seen_in(robot, table, q) - near["at"], axis=1)
+    assert found.max() <= bound + 1e-12
+    if "any" not in kinds and isinstance(cell, Box) and cell.low == cell.high:
+        assert found.max() == pytest.approx(bound)
+
+
+# --- certificates ---------------------------------------------------------------------------------
+
+
+def sealed(robot, claim, parts=None, **more):
+    """A certificate as a table, its hash right."""
+    form = normal_form(robot, parts or {})
+    digest = hashlib.sha256(canonical(form).encode()).hexdigest()
+    start = {"schema": "qbound/certificate/6", "robot": robot, "parts": parts or {}}
+    return {**start, "sha256": digest, "claim": {"margin": "0", **claim}, **more}
+
+
+def scene_and_cells(robot, claim, parts):
+    data = sealed(robot, claim, parts)
+    form = normal_form(robot, parts or {})
+    read = read_claim(data["claim"], form)
+    return proof.Scene(form, read, Work()), data
+
+
+def candidates(scene, keep, cell):
+    """Directions that may separate two hulls at the middle of a cell, as three integers."""
+    middle = cell.middle
+    values = dict(enumerate(scene.chain.scaled(range(len(middle)), middle)))
+    [found] = held(scene.seen(keep, keep.far.corners), values).values()
+    far = [[float(x.real) for x in row] for row in zip(*found.tolist(), strict=True)]
+    near = [[float(x) for x in corner] for corner in keep.near.corners]
+    steps = [np.subtract(r, p) for r, p in product(far, near)]
+    if keep.along is not None:
+        for hull in (near, far):
+            for k in range(len(hull) if len(hull) > 1 else 0):
+                across = np.cross(np.subtract(hull[k], hull[k - 1]), np.eye(3)[keep.along])
+                steps += [across, -across]
+    for step in steps:
+        if keep.along is not None:
+            step[keep.along] = 0
+    steps = [s / abs(s).max() for s in steps if abs(s).max() > 1e-9]
+    gaps = [min(s @ r for r in far) - max(s @ p for p in near) for s in steps]
+    best = [steps[k] for k in np.argsort(np.divide(gaps, np.linalg.norm(steps, axis=1)))[::-1][:3]]
+    return [np.rint(1000 * s).astype(int).tolist() for s in best]
+
+
+def proved(robot, claim, parts=None, deepest=14):
+    """A certificate of a set; its search trusts the second checker's own bound."""
+    with ctx.workprec(192):
+        scene, data = scene_and_cells(robot, claim, parts)
+        directions, trees = [], []
+
+        def grown(kept, cell, depth):
+            rows = candidates(scene, kept.keep, cell) if kept.keep.near else [None]
+            for row in rows:
+                if row is not None:
+                    directions.append(row)
+                form, need = kept._form(str(len(directions) - 1) if row is not None else "")
+                cut = proof._is_above(form, need, cell)
+                if cut == HOLDS:
+                    return f"{len(directions) - 1}." if row is not None else "."
+                if row is not None:
+                    directions.pop()
+            assert cut is not None and depth < deepest, kept.keep.name
+            halves = [grown(kept, half, depth + 1) for half in cell.halves(cut)]
+            return "abcdefg"[cut] + "".join(halves)
+
+        for keep in scene.keep:
+            corners = len(keep.far.corners) + len(keep.near.corners if keep.near else "")
+            kept = proof._Kept(scene, keep, directions)
+            needed = keep.near is None or keep.gap != 0 or corners > 3
+            cells = cells_of(scene.claim) if needed else []
+            trees.append([grown(kept, cell, 0) for cell in cells])
+    return {**data, "proof": {"directions": directions, "trees": trees}}
+
+
+def no_path(robot, claim, places, parts=None, deepest=12):
+    """A certificate of no path: leaves are open where none of some places is violated."""
+    with ctx.workprec(192):
+        scene, data = scene_and_cells(robot, claim, parts)
+        separation = proof._Separation(scene, {"places": places, "tree": "."})
+
+        def grown(cell, depth):
+            for k, place in enumerate(separation.places):
+                if place.is_violated(cell) == HOLDS:
+                    return f"{k}."
+            if depth == deepest:
+                return "."
+            cut = separation.moving[depth % len(separation.moving)]
+            one, other = (grown(half, depth + 1) for half in cell.halves(cut))
+            return "." if one == other == "." else "abcdefg"[cut] + one + other
+
+        return {**data, "proof": {"places": places, "tree": grown(separation.whole, 0)}}
+
+
+def answers(data):
+    """What both checkers say of a certificate."""
+    text = json.dumps(data)
+    found = []
+    for checker in (verify, check.check):
+        try:
+            answer = checker(text)
+            found.append(answer if checker is verify else answer)
+        except ValueError as error:
+            found.append(str(error))
+    return found

@@ -349,6 +349,11 @@ class _Place:
 
     def is_violated(self, cell: Cell) -> int | None:
         """Tell whether the distance is too small all over a cell; else return the best cut."""
+        distance, worst = self.distance(cell)
+        return HOLDS if distance < self.need else worst.best_cut(cell)
+
+    def distance(self, cell: Cell) -> tuple[Any, Form]:
+        """Return at least the distance, or the height, all over a cell, and the least exact form."""
         forms, total = self._prepared
         worst = (-1.0, forms[0][0])
         for form, known in forms:
@@ -357,7 +362,7 @@ class _Place:
             total += highest([self._length(row, form.count, known) + e for row, [e] in rows])
             error = max(float(row[0]) for row in errors.tolist())
             worst = max(worst, (error, form), key=lambda pair: pair[0])
-        return HOLDS if total < self.need else worst[1].best_cut(cell)
+        return total, worst[1]
 
     def _length(self, values: Sequence[Any], count: int, known: bool) -> Any:
         """Return at least the length of a vector, or of its swing; of a half-space the height."""
@@ -422,18 +427,22 @@ class _Separation:
         rows = items(self.table["places"], "places", 0, MOST_POINTS)
         self.places = [_Place(scene, row, self.moving, values) for row in rows]
 
+    @property
+    def whole(self) -> Box:
+        """All values of the joints that move; of the others 0, on which nothing depends."""
+        half = fmpq(180) if self.scene.form["angle_unit"] == "deg" else fmpq(31416, 10**4)
+        ends = [
+            (limits or (-half, half)) if j in self.moving else (fmpq(0), fmpq(0))
+            for j, limits in enumerate(self.scene.limits)
+        ]
+        return Box(tuple(low for low, _ in ends), tuple(high for _, high in ends))
+
     def check(self) -> None:
         """Refuse unless the open leaves that hold the start lead to none that holds the goal."""
         scene = self.scene
-        half = fmpq(180) if scene.form["angle_unit"] == "deg" else fmpq(31416, 10**4)
-        ends = [scene.limits[j] or (-half, half) for j in self.moving]
-        still = [fmpq(0)] * len(scene.limits)
-        low, high = ([*still] for _ in range(2))
-        for j, (a, b) in zip(self.moving, ends, strict=True):
-            low[j], high[j] = a, b
         tree = text_of(self.table["tree"], "tree", MOST_BYTES)
         scene.work.add(LETTER_WORK * len(tree))
-        found = list(nodes(Box(tuple(low), tuple(high)), tree, scene.work))
+        found = list(nodes(self.whole, tree, scene.work))
         for node in found:
             if node.number:
                 demand(
@@ -443,9 +452,9 @@ class _Separation:
                 why = f"{shown(place.keep.name)} is not violated all over a leaf"
                 holds(node.cell, place.is_violated, DEEPEST_HERE, why)
         leaves = _Leaves(scene, self.moving, found)
-        demand(
-            not leaves.reached(self.start) & leaves.at(self.goal), "open leaves lead to the goal"
-        )
+        goal, reached = leaves.at(self.goal), leaves.reached(self.start)
+        demand(goal and reached, "the start or the goal is on no open leaf")
+        demand(not reached & goal, "open leaves lead from the start to the goal")
 
 
 class _Leaves:

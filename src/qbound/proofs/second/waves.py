@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property, reduce
+from itertools import combinations_with_replacement
 from typing import Any
 
 from flint import acb, acb_mat, arb, arb_mat, ctx
@@ -31,8 +32,8 @@ Terms = dict[Key, Any]
 GUARD = 40
 """Bits of the balls below which, beside the largest, an amplitude is rounding."""
 
-EVALUATION_WORK = 2
 CELL_WORK = 40
+"""Microseconds of a cell, however few the waves."""
 
 
 class Chain:
@@ -217,6 +218,7 @@ class Form:
         self.rest = sum((row[4] for row in rows if not row[4] > small), arb(0))
         rows = [row for row in rows if row[4] > small] or rows[:1]
         self.turns, self.slides = [row[0] for row in rows], [row[1] for row in rows]
+        self.turn_matrix = arb_mat(len(rows), len(joints), [k for row in self.turns for k in row])
         self.count = len(rows[0][2])
         real, imag = (
             [[z.real for z in row[2]] for row in rows],
@@ -234,16 +236,17 @@ class Form:
     def cost(self) -> int:
         """About the microseconds of one cell."""
         n, k = len(self.joints), len(self.turns)
-        return CELL_WORK + EVALUATION_WORK * (k * (n + 2) + (1 << n) * (n * n + 2 * self.count))
+        return CELL_WORK + k * (n + 2 + self.count) + (1 << n) * (n * n + 2 * self.count)
 
     def expanded(self, q: Sequence[Any]) -> Any:
         """Return values and derivatives at joint values, real parts before imaginary ones."""
-        real, imag = [], []
-        for turns, slide in zip(self.turns, self.slides, strict=True):
-            s, c = sum((k * x for k, x in zip(turns, q, strict=True) if k), arb(0)).sin_cos()
-            factor = arb(1) if slide is None else q[slide]
-            x, y = c * factor, s * factor
-            column_x, column_y = [x, *(-k * y for k in turns)], [y, *(k * x for k in turns)]
+        real, imag, zero = [], [], arb(0)
+        angles = (self.turn_matrix * arb_mat(len(q), 1, list(q))).entries()
+        for turns, slide, angle in zip(self.turns, self.slides, angles, strict=True):
+            s, c = angle.sin_cos()
+            x, y = (c, s) if slide is None else (c * q[slide], s * q[slide])
+            of_x, of_y = (zero, -y, y), (zero, x, -x)  # by the turns 0, 1 and -1
+            column_x, column_y = [x, *(of_x[k] for k in turns)], [y, *(of_y[k] for k in turns)]
             if slide is not None:
                 column_x[1 + slide] += c
                 column_y[1 + slide] += s
@@ -263,11 +266,14 @@ class Form:
         q = scaled(joints, [middle[j] for j in joints])
         linear = arb_mat([[1, *step] for step in steps]) * self.expanded(q)
         widths = [largest(column) for column in zip(*steps, strict=True)]
-        pairs = [[*(a * b / 2 for a in step for b in step), 1] for step in steps]
+        pairs = [[*(a * b for a, b in combinations_with_replacement(d, 2)), 1] for d in steps]
         return linear, arb_mat(pairs) * self._bending(q, widths)
 
     def _bending(self, q: Sequence[Any], widths: Sequence[Any]) -> Any:
-        """Return sum a_k Q_k w_k w_k^T, row by row, and then what does not depend on the step."""
+        """Return the sum of a_k Q_k w_k w_k^T / 2, and then what does not depend on the step.
+
+        The rows are pairs of joints, each pair once, and one more.
+        """
         if not any(s is not None for s in self.slides):
             return self._bending_of_turns
         scales, rest = [], [self.rest] * len(self.sizes[0])
@@ -289,11 +295,9 @@ class Form:
 
     @cached_property
     def _squares(self) -> Any:
-        n = len(self.joints)
-        squares = [[a * b for a in w for b in w] for w in self.turns]
-        return arb_mat(
-            n * n, len(self.turns), [x for row in zip(*squares, strict=True) for x in row]
-        )
+        pairs = list(combinations_with_replacement(range(len(self.joints)), 2))
+        halves = [arb(w[i] * w[j]) / (1 + (i == j)) for i, j in pairs for w in self.turns]
+        return arb_mat(len(pairs), len(self.turns), halves)
 
     def best_cut(self, cell: Cell) -> int | None:
         """Return the letter of the cut that lessens the error most; None where there is none."""
