@@ -169,12 +169,16 @@ def frames_of(robot: dict[str, Any]) -> list[str]:
     return [robot["joint"][0]["parent"], *(step[0] for step in steps(robot))]
 
 
-def place(robot: dict[str, Any], point: dict[str, Any], q: Array) -> Array:
-    """Return a point seen from the base, shape (N, 3)."""
+def place(
+    robot: dict[str, Any], point: dict[str, Any], q: Array, still: int = 0, at: Array | None = None
+) -> Array:
+    """Return a point seen from the base, shape (N, 3); the first steps may be held at a place."""
     radian = math.pi / 180 if robot["angle_unit"] == "deg" else 1.0
     r = np.tile(np.array(point["at"], dtype=float), (len(q), 1))
-    for _, j, turns, sense, row in reversed(steps(robot)[: frames_of(robot).index(point["frame"])]):
-        axis, x = unit(row["axis"]), sense * q[:, j]
+    count = frames_of(robot).index(point["frame"])
+    for k, (_, j, turns, sense, row) in reversed([*enumerate(steps(robot)[:count])]):
+        value = q[:, j] if at is None or k >= still else np.full(len(q), at[j])
+        axis, x = unit(row["axis"]), sense * value
         r = turned(r, axis, x * radian) if turns else r + x[:, None] * axis
         for fixed, angle in zip(np.eye(3), row.get("rpy", (0, 0, 0)), strict=True):
             r = turned(r, fixed, np.full(len(q), angle * radian))  # roll first, then pitch, then yaw
