@@ -269,14 +269,144 @@ def no_path(robot, claim, places, parts=None, deepest=12):
         return {**data, "proof": {"places": places, "tree": grown(separation.whole, 0)}}
 
 
-def answers(data):
-    """What both checkers say of a certificate."""
-    text = json.dumps(data)
-    found = []
+def both(data):
+    """The answer of both checkers, which agree; a refusal is None."""
+    text, found = json.dumps(data), []
     for checker in (verify, check.check):
         try:
             answer = checker(text)
-            found.append(answer if checker is verify else answer)
-        except ValueError as error:
-            found.append(str(error))
-    return found
+        except ValueError:
+            answer = None
+        found.append(answer if answer is None else answer == Verdict.REFUTED)
+        if checker is check.check and answer is not None:
+            found[-1] = answer.refuted
+    assert found[0] == found[1], found
+    return None if found[0] is None else ("refuted" if found[0] else "proved")
+
+
+BOXES = {
+    "minervabot-v2": [["-20", "-10"], ["10", "10"]],
+    "minervabot-v2-bodies": [["-10", "-10"], ["10", "10"]],
+    "pp-portal": [["120", "330"], ["180", "370"]],
+    "two-links-on-a-table": [["60", "-10"], ["70", "10"]],
+}
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_both_ways_lead_to_one_normal_form(name):
+    robot = robot_text(name)[0]
+    assert normal_form(robot, {}) == check.normal_form(robot, {})
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_both_ways_lead_to_one_normal_form_of_random_robots(seed):
+    robot = as_text(random_robot(np.random.default_rng(seed)))
+    assert normal_form(robot, {}) == check.normal_form(robot, {})
+
+
+HOLLOW = """schema = 1
+name = "hollow"
+length_unit = "m"
+angle_unit = "rad"
+home = { q = 0, s = 0 }
+tool = "p"
+collisions = "all"
+clearance = 1e-2
+
+[[joint]]
+name = "q"
+type = "revolute"
+parent = "b"
+frame = "f"
+origin = [0, 0, 0.50]
+axis = [0, -2, 0]
+
+[[joint]]
+name = "s"
+type = "prismatic"
+parent = "f"
+frame = "g"
+origin = [1e1, 0, 0]
+rpy = [1.5707963267948966, 0, 0]
+axis = [1, 0, 0]
+limits = [-1, 2.50]
+
+[[point]]
+name = "p"
+frame = "g"
+at = [1, 2, 3]
+
+[[body]]
+frame = "g"
+capsule = { from = [1, 0], to = [2, 0], radius = 0.5 }
+
+[[obstacle]]
+name = "hook"
+polygon = [[-5, -5], [5, -5], [5, 0], [0, 0], [0, 5], [-5, 5]]
+"""
+PARTS = {"hook": [[0, 1, 2, 3], [0, 3, 4, 5]]}
+
+
+def test_the_normal_form_names_convex_parts():
+    form = normal_form(HOLLOW, PARTS)
+    assert form == check.normal_form(HOLLOW, PARTS)
+    assert [row["name"] for row in form["keep"]] == ["g, hook"] * 2
+    assert form["hulls"][0]["corners"][1] == ["5", "0", "-5"]
+    assert (form["keep"][0]["gap"], form["keep"][0]["along"]) == ("0.51", 1)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {},
+        {"hook": [[0, 1, 2, 3, 4, 5]]},
+        {"hook": [[0, 1, 2, 3]]},
+        {"hook": [[0, 1, 2, 3], [0, 3, 4, 5], [0, 3, 4, 5]]},
+        {"hook": [[3, 2, 1, 0], [0, 3, 4, 5]]},
+        {"hook": [[0, 1, 2, 3], [0, 3, 4, True]]},
+        {"hook": [[0, 1, 2, 3], [0, 3, 4, 6]]},
+        {"hook": PARTS["hook"], "g": [[0, 1, 0]]},
+        [],
+    ],
+)
+def test_parts_fill_their_outline(parts):
+    with pytest.raises(ValueError, match="part"):
+        normal_form(HOLLOW, parts)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("1e-2", "1e-101"),
+        ("1e-2", "nan"),
+        ("1e-2", "inf"),
+        ("1e-2", "-0.1"),
+        ("1e-2", "0." + "1" * 200),
+        ("1e-2", "1e400"),
+        ("1.5707963267948966", "31"),
+        ("[1, 0], to", "[1, 0, 0.1], to"),
+        ("schema = 1", "schema = 1\na.b.c.d.e.f.g.h.i.j = 1"),
+        ("schema = 1", "schema = " + "[" * 5000),
+        ("schema = 1", "schema = 1\nschema = 1"),
+        ('"f"', '"b"'),
+    ],
+)
+def test_a_robot_file_is_read_strictly(old, new):
+    with pytest.raises(ValueError, match=r"^[ -~]*$"):
+        normal_form(HOLLOW.replace(old, new, 1), PARTS)
+
+
+@pytest.mark.parametrize("name", BOXES)
+@pytest.mark.parametrize("kind", ["box", "path", "polygon"])
+def test_a_set_is_proved(name, kind):
+    (a, b), (c, d) = BOXES[name]
+    points = {"box": [BOXES[name]], "path": [BOXES[name]], "polygon": [[[a, b], [c, b], [c, d]]]}
+    more = {"triangles": [[0, 1, 2]]} if kind == "polygon" else {}
+    data = proved(robot_text(name)[0], {"set": kind, "points": points[kind], **more})
+    assert verify(json.dumps(data)) == Verdict.PROVED
+    for k, rows in enumerate(data["proof"]["trees"]):
+        if rows:
+            wrong = copy.deepcopy(data)
+            wrong["proof"]["trees"][k][0] = "a" + wrong["proof"]["trees"][k][0]
+            with pytest.raises(ValueError, match="tree"):
+                verify(json.dumps(wrong))

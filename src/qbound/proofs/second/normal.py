@@ -7,12 +7,13 @@ import re
 import tomllib
 import warnings
 from collections.abc import Sequence
+from functools import cache
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from flint import fmpq
 
-from qbound.model.boundaries import BodyPair, HalfSpace
+from qbound.model.boundaries import BodyPair, HalfSpace, Pair
 from qbound.model.exact import read_exactly
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
@@ -67,14 +68,24 @@ def normal_form(text: Any, parts: Any, work: Work | None = None) -> Form:
     ValueError
         If the text is not a robot, or the parts do not fill their outlines.
     """
-    return _Maker(text_of(text, "robot", MOST_CHARACTERS), work or Work()).form(parts)
+    return _Robot(text_of(text, "robot", MOST_CHARACTERS)).form(parts, work or Work())
 
 
-class _Maker:
-    """A robot twice: as the library reads it, and the tables of its file with exact numbers."""
+class _Thing(NamedTuple):
+    """A point or a body: corners of a frame, and a radius."""
 
-    def __init__(self, text: str, work: Work) -> None:
-        self.work = work
+    name: str
+    frame: int
+    corners: list[Place]
+    radius: Any
+    along: int | None = None
+    """Of a body: the axis of its frame along which bodies are seen."""
+
+
+class _Robot:
+    """A robot as the library reads it, beside the tables of its file with exact numbers."""
+
+    def __init__(self, text: str) -> None:
         demand(not COSTLY.search(text), "robot: a key of many parts or a number of many digits")
         try:
             plain = tomllib.loads(text)
@@ -89,145 +100,118 @@ class _Maker:
         labels = [self.robot.base, *(name for j in self.robot.joints for name in j.labels)]
         self.frames = {label: k for k, label in enumerate(labels)}
         self.hulls: dict[str, int] = {}
-        rows = [*self.table.get("body", ()), *self.table.get("obstacle", ())]
-        bodies = [*self.robot.bodies, *self.robot.obstacles]
-        self.bodies = {
-            body.name: (body.frame, *self._core(row, body.frame))
-            for body, row in zip(bodies, rows, strict=True)
-        }
-        self.points = {
-            row["name"]: (row["frame"], [vector(row["at"])], number(row.get("radius", 0)))
-            for row in self.table["point"]
-        }
+        self.body, self.hull = cache(self._body), cache(self._hull)
 
-    def form(self, parts: Any) -> Form:
+    def form(self, parts: Any, work: Work) -> Form:
         """Return the normal form."""
-        robot = self.robot
-        steps = [step for j, row in enumerate(self.table["joint"]) for step in self._steps(j, row)]
+        robot, rows = self.robot, self.table["joint"]
+        limits = [texts(row["limits"]) if "limits" in row else None for row in rows]
         joints = [
-            {
-                "name": joint.name,
-                "turns": joint.turns,
-                "limits": None if joint.limits is None else texts(row["limits"]),
-            }
-            for joint, row in zip(robot.joints, self.table["joint"], strict=True)
+            {"name": joint.name, "turns": joint.turns, "limits": ends}
+            for joint, ends in zip(robot.joints, limits, strict=True)
         ]
-        keep = self._keep(self._parts(parts))
+        keep = self._keep(self._parts(parts, work))
         return {
             "name": robot.name,
             "length_unit": robot.length_unit,
             "angle_unit": robot.angle_unit,
             "joints": joints,
-            "steps": steps,
+            "steps": [step for j, row in enumerate(rows) for step in self._steps(j, row)],
             "hulls": [json.loads(text) for text in self.hulls],
             "keep": keep,
         }
 
     def _steps(self, j: int, row: Any) -> list[Form]:
         """Return the one step of a joint, or the two of a parallelogram."""
-        rpy = row.get("rpy", [0, 0, 0])
+        rpy, zero = row.get("rpy", [0, 0, 0]), ["0", "0", "0"]
         largest = LARGEST_ANGLE[self.robot.angle_unit]
         demand(all(abs(number(x)) <= largest for x in rpy), "robot: rpy: an angle is too large")
-        zero = ["0", "0", "0"]
         common = {"joint": j, "offset": "0", "axis": texts(row["axis"])}
-        first = {**common, "factor": "1", "origin": texts(row["origin"]), "rpy": texts(rpy)}
-        if "crank" not in row:
-            return [first]
-        return [first, {**common, "factor": "-1", "origin": texts(row["crank"]), "rpy": zero}]
+        steps = [{**common, "factor": "1", "origin": texts(row["origin"]), "rpy": texts(rpy)}]
+        if "crank" in row:
+            steps.append({**common, "factor": "-1", "origin": texts(row["crank"]), "rpy": zero})
+        return steps
 
-    # --- bodies -----------------------------------------------------------------------------------
-
-    def _core(self, row: Any, frame: str) -> tuple[list[Place], Any]:
-        """Return the corners of a body, and its radius."""
+    def _body(self, name: str) -> _Thing:
+        """Return a body; of a corner of two numbers the third one, across the plane, is 0."""
+        bodies = [*self.robot.bodies, *self.robot.obstacles]
+        rows = [*self.table.get("body", ()), *self.table.get("obstacle", ())]
+        k = next(k for k, body in enumerate(bodies) if body.name == name)
+        row, frame, radius = rows[k], bodies[k].frame, 0
         if "polygon" in row:
-            places, radius = row["polygon"], 0
+            places = row["polygon"]
         elif "capsule" in row:
-            places = [row["capsule"]["from"], row["capsule"]["to"]]
-            radius = row["capsule"]["radius"]
+            places, radius = (
+                [row["capsule"][end] for end in ("from", "to")],
+                row["capsule"]["radius"],
+            )
         else:
             places, radius = [row["disc"]["at"]], row["disc"]["radius"]
-        found = [vector(place) for place in places]
-        if any(len(place) == 2 for place in found):
-            flat = self._along(frame)
-            k = 1 if flat is None else flat
-            found = [p if len(p) == 3 else (*p[:k], fmpq(0), *p[k:]) for p in found]
-        return found, number(radius)
-
-    def _along(self, frame: str) -> int | None:
-        """Return which axis of a frame is along the common axis of the joints; None if none is."""
-        try:
-            return self.robot.plane.flat_coordinate(frame)
-        except ValueError:
-            return None
-
-    def _flat(self, name: str) -> list[Place]:
-        """Return the corners of a body as they are seen along the common axis."""
-        frame, corners, _ = self.bodies[name]
-        along = self._along(frame)
+        along = self.robot.plane.flat_coordinate(frame)
         if along is None:
             refuse(f"robot: the frame of {shown(name)} has no axis along that of the joints")
-        return [place[:along] + place[along + 1 :] for place in corners]
+        full = [p if len(p) == 3 else [*p[:along], 0, *p[along:]] for p in places]
+        corners = [tuple(map(number, place)) for place in full]
+        return _Thing(name, self.frames[frame], corners, number(radius), along)
 
-    def _parts(self, given: Any) -> dict[str, list[list[int]]]:
+    def _point(self, name: str) -> _Thing:
+        row = next(row for row in self.table["point"] if row["name"] == name)
+        place = tuple(map(number, row["at"]))
+        return _Thing(name, self.frames[row["frame"]], [place], number(row.get("radius", 0)))
+
+    def _parts(self, given: Any, work: Work) -> dict[str, list[list[int]]]:
         """Verify the convex parts of all bodies that are kept from others."""
-        pairs = [b for b in self.robot.used if isinstance(b, BodyPair)]
-        names = list(dict.fromkeys(name for pair in pairs for name in pair.bodies))
-        flat = {name: self._flat(name) for name in names}
-        whole = {name for name in names if len(flat[name]) < 3 or is_convex(flat[name])}
-        table_of(given, "parts", [name for name in names if name not in whole])
-        found = {}
-        for name in names:
-            size = len(flat[name])
-            if name in whole:
-                found[name] = [list(range(size))]
-                continue
-            where = f"parts of {shown(name)}"
+        pairs = [b.bodies for b in self.robot.used if isinstance(b, BodyPair)]
+        found, rest = dict[str, list[list[int]]](), dict[str, list[Place]]()
+        for name in dict.fromkeys(name for pair in pairs for name in pair):
+            body = self.body(name)
+            flat = [tuple(x for k, x in enumerate(p) if k != body.along) for p in body.corners]
+            if len(flat) < 3 or is_convex(flat):
+                found[name] = [list(range(len(flat)))]
+            else:
+                rest[name] = flat
+        table_of(given, "parts", list(rest))
+        for name, flat in rest.items():
+            where, size = f"parts of {shown(name)}", len(flat)
             found[name] = items(given[name], where, 1, 2 * size)
             for part in found[name]:
                 for k in items(part, where, 3, size):
                     index(k, where, size)
-            self.work.add(3 * sum(len(part) ** 2 for part in found[name]))
-            check_parts(flat[name], found[name], name)
+            work.add(3 * sum(len(part) ** 2 for part in found[name]))
+            check_parts(flat, found[name], name)
         return found
 
-    # --- what is kept -----------------------------------------------------------------------------
-
-    def _hull(self, frame: str, corners: Sequence[Place]) -> int:
-        """Return the index of a hull; a new one comes last."""
-        hull = {"frame": self.frames[frame], "corners": [texts(place) for place in corners]}
-        return self.hulls.setdefault(json.dumps(hull), len(self.hulls))
+    def _hull(self, kind: type, name: str, part: tuple[int, ...]) -> int:
+        """Return the index of a hull of a point or a body; a new one comes last."""
+        thing = self.body(name) if kind is BodyPair else self._point(name)
+        corners = [texts(thing.corners[k]) for k in part or range(len(thing.corners))]
+        text = json.dumps({"frame": thing.frame, "corners": corners})
+        return self.hulls.setdefault(text, len(self.hulls))
 
     def _keep(self, parts: dict[str, list[list[int]]]) -> list[Form]:
         written = {row["name"]: row for row in self.table.get("boundary", ())}
         made = {"clearance": self.table.get("clearance", 0)}
         found: list[Form] = []
         for boundary in self.robot.used:
-            name, row = boundary.name, written.get(boundary.name, made)
+            row, named = written.get(boundary.name, made), {"name": boundary.name}
             if isinstance(boundary, HalfSpace):
-                known, its = (self.bodies, "body") if "body" in row else (self.points, "point")
-                frame, corners, radius = known[row[its]]
-                gap = text(number(row["offset"]) + radius)
-                far = self._hull(frame, corners)
-                found.append({"name": name, "far": far, "gap": gap, "normal": texts(row["normal"])})
+                kind, name = (BodyPair, row["body"]) if "body" in row else (Pair, row["point"])
+                radius = (self.body(name) if kind is BodyPair else self._point(name)).radius
+                gap, far = text(number(row["offset"]) + radius), self.hull(kind, name, ())
+                found.append({**named, "far": far, "gap": gap, "normal": texts(row["normal"])})
                 continue
             if isinstance(boundary, BodyPair):
-                ends = [(name, *self.bodies[name], parts[name]) for name in boundary.bodies]
+                ends = [(self.body(name), parts[name]) for name in boundary.bodies]
             else:
-                ends = [(name, *self.points[name], [[0]]) for name in row["points"]]
-            gap = text(number(row.get("clearance", 0)) + sum(end[3] for end in ends))
-            one, other = sorted(ends, key=lambda end: self.frames[end[1]])
-            along = self._along(one[1]) if isinstance(boundary, BodyPair) else None
-            demand(
-                len(found) + len(one[4]) * len(other[4]) <= MOST_OTHERS,
-                f"robot: more than {MOST_OTHERS} things to keep",
-            )
-            for parts_of_both in product(one[4], other[4]):
-                near, far = (
-                    self._hull(end[1], [end[2][k] for k in part])
-                    for end, part in zip((one, other), parts_of_both, strict=True)
-                )
-                pair = {"name": name, "near": near, "far": far, "gap": gap}
-                found.append({**pair, "along": along})
+                ends = [(self._point(name), [[0]]) for name in row["points"]]
+            gap = text(number(row.get("clearance", 0)) + sum(end.radius for end, _ in ends))
+            (one, its), (other, others) = sorted(ends, key=lambda end: end[0].frame)
+            count = len(found) + len(its) * len(others)
+            demand(count <= MOST_OTHERS, f"robot: more than {MOST_OTHERS} things to keep")
+            for a, b in product(its, others):
+                near = self.hull(type(boundary), one.name, tuple(a))
+                far = self.hull(type(boundary), other.name, tuple(b))
+                found.append({**named, "near": near, "far": far, "gap": gap, "along": one.along})
         return found
 
 
@@ -240,11 +224,6 @@ def number(value: Any) -> Any:
     inside = exact == 0 or 1 / LARGEST <= abs(exact) <= LARGEST
     demand(inside, "robot: a number is larger than 1e100 or, though not 0, smaller than 1e-100")
     return exact
-
-
-def vector(values: Sequence[Any]) -> Place:
-    """Return the numbers of a place."""
-    return tuple(map(number, values))
 
 
 def texts(values: Sequence[Any]) -> list[str]:

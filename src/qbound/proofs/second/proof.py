@@ -353,7 +353,7 @@ class _Place:
         return HOLDS if distance < self.need else worst.best_cut(cell)
 
     def distance(self, cell: Cell) -> tuple[Any, Form]:
-        """Return at least the distance, or the height, all over a cell, and the least exact form."""
+        """Return at least the distance, or height, all over a cell, and the least exact form."""
         forms, total = self._prepared
         worst = (-1.0, forms[0][0])
         for form, known in forms:
