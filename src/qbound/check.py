@@ -87,15 +87,22 @@ class Work:
 # - Rotations do not lengthen vectors, so errors add up. At most 14 steps with 4 rotations each lie
 #   between two frames: a rotated vector of length 1 is off by less than 2^26 units.
 # - A place is a sum of at most 30 vectors of length 2 or less. So it is shorter than 2^6 and off by
-#   less than 2^32 units; so are its derivatives. In the inequality at most 14 derivatives occur,
-#   each times a step of less than 2^5, and in the bend at most 14^2, each times two such steps:
-#   this makes an error of less than 2^51 units.
+#   less than 2^32 units, its derivatives by less than 2^34. A joint that takes any value projects
+#   both on its axis, which adds as much again: with 14 of them 2^38.
+# - Configurations are rounded to units. Middles of edges are too, so after 120 cuts the parts of a
+#   cell may miss a part of it by 60 units.
+# - A joint moves by less than 2^9 within a leaf. In the inequality at most 14 derivatives occur,
+#   each times such a step, and in the bend two steps: an error of less than 2^60 units.
 #
-# Each inequality has to hold with `SLACK` to spare, which is 2^13 times more than this.
+# Each inequality has to hold with `SLACK` to spare, which is 16 times more. `>>` binds less than
+# `+` and `*`, so `x * y + z >> BITS` is the sum in units.
 
 BITS = 224
 ONE = 1 << BITS
 SLACK = 1 << 64
+
+NEARLY = 1 << BITS - 30
+"""About 1e-9: what angles in a file that were rounded may leave of what should be 0."""
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 """Eighty digits: the error is far below a unit."""
@@ -110,23 +117,27 @@ def in_units(x: Fraction) -> int:
     return (x.numerator << BITS) // x.denominator
 
 
+TURN = 2 * (PI.numerator << BITS) // PI.denominator
+"""A whole turn in units, rounded down."""
+
+
 @lru_cache(maxsize=1000)
 def cos_sin(angle: int) -> tuple[int, int]:
-    """Return the cosine and the sine of an angle in radians, at most 64 in size.
+    """Return the cosine and the sine of an angle in radians, at most 2^10 in size.
 
-    Taylor's series at x = angle / 128, at most 1/2, and then cos 2x = cos^2 x - sin^2 x and
-    sin 2x = 2 sin x cos x seven times. 48 terms leave out less than a unit and round by less than
-    50; a doubling multiplies the error by at most 2 sqrt(2) and adds 2, seven of them make less
-    than 2^17.
+    Whole turns are taken away, which makes an error of less than 2^8. Taylor's series at
+    x = angle / 128, less than 1/16, leaves out less than a unit after 48 terms and rounds by less
+    than 50. Then cos 2x = cos^2 x - sin^2 x and sin 2x = 2 sin x cos x seven times. The error of
+    the vector (cos, sin) doubles each time and grows by 2; so it is less than 2^15.
     """
     Work.add(150)
-    x, term, sums = angle >> 7, ONE, [0, 0, 0, 0]
+    x, term, sums = angle % TURN >> 7, ONE, [0, 0, 0, 0]
     for k in range(48):
         sums[k % 4] += term
         term = (term * x >> BITS) // (k + 1)
     c, s = sums[0] - sums[2], sums[1] - sums[3]
     for _ in range(7):
-        c, s = (c * c - s * s) >> BITS, 2 * c * s >> BITS
+        c, s = c * c - s * s >> BITS, 2 * c * s >> BITS
     return c, s
 
 
@@ -206,9 +217,8 @@ def rotation(axis: Vector, angle: int) -> Matrix:
 class Step:
     """A translation, a fixed rotation, and a turn about an axis or a slide along it.
 
-    Its value is factor * (value of its joint). `reach` is at least the distance that it
-    carries its frame from the one before, `sweep` at least the distance of a slide from the middle
-    of its range, whatever the joint's value within its limits.
+    Its value is factor * (value of its joint); factor is 1 or -1. `sweep` is at least the distance
+    of a slide from the middle of its range, within its limits.
     """
 
     joint: int
@@ -217,7 +227,6 @@ class Step:
     origin: Vector
     mount: Matrix
     axis: Vector
-    reach: int
     sweep: int
 
 
@@ -250,14 +259,14 @@ class Pose:
 class Motion(NamedTuple):
     """Where a place is and how it moves: seen from a frame that holds still, at a leaf's middle.
 
-    For every step d of the joints within the leaf the place is at most `bend` + `spread` away from
-    `place` + the sum of d_k `slopes[k]`, over the steps k of the arm.
+    For every offset d of the joints within the leaf the place is at most `bend` + `radius` away
+    from `place` + the sum of d_k `slopes[k]`, over the steps k of the arm.
     """
 
     place: Vector
     slopes: dict[int, Vector]
     bend: int
-    spread: int
+    radius: int
 
 
 def motion(
@@ -272,61 +281,42 @@ def motion(
     """Follow a corner of frame `far` inwards to frame `near`, one step of the arm at a time.
 
     widths : for each joint at least the distance from the middle of the leaf to any place of it.
-    free : for each joint whether it takes any value.
+    free : for each joint whether it takes any value; `pose` has the middle of a slide's range.
 
-    A step that turns by q moves a place r along axis x (r - pivot), one that slides along its axis.
-    A joint that takes any value: what is across its axis may point anywhere. So it becomes a part
-    of the spread, and what is along the axis goes on. Remainders stay as long as they are.
+    Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Then the place r
+    goes to E_1 ... E_n r, and this differs from r by the sum of L_1 ... L_{k-1} (E_k r - r), where
+    L_i is the rotation of E_i. The chord E_k r - r is the integral of the slope s_k, turned by up to
+    d_k, and the rotations before it turn it by up to the sum of their d_i. A vector that is turned
+    by an angle moves by at most this angle times its length. So what is not linear is at most
 
-    The second derivative. For steps i <= j, i nearer to the base, the mixed derivative of the place
-    by both is axis_i x (its derivative by j) if i turns, else 0. So it is at most rho_j if rho_j is
-    at least the derivative by j all over the leaf, and along a step d within the leaf
+        bend = sum over k of D_k |s_k| (sum over i < k that turn of D_i, and D_k / 2 if k turns).
 
-        |r''| <= K = sum over i that turn of D_i (D_i rho_i + 2 sum over j > i of D_j rho_j).
-
-    With what is linear taken away, half of K is left. The derivative by j is at most the length of
-    the chain beyond j; it is also at most that at the middle plus what it can grow, which the mixed
-    derivatives say.
+    A free step that turns: it keeps what is along its axis and turns what is across it anywhere. So
+    the place and each slope are replaced by their parts along the axis, and the length of what is
+    across is added to `radius`. A turn of the part along is bounded as before.
     """
     Work.add(25 * (far - near + 1))
-    r, slopes, spread, chain = pose.place(far, corner), dict[int, Vector](), 0, size(corner)
-    length = dict[int, int]()
+    r, slopes, radius = pose.place(far, corner), dict[int, Vector](), 0
     for k in reversed(range(near, far)):
         step, (axis, pivot) = steps[k], pose.axes[k]
-        length[k] = chain if step.turns else ONE
-        chain += step.reach
         if not free[step.joint]:
             slopes[k] = cross(axis, minus(r, pivot)) if step.turns else axis
-        elif step.turns:
-            foot = plus(pivot, times(dot(axis, minus(r, pivot)), axis))
-            spread += size(minus(r, foot))
-            for i, slope in slopes.items():
-                along = times(dot(axis, slope), axis)
-                spread += (size(minus(slope, along)) * width_of(steps[i], widths) >> BITS) + 1
-                slopes[i] = along
-            r = foot
+        elif not step.turns:
+            radius += step.sweep
         else:
-            spread += step.sweep
-    moving = sorted(slopes)
-    width = {k: width_of(steps[k], widths) for k in moving}
-    products = dict[int, int]()
-    for j in moving:
-        grown = sum(
-            width[k] * length[max(j, k)] for k in moving if steps[min(j, k)].turns and width[k]
-        )
-        rho = min(length[j], size(slopes[j]) + (grown >> BITS) + 1)
-        products[j] = (width[j] * rho >> BITS) + 1
-    bend, beyond = 0, 0
-    for i in reversed(moving):
-        if steps[i].turns and width[i]:
-            bend += width[i] * (products[i] + 2 * beyond)
-        beyond += products[i]
-    return Motion(r, slopes, (bend >> BITS + 1) + 1, spread)
-
-
-def width_of(step: Step, widths: Sequence[int]) -> int:
-    """Return how far the own value of a step can be from the middle: |factor| * width."""
-    return abs(step.factor) * widths[step.joint]
+            foot = plus(pivot, times(dot(axis, minus(r, pivot)), axis))
+            r, across = foot, size(minus(r, foot))
+            for i, slope in slopes.items():
+                slopes[i] = times(dot(axis, slope), axis)
+                across += (widths[steps[i].joint] * size(minus(slope, slopes[i])) >> BITS) + 1
+            radius += across
+    bend = turned = 0
+    for k in sorted(slopes):
+        width = widths[steps[k].joint]
+        own = width if steps[k].turns else 0
+        bend += (width * size(slopes[k]) >> BITS) * (2 * turned + own)
+        turned += own
+    return Motion(r, slopes, (bend >> BITS + 1) + len(slopes) + 1, radius)
 
 
 # --- the inequality -------------------------------------------------------------------------------
@@ -344,24 +334,19 @@ class Hull:
 class Keep:
     """Two hulls that stay more than `gap` apart, or one above a plane of the base.
 
-    near : of the frame that is not beyond that of `far`; None for a plane.
-    along : the coordinate of the near frame along which both are seen; None in space.
+    near : of the frame that is not beyond that of `far`; for a plane the origin of the base.
     asked : whether `gap`, which is rounded, stands for more than 0.
+    along : the coordinate of the near frame along which both are seen; None in space.
     normal : unit vector; normal . place is at least `gap`; None for two hulls.
     """
 
     name: str
-    near: Hull | None
+    near: Hull
     far: Hull
     gap: int
     asked: bool
     along: int | None
     normal: Vector | None
-
-    @property
-    def first(self) -> int:
-        """Return the frame from which the far hull is seen."""
-        return self.near.frame if self.near else 0
 
 
 def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cell") -> bool:
@@ -371,13 +356,14 @@ def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cel
     part less the bend. What is linear is least at a corner of the leaf, and least or largest over a
     hull at one of its corners.
     """
-    turned, at = pose.frames[keep.first]
-    w, held = image(turned, u), [False] * len(cell.widths)
-    nearest = max(dot(u, p) for p in keep.near.corners) if keep.near else 0
-    Work.add(3 * len(keep.near.corners) if keep.near else 0)
+    Work.add(3 * len(keep.near.corners))
+    matrix, at = pose.frames[keep.near.frame]
+    w, none_free = image(matrix, u), [False] * len(cell.widths)
+    nearest = max(dot(u, p) for p in keep.near.corners)
     for corner in keep.far.corners:
-        found = motion(steps, pose, keep.first, keep.far.frame, corner, cell.widths, held)
-        slopes = [0] * len(held)
+        frames = keep.near.frame, keep.far.frame
+        found = motion(steps, pose, *frames, corner, cell.widths, none_free)
+        slopes = [0] * len(none_free)
         for k, slope in found.slopes.items():
             slopes[steps[k].joint] += steps[k].factor * dot(w, slope)
         low = dot(w, minus(found.place, at)) + cell.least(slopes) - found.bend
@@ -386,8 +372,8 @@ def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cel
     return True
 
 
-class Place(NamedTuple):
-    """A place of each hull, and the radii of discs about them that lie within the hulls."""
+class Spots(NamedTuple):
+    """A place of each hull, and the sum of the radii of discs about them that lie in the hulls."""
 
     near: Vector
     far: Vector
@@ -398,30 +384,30 @@ def is_violated(
     steps: Sequence[Step],
     pose: Pose,
     keep: Keep,
-    place: Place,
+    spots: Spots,
     cell: "Cell",
     free: Sequence[bool],
 ) -> bool:
     """Prove that something is not kept anywhere on a leaf, whatever the free joints.
 
-    The distance of the two places is convex in the step, so it is largest at a corner of the leaf.
+    The distance of the two places is convex in the offset from the middle, so it is largest at a
+    corner of the leaf. Discs lie in planes that are parallel within `NEARLY` at joint values 0 and
+    at one height within `NEARLY`, so their radii are good to the product of both, times 2^6.
     """
-    turned, at = pose.frames[keep.first]
-    found = motion(steps, pose, keep.first, keep.far.frame, place.far, cell.widths, free)
-    start = minus(found.place, plus(at, image(turned, place.near)) if keep.near else at)
-    allowed = keep.gap + place.radii - found.bend - found.spread - SLACK
-    for corner in cell.corners({steps[k].joint for k in found.slopes}):
+    frames = keep.near.frame, keep.far.frame
+    found = motion(steps, pose, *frames, spots.far, cell.widths, free)
+    start = minus(found.place, pose.place(keep.near.frame, spots.near))
+    spare = NEARLY if spots.radii else SLACK
+    allowed = keep.gap + spots.radii - found.bend - found.radius - spare
+    for offset in cell.offsets({steps[k].joint for k in found.slopes}):
         Work.add(10 + 3 * len(found.slopes))
         w = start
         for k, slope in found.slopes.items():
-            w = plus(w, times(steps[k].factor * corner[steps[k].joint], slope))
-        if keep.normal is not None:
-            if dot(keep.normal, w) >= allowed:
-                return False
-            continue
+            w = plus(w, times(steps[k].factor * offset[steps[k].joint], slope))
         if keep.along is not None:
-            w = minus(w, times(dot(turned[keep.along], w), turned[keep.along]))
-        if size(w) >= allowed:
+            axis = pose.frames[keep.near.frame][0][keep.along]
+            w = minus(w, times(dot(axis, w), axis))
+        if (size(w) if keep.normal is None else dot(keep.normal, w)) >= allowed:
             return False
     return True
 
@@ -452,11 +438,11 @@ class Box:
         return tuple(b - a + 1 >> 1 for a, b in zip(self.low, self.high, strict=True))
 
     def least(self, slopes: Sequence[int]) -> int:
-        """Return the least sum of slope * step over all corners, rounded down."""
+        """Return the least sum of slope * offset over all corners, rounded down."""
         return -sum((abs(s) * d >> BITS) + 1 for s, d in zip(slopes, self.widths, strict=True))
 
-    def corners(self, joints: set[int]) -> Iterator[Point]:
-        """Yield the steps from the middle to the corners, as far as some joints tell them apart."""
+    def offsets(self, joints: set[int]) -> Iterator[Point]:
+        """Yield the way from the middle to each corner, as far as some joints tell them apart."""
         ends = [(d, -d) if d and j in joints else (0,) for j, d in enumerate(self.widths)]
         return itertools.product(*ends)
 
@@ -483,7 +469,7 @@ class Simplex:
 
     @cached_property
     def steps(self) -> list[Point]:
-        """Return the steps from the middle to the corners."""
+        """Return the way from the middle to each corner."""
         middle = self.middle
         return [tuple(x - m for x, m in zip(q, middle, strict=True)) for q in self.ends]
 
@@ -493,12 +479,12 @@ class Simplex:
         return tuple(max(map(abs, column)) for column in zip(*self.steps, strict=True))
 
     def least(self, slopes: Sequence[int]) -> int:
-        """Return the least sum of slope * step over all corners, rounded down."""
+        """Return the least sum of slope * offset over all corners, rounded down."""
         rises = (sum(s * d for s, d in zip(slopes, step, strict=True)) for step in self.steps)
         return min(rises) >> BITS
 
-    def corners(self, joints: set[int]) -> Iterator[Point]:
-        """Yield the steps from the middle to the corners."""
+    def offsets(self, joints: set[int]) -> Iterator[Point]:
+        """Yield the way from the middle to each corner."""
         del joints
         return iter(self.steps)
 
@@ -625,22 +611,23 @@ def refute(arm: "Arm", claim: "Claim", value: Any) -> str:
         beyond = type(name) is str and name in robot.beyond(q)
         demand(beyond, "witness.limit: no limit of that name is violated")
         return f"the limit {name!a} {said}"
-    keep, place = read_place(arm)(name, "witness.place")
+    demand(not robot.beyond(q), "witness.place: a limit is violated there: name that")
+    keep, spots = read_spots(arm)(name, "witness.place")
     point = Box(arm.placed(q), arm.placed(q))
-    pose, held = Pose(arm.steps, point.low), [False] * len(q)
-    violated = is_violated(arm.steps, pose, keep, place, point, held) or _cross(pose, keep)
+    pose, none_free = Pose(arm.steps, point.low), [False] * len(q)
+    violated = is_violated(arm.steps, pose, keep, spots, point, none_free) or _cross(pose, keep)
     demand(violated, f"witness: {shown(keep.name)} is not violated there")
     return f"{keep.name!a} {said}"
 
 
 def _cross(pose: Pose, keep: Keep) -> bool:
     """Tell whether two segments that keep no distance cross, seen along the common axis."""
-    if keep.asked or keep.along is None or not keep.near:
+    if keep.asked or keep.along is None:
         return False
     hulls = [[pose.place(hull.frame, p) for p in hull.corners] for hull in (keep.near, keep.far)]
     if [len(corners) for corners in hulls] != [2, 2]:
         return False
-    normal, ((a, b), (c, d)) = pose.frames[keep.first][0][keep.along], hulls
+    normal, ((a, b), (c, d)) = pose.frames[keep.near.frame][0][keep.along], hulls
 
     def side(p: Vector, q: Vector, r: Vector) -> int:
         return dot(normal, cross(minus(q, p), minus(r, p)))
@@ -649,12 +636,12 @@ def _cross(pose: Pose, keep: Keep) -> bool:
     return all(min(pair) < -SLACK and max(pair) > SLACK for pair in sides)
 
 
-def read_place(arm: "Arm") -> Reader:
+def read_spots(arm: "Arm") -> Reader:
     """Return the reader of a place of each hull of a thing to keep, and the discs about them."""
     radii = items(not_negative(decimal), 2, 2)
     spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything, "inside?": radii}
 
-    def read(value: Any, where: str) -> tuple[Keep, Place]:
+    def read(value: Any, where: str) -> tuple[Keep, Spots]:
         found = table(spec)(value, where)
         keep, row = arm.keeps[found["keep"]], arm.robot.keeps[found["keep"]]
         inside, sides = found.get("inside", [Fraction(0)] * 2), list[Vector]()
@@ -671,7 +658,7 @@ def read_place(arm: "Arm") -> Reader:
             demand(within, f"{where}.inside: the disc does not lie within the part")
             sides.append(arm.scaled(at))
         near, far = sides
-        return keep, Place(near, far, in_units(sum(inside) / arm.largest))
+        return keep, Spots(near, far, in_units(sum(inside) / arm.largest))
 
     return read
 
@@ -727,7 +714,7 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     A path that keeps everything lies in open leaves. They are closed and finitely many, so a path
     stays within a group of leaves that touch.
     """
-    places = items(read_place(arm), 0, MAX_CELLS)
+    places = items(read_spots(arm), 0, MAX_CELLS)
     found = table({"places": places, "tree": anything})(proof, "proof")
     places, letters = found["places"], tokens(found["tree"], "proof.tree")
     [[start, goal]], joints = claim.loops, range(len(claim.joints))
@@ -741,7 +728,7 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
         if free[j]:  # of a slide the middle is where its sweep is measured from
             low[j] = high[j] = low[j] + high[j] >> 1
         around_it = claim.joints[j] == "moves" and arm.robot.joints[j].limits is None
-        turns.append(arm.turn if around_it else 0)
+        turns.append(TURN if around_it else 0)
     leaves = Leaves([*itertools.product(*({-t, 0, t} for t in turns))])
     todo, above = [(Box(tuple(low), tuple(high)), 0)], list[int]()
     while todo:
@@ -760,9 +747,9 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
             todo += [(second, depth + 1), (first, depth + 1)]
         elif token != ".":
             demand(int(token[:-1]) < len(places), "proof.tree: a leaf names no place of the list")
-            keep, place = places[int(token[:-1])]
+            keep, spots = places[int(token[:-1])]
             pose = Pose(arm.steps, cell.middle)
-            violated = is_violated(arm.steps, pose, keep, place, cell, free)
+            violated = is_violated(arm.steps, pose, keep, spots, cell, free)
             demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
     ended(letters, "proof.tree")
     for k in above:
@@ -1385,10 +1372,6 @@ def mount_of(rpy: Exact, unit_name: str) -> Matrix:
     return turned
 
 
-NEARLY = 1 << BITS - 30
-"""About 1e-9: what angles in a file that were rounded may leave of what should be 0."""
-
-
 def _common_axis(
     joints: Sequence[Joint], steps: Sequence[StepRow], unit_name: str, frames: set[int]
 ) -> dict[int, int]:
@@ -1533,7 +1516,7 @@ class Arm:
     """A robot in units, and what it has to keep with the margin of a claim."""
 
     def __init__(self, robot: Robot, margin: Fraction) -> None:
-        self.robot, self.turn = robot, 2 * in_units(PI)
+        self.robot = robot
         gaps = [keep.gap + margin for keep in robot.keeps]
         lengths = [x for _, corners in robot.hulls for p in corners for x in p] + gaps
         lengths += [x for step in robot.steps for x in step.origin]
@@ -1544,7 +1527,7 @@ class Arm:
         self.keeps = [
             Keep(
                 row.name,
-                None if row.near is None else hulls[row.near],
+                Hull(0, ((0, 0, 0),)) if row.near is None else hulls[row.near],
                 hulls[row.far],
                 in_units(gap / self.largest),
                 gap != 0,
@@ -1554,16 +1537,27 @@ class Arm:
             for row, gap in zip(robot.keeps, gaps, strict=True)
         ]
         self.needs_proof = [
-            keep.near is None or keep.asked or len(keep.near.corners) + len(keep.far.corners) > 3
+            keep.normal or keep.asked or len(keep.near.corners) + len(keep.far.corners) > 3
             for keep in self.keeps
         ]
+
+        bodies = [keep for keep in self.keeps if keep.along is not None]
+        if bodies:  # their corners have one height along the common axis
+            pose = Pose(self.steps, [0] * len(robot.joints))
+            axis = pose.frames[bodies[0].near.frame][0][bodies[0].along or 0]
+            both = {hull for keep in bodies for hull in (keep.near, keep.far)}
+            places = [pose.place(hull.frame, p) for hull in both for p in hull.corners]
+            heights = [dot(axis, place) for place in places]
+            level = max(heights) - min(heights) <= NEARLY
+            demand(level, "robot: two bodies to keep apart are not at one height")
 
     def _step(self, row: StepRow) -> Step:
         turns, origin = self.robot.joints[row.joint].turns, self.scaled(row.origin)
         low, high = (0, 0) if turns else self.whole_range(row.joint)
-        reach, sweep = size(origin) + max(abs(low), abs(high)), high - low + 2 >> 1
         mount = mount_of(row.rpy, self.robot.angle_unit)
-        return Step(row.joint, turns, row.factor, origin, mount, unit(row.axis), reach, sweep)
+        return Step(
+            row.joint, turns, row.factor, origin, mount, unit(row.axis), high - low + 3 >> 1
+        )
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
         """Return three lengths in units."""
