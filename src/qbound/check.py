@@ -285,7 +285,7 @@ def motion(
 
     Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Then the place r
     goes to E_1 ... E_n r, and this differs from r by the sum of L_1 ... L_{k-1} (E_k r - r), where
-    L_i is the rotation of E_i. The chord E_k r - r is the integral of the slope s_k, turned by up to
+    L_i is the rotation of E_i. The chord E_k r - r is the integral of the slope s_k, turned by 0 to
     d_k, and the rotations before it turn it by up to the sum of their d_i. A vector that is turned
     by an angle moves by at most this angle times its length. So what is not linear is at most
 
@@ -1541,12 +1541,13 @@ class Arm:
             for keep in self.keeps
         ]
 
-        bodies = [keep for keep in self.keeps if keep.along is not None]
+        bodies = [row for row in robot.keeps if row.along is not None]
         if bodies:  # their corners have one height along the common axis
             pose = Pose(self.steps, [0] * len(robot.joints))
-            axis = pose.frames[bodies[0].near.frame][0][bodies[0].along or 0]
-            both = {hull for keep in bodies for hull in (keep.near, keep.far)}
-            places = [pose.place(hull.frame, p) for hull in both for p in hull.corners]
+            frame = robot.hulls[bodies[0].far][0]
+            axis = pose.frames[frame][0][robot.flat[frame]]
+            both = {number or 0 for row in bodies for number in (row.near, row.far)}
+            places = (pose.place(hulls[k].frame, p) for k in both for p in hulls[k].corners)
             heights = [dot(axis, place) for place in places]
             level = max(heights) - min(heights) <= NEARLY
             demand(level, "robot: two bodies to keep apart are not at one height")
