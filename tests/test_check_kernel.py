@@ -152,7 +152,7 @@ def test_a_place_is_as_near_to_its_linear_motion_as_the_bound_says(free_share):
             s.table, {"frame": names[far], "at": corner}, s.q, near, s.middle
         )
         error = np.linalg.norm(true - linear, axis=1).max()
-        bound = (found.bend + found.spread) / ONE * scale
+        bound = (found.bend + found.radius) / ONE * scale
         assert error <= bound + 1e-12 * scale, seed
         tightest = max(tightest, error / bound if bound > 1e-6 else 0)
     assert tightest > 0.9
@@ -186,7 +186,7 @@ def test_what_is_violated_on_a_leaf_is_violated_at_its_places():
         s = Sample(seed, 0.25 * (seed % 2), width=(0.02, 0.2, 0.5)[seed % 3])
         margins = brute_force.margins(s.table, {"margin": 0}, s.q)
         for row in places(s.draft):
-            keep, place = check.read_place(s.draft.arm)(row, "")
+            keep, place = check.read_spots(s.draft.arm)(row, "")
             if check.is_violated(s.draft.steps, s.pose, keep, place, s.cell, s.free):
                 found += 1
                 assert margins[keep.name].max() < 0, (seed, keep.name)

@@ -125,11 +125,12 @@ def proved(robot: str, claim: Json, parts: Json = None, depth: int = 14) -> Json
 
 def directions(keep: check.Keep, pose: check.Pose) -> Iterator[tuple[int, ...]]:
     """Yield what may separate two hulls: steps between corners, and normals of edges."""
-    if keep.near is None:
+    if keep.normal is not None:
         yield ()
         return
-    near = [seen(pose, keep.first, keep.near.frame, p) for p in keep.near.corners]
-    far = [seen(pose, keep.first, keep.far.frame, p) for p in keep.far.corners]
+    first = keep.near.frame
+    near = [seen(pose, first, first, p) for p in keep.near.corners]
+    far = [seen(pose, first, keep.far.frame, p) for p in keep.far.corners]
     steps = [[y - x for x, y in zip(p, r, strict=True)] for p in near for r in far]
     if keep.along is not None:
         i, k = (x for x in range(3) if x != keep.along)
@@ -224,7 +225,7 @@ def beyond(draft: Draft, where: Json) -> list[str]:
 def no_path(robot: str, claim: Json, parts: Json = None, depth: int = 9) -> Json:
     """Cover with leaves on which something is violated; leave the smallest ones open."""
     draft = Draft(robot, {"set": "no path"} | claim, parts)
-    read, arm, kinds = check.read_place(draft.arm), draft.arm, draft.claim.joints
+    read, arm, kinds = check.read_spots(draft.arm), draft.arm, draft.claim.joints
     start, free = arm.placed(draft.claim.loops[0][0]), [kind == "any" for kind in kinds]
     ends = [arm.whole_range(j) if k != "held" else (start[j],) * 2 for j, k in enumerate(kinds)]
     ends = [((a + b) >> 1,) * 2 if f else (a, b) for (a, b), f in zip(ends, free, strict=True)]
