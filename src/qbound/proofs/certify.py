@@ -117,8 +117,8 @@ class Subject:
         """The normal form."""
         return check.normal_form(self.text, self.parts)
 
-    def confirmed(self, claim: Statement, verdict: Verdict, **evidence: Any) -> Certificate:
-        """Write a file and hand it to the checker: what that does not confirm is not answered."""
+    def written(self, claim: Statement, **evidence: Any) -> str:
+        """Return the file of a claim with its proof or witness."""
         content = {
             "schema": check.SCHEMA,
             "claim": claim,
@@ -127,7 +127,11 @@ class Subject:
             "sha256": check.digest(check.canonical(self.form)),
             **evidence,
         }
-        text = json_text(content)
+        return json_text(content)
+
+    def confirmed(self, claim: Statement, verdict: Verdict, **evidence: Any) -> Certificate:
+        """Write a file and hand it to the checker: what that does not confirm is not answered."""
+        text = self.written(claim, **evidence)
         try:
             said = check.check(text).said
         except ValueError as error:
@@ -196,10 +200,15 @@ def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) ->
         return _refuted(subject, arm, statement, deepest(arm, statement, violated), searches)
     if any(search.left for search in found.values()):
         return Certificate(Verdict.UNDECIDED, "", _left(searches), searches)
-    trees = [[*found[k].trees] if k in found else [] for k in range(len(arm.names))]
-    proof = {"directions": directions, "trees": trees}
+    proof = proof_of(arm, found, directions)
     answer = subject.confirmed(statement, Verdict.PROVED, proof=proof)
     return replace(answer, searches=searches)
+
+
+def proof_of(arm: Arm, found: Mapping[int, Search], directions: list[list[int]]) -> dict[str, Any]:
+    """Return the proof of a set as a certificate writes it."""
+    trees = [[*found[k].trees] if k in found else [] for k in range(len(arm.names))]
+    return {"directions": directions, "trees": trees}
 
 
 def certify_region(

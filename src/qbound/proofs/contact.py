@@ -24,6 +24,9 @@ ROUNDS = 24
 WITHIN = 1 - 1e-7
 """Part of a disc that is written down: weights are rounded."""
 
+NEARLY = 2.0**-29
+"""Part of an arm's length by which discs have to show more, because planes may differ."""
+
 DECIMALS = 9
 """Of a weight."""
 
@@ -105,7 +108,8 @@ def violated(
     else:
         near = np.einsum("tm,tmx->tx", found.near, seen.places)
         largest = np.linalg.norm(moved - near[:, None], axis=2).max(axis=1)
-    allowed = seen.distances + found.inside.sum(axis=1)
+    discs = found.inside.sum(axis=1)
+    allowed = seen.distances + discs - np.where(discs > 0, NEARLY * arm.size, 0)
     return np.asarray(allowed - largest - seen.bend[:, 0] - seen.spread[:, 0])
 
 

@@ -118,11 +118,14 @@ class Arm:
                 number,
                 np.arange(len(kind.things)),
             )
-        sizes = [
-            np.linalg.norm(kind.corners, axis=2).max() + kind.distances.max(initial=0)
-            for kind in self.kinds
-        ]
-        self.size = max(sizes, default=0.0) + sum(step.reach for step in self.steps) or 1.0
+        self.size = sum(step.reach for step in self.steps) + max(
+            (
+                np.linalg.norm(np.concatenate([kind.corners, kind.places], axis=1), axis=2).max()
+                + np.abs(kind.distances).max()
+                for kind in self.kinds
+            ),
+            default=1.0,
+        )
         self.spare = SPARE * self.size
 
     def _step(self, row: Table) -> Step:
@@ -221,7 +224,7 @@ class Arm:
                 r = foot
             else:
                 spread = spread + step.sweep
-        bend = self._bend(kind, np.linalg.norm(corners, axis=2), moves, reach)
+        bend = _bend(r, steps, reach, moves)
         slopes = np.zeros((count, cells.centres.shape[1], *r.shape[1:]))
         for k, move in moves.items():
             slopes[:, steps[k].joint] += steps[k].factor * move
@@ -260,25 +263,17 @@ class Arm:
                 at, turned = at + value[:, None] * axes[-1][:, 0], turned @ step.mount
         return at[:, None] + corners @ turned.transpose(0, 2, 1), axes, pivots
 
-    def _bend(
-        self, kind: Kind, chain: Floats, moves: Mapping[int, Floats], reach: Sequence[Floats]
-    ) -> Floats:
-        """Return half of K for each corner, shape (T, c); `chain` has their distances."""
-        steps, lengths = self.steps[kind.near : kind.far], list[Floats]()
-        for step in reversed(steps):
-            lengths.insert(0, chain if step.turns else np.ones_like(chain))
-            chain = chain + step.reach
-        half, beyond, farther = (np.zeros_like(chain) for _ in range(3))
-        for j in sorted(moves, reverse=True):
-            grown = sum((reach[k] for k in moves if k < j and steps[k].turns), 0.0) * lengths[j]
-            if steps[j].turns:
-                grown = grown + reach[j] * lengths[j] + farther
-            size = np.linalg.norm(moves[j], axis=2)
-            moved = reach[j] * np.minimum(lengths[j], size + grown)
-            if steps[j].turns:
-                half = half + reach[j] * (moved / 2 + beyond)
-            beyond, farther = beyond + moved, farther + reach[j] * lengths[j]
-        return half
+
+def _bend(
+    r: Floats, steps: Sequence[Step], reach: Sequence[Floats], moves: Mapping[int, Floats]
+) -> Floats:
+    """Return the bend of each corner, shape (T, c), from its slopes by the steps."""
+    bend, turned = np.zeros(r.shape[:2]), np.zeros((len(r), 1))
+    for k in sorted(moves):
+        own = reach[k] * steps[k].turns
+        bend += reach[k] * np.linalg.norm(moves[k], axis=2) * (turned + own / 2)
+        turned = turned + own
+    return bend
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,7 +289,7 @@ class Seen:
     slopes : ndarray, shape (T, n, c, 3)
         Their derivatives by each joint.
     bend, spread : ndarray, shape (T, c)
-        Half of K; how far joints that take any value may move a corner.
+        The bend; how far joints that take any value may move a corner.
     distances : ndarray, shape (T,)
     normals : ndarray, shape (T, 3), or None
     along : int or None

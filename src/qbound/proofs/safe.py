@@ -21,7 +21,7 @@ FIRST_LOOK = 1000
 DIGITS = (1, 2, 3, 4, 6, 9)
 """Of the integers of a direction, in turn."""
 
-NARROW = 0.25
+NARROW = 0.1
 """Part of the longest motion along an edge below which an edge is not cut: cells stay compact."""
 
 VIOLATED = 100
