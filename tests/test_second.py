@@ -161,7 +161,7 @@ def test_a_distance_is_within_the_bound_whatever_the_other_joints_are(seed):
         fixed = [j for j in range(count) if kinds[j] == "held"]
         start = [(cell.low if isinstance(cell, Box) else cell.corners[0])[j] for j in fixed]
         values = dict(zip(fixed, scene.chain.scaled(fixed, start), strict=True))
-        bound = float(proof._Place(scene, weights, moving, values).distance(cell)[0])
+        bound = float(proof.Place(scene, weights, moving, values).distance(cell)[0])
     places = places_in(rng, cell, 400)
     for j, joint in enumerate(table["joint"]):
         low, high = joint.get("limits", (-180, 180))
@@ -227,12 +227,12 @@ def proved(robot, claim, parts=None, deepest=14):
         directions, trees = [], []
 
         def grown(kept, cell, depth):
-            rows = candidates(scene, kept.keep, cell) if kept.keep.near else [None]
+            rows = [None] if kept.keep.normal else candidates(scene, kept.keep, cell)
             for row in rows:
                 if row is not None:
                     directions.append(row)
-                form, need = kept._form(str(len(directions) - 1) if row is not None else "")
-                cut = proof._is_above(form, need, cell)
+                form, need = kept.form(str(len(directions) - 1) if row is not None else "")
+                cut = proof.is_above(form, need, cell)
                 if cut == HOLDS:
                     return f"{len(directions) - 1}." if row is not None else "."
                 if row is not None:
@@ -242,31 +242,11 @@ def proved(robot, claim, parts=None, deepest=14):
             return "abcdefg"[cut] + "".join(halves)
 
         for keep in scene.keep:
-            corners = len(keep.far.corners) + len(keep.near.corners if keep.near else "")
-            kept = proof._Kept(scene, keep, directions)
-            needed = keep.near is None or keep.gap != 0 or corners > 3
+            kept, corners = proof._Kept(scene, keep, directions), [*keep.near[1], *keep.far[1]]
+            needed = keep.normal or keep.gap != 0 or len(corners) > 3
             cells = cells_of(scene.claim) if needed else []
             trees.append([grown(kept, cell, 0) for cell in cells])
     return {**data, "proof": {"directions": directions, "trees": trees}}
-
-
-def no_path(robot, claim, places, parts=None, deepest=12):
-    """A certificate of no path: leaves are open where none of some places is violated."""
-    with ctx.workprec(192):
-        scene, data = scene_and_cells(robot, claim, parts)
-        separation = proof._Separation(scene, {"places": places, "tree": "."})
-
-        def grown(cell, depth):
-            for k, place in enumerate(separation.places):
-                if place.is_violated(cell) == HOLDS:
-                    return f"{k}."
-            if depth == deepest:
-                return "."
-            cut = separation.moving[depth % len(separation.moving)]
-            one, other = (grown(half, depth + 1) for half in cell.halves(cut))
-            return "." if one == other == "." else "abcdefg"[cut] + one + other
-
-        return {**data, "proof": {"places": places, "tree": grown(separation.whole, 0)}}
 
 
 def both(data):

@@ -59,6 +59,11 @@ class Box:
     high: Point
 
     @property
+    def corners(self) -> tuple[Point, ...]:
+        """The two corners that bound all others."""
+        return self.low, self.high
+
+    @property
     def middle(self) -> Point:
         """The middle."""
         return tuple((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))

@@ -100,7 +100,8 @@ class _Robot:
         labels = [self.robot.base, *(name for j in self.robot.joints for name in j.labels)]
         self.frames = {label: k for k, label in enumerate(labels)}
         self.hulls: dict[str, int] = {}
-        self.body, self.hull = cache(self._body), cache(self._hull)
+        self.body, self.point = cache(self._body), cache(self._point)
+        self.hull = cache(self._hull)
 
     def form(self, parts: Any, work: Work) -> Form:
         """Return the normal form."""
@@ -183,7 +184,7 @@ class _Robot:
 
     def _hull(self, kind: type, name: str, part: tuple[int, ...]) -> int:
         """Return the index of a hull of a point or a body; a new one comes last."""
-        thing = self.body(name) if kind is BodyPair else self._point(name)
+        thing = self.body(name) if kind is BodyPair else self.point(name)
         corners = [texts(thing.corners[k]) for k in part or range(len(thing.corners))]
         text = json.dumps({"frame": thing.frame, "corners": corners})
         return self.hulls.setdefault(text, len(self.hulls))
@@ -196,14 +197,14 @@ class _Robot:
             row, named = written.get(boundary.name, made), {"name": boundary.name}
             if isinstance(boundary, HalfSpace):
                 kind, name = (BodyPair, row["body"]) if "body" in row else (Pair, row["point"])
-                radius = (self.body(name) if kind is BodyPair else self._point(name)).radius
+                radius = (self.body(name) if kind is BodyPair else self.point(name)).radius
                 gap, far = text(number(row["offset"]) + radius), self.hull(kind, name, ())
                 found.append({**named, "far": far, "gap": gap, "normal": texts(row["normal"])})
                 continue
             if isinstance(boundary, BodyPair):
                 ends = [(self.body(name), parts[name]) for name in boundary.bodies]
             else:
-                ends = [(self._point(name), [[0]]) for name in row["points"]]
+                ends = [(self.point(name), [[0]]) for name in row["points"]]
             gap = text(number(row.get("clearance", 0)) + sum(end.radius for end, _ in ends))
             (one, its), (other, others) = sorted(ends, key=lambda end: end[0].frame)
             count = len(found) + len(its) * len(others)

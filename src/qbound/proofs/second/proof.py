@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from itertools import product
-from typing import Any
+from operator import mul
+from typing import Any, NamedTuple
 
 from flint import acb, acb_mat, arb, ctx, fmpq
 
@@ -31,7 +31,6 @@ from qbound.proofs.second.reading import (
     items,
     read_claim,
     read_json,
-    refuse,
     shown,
     table_of,
     text_of,
@@ -56,7 +55,7 @@ WITNESS_BITS = 640
 """Bits at a witness, which may violate something in the fortieth digit only."""
 
 MOST_DIRECTIONS = 20_000
-LARGEST_DIRECTION = 10**9
+
 DEEPEST_HERE = 14
 """Cuts of a leaf on top of each other, where the bound of this checker is the weaker one."""
 
@@ -93,44 +92,33 @@ def _verified(text: str | bytes) -> Verdict:
     sha256 = hashlib.sha256(canonical(form).encode()).hexdigest()
     demand(data["sha256"] == sha256, "the hash is not that of the robot's normal form")
     claim = read_claim(data["claim"], form)
-    scene = Scene(form, claim, work)
     if shows == "witness":
-        demand(claim.kind != NO_PATH, f"a witness does not refute a claim of {NO_PATH}")
         with ctx.workprec(WITNESS_BITS):
             _check_witness(Scene(form, claim, work), data["witness"])
         return Verdict.REFUTED
+    scene = Scene(form, claim, work)
     for point in claim.points:
         demand(not scene.beyond(point), "a configuration of the claim is beyond a limit")
-    if claim.kind == NO_PATH:
-        _Separation(scene, data["proof"]).check()
-    else:
-        _check_set(scene, data["proof"])
+    (_check_no_path if claim.kind == NO_PATH else _check_set)(scene, data["proof"])
     return Verdict.PROVED
 
 
-@dataclass(frozen=True, eq=False)
-class Hull:
+class Hull(NamedTuple):
     """Corners of a frame, exact."""
 
     frame: int
     corners: list[list[Any]]
 
 
-@dataclass(frozen=True, eq=False)
-class Keep:
-    """A thing to keep: two hulls and their distance with the margin, or one and a normal."""
+class Keep(NamedTuple):
+    """A thing to keep: two hulls, or a half-space's far one, and the distance with the margin."""
 
     name: str
-    near: Hull | None
+    near: Hull
     far: Hull
     gap: Any
     along: int | None
-    normal: list[Any] | None
-
-    @property
-    def origin(self) -> int:
-        """The frame from which the far hull is seen."""
-        return 0 if self.near is None else self.near.frame
+    normal: list[Any]
 
     @property
     def axes(self) -> list[int]:
@@ -144,35 +132,29 @@ class Scene:
     def __init__(self, form: NormalForm, claim: Claim, work: Work) -> None:
         self.form, self.claim, self.work = form, claim, work
         self.chain = Chain(form, work)
-        hulls = [
-            Hull(row["frame"], [[exact(x) for x in place] for place in row["corners"]])
-            for row in form["hulls"]
-        ]
+        hulls = [Hull(h["frame"], [[*map(exact, p)] for p in h["corners"]]) for h in form["hulls"]]
         self.keep = [
             Keep(
                 row["name"],
-                hulls[row["near"]] if "near" in row else None,
+                hulls[row["near"]] if "near" in row else Hull(0, []),
                 hulls[row["far"]],
                 exact(row["gap"]) + claim.margin,
                 row.get("along"),
-                [exact(x) for x in row["normal"]] if "normal" in row else None,
+                [*map(exact, row.get("normal", []))],
             )
             for row in form["keep"]
         ]
         self.limits: list[Any] = [
-            None if joint["limits"] is None else [exact(x) for x in joint["limits"]]
+            None if joint["limits"] is None else [*map(exact, joint["limits"])]
             for joint in form["joints"]
         ]
 
     @cached_property
     def reach(self) -> list[Any]:
         """The largest value of each joint in the claim and its limits; radians or lengths."""
-        points = [*self.claim.points]
-        columns = [
-            [*column, *(limits or ())]
-            for column, limits in zip(zip(*points, strict=True), self.limits, strict=True)
-        ]
-        return self.chain.scaled(range(len(columns)), [largest(column) for column in columns])
+        columns = zip(*self.claim.points, strict=True)
+        ends = [largest([*c, *(x or ())]) for c, x in zip(columns, self.limits, strict=True)]
+        return self.chain.scaled(range(len(ends)), ends)
 
     def beyond(self, point: Point) -> list[str]:
         """Return the names of all limits that a configuration violates."""
@@ -185,36 +167,39 @@ class Scene:
 
     def between(self, keep: Keep) -> list[int]:
         """Return the joints between the frames of both hulls."""
-        steps = self.form["steps"][keep.origin : keep.far.frame]
+        steps = self.form["steps"][keep.near.frame : keep.far.frame]
         return sorted({step["joint"] for step in steps})
 
     def seen(self, keep: Keep, corners: Sequence[Sequence[Any]]) -> Terms:
         """Return the waves of places of the far frame, as columns, seen from the near one."""
         places = acb_mat([[*place, 1] for place in corners]).transpose()
-        terms = self.chain.terms(keep.origin, keep.far.frame)
+        terms = self.chain.terms(keep.near.frame, keep.far.frame)
         self.work.add(len(terms) * (2 + len(corners)))
         return {key: pose * places for key, pose in terms.items()}
+
+
+def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+    return sum(map(mul, u, v))
 
 
 # --- a set ----------------------------------------------------------------------------------------
 
 
 def _check_set(scene: Scene, proof: Any) -> None:
+    """Refuse unless the first inequality holds on all leaves of all trees."""
     table = table_of(proof, "proof", ("directions", "trees"))
     directions = items(table["directions"], "directions", 0, MOST_DIRECTIONS)
     for row in directions:
-        for x in items(row, "directions", 3, 3):
-            good = type(x) is int and abs(x) < LARGEST_DIRECTION
-            demand(good, "directions: not an integer of at most nine digits")
-        demand(any(row), "directions: a direction of three zeros")
+        whole = all(type(x) is int for x in items(row, "directions", 3, 3))
+        demand(whole and any(row), "directions: not three integers, or all of them 0")
     cells = cells_of(scene.claim)
     trees = items(table["trees"], "trees", len(scene.keep), len(scene.keep))
     for keep, rows in zip(scene.keep, trees, strict=True):
-        few = keep.near is not None and len(keep.near.corners) + len(keep.far.corners) <= 3
-        count = 0 if few and keep.gap == 0 else len(cells)
-        items(rows, f"trees of {shown(keep.name)}", count, count)
+        few = not keep.normal and len(keep.near.corners) + len(keep.far.corners) <= 3
+        needed = [] if few and keep.gap == 0 else cells
         kept = _Kept(scene, keep, directions)
-        for cell, tree in zip(cells, rows, strict=False):
+        own = items(rows, f"trees of {shown(keep.name)}", len(needed), len(needed))
+        for cell, tree in zip(needed, own, strict=True):
             for node in nodes(cell, tree, scene.work):
                 if node.number is not None:
                     kept.check(node.cell, node.number)
@@ -232,28 +217,25 @@ class _Kept:
         if number not in self.known:
             if len(self.known) >= MOST_FORMS:
                 self.known.clear()
-            self.known[number] = self._form(number)
-        form, need = self.known[number]
+            self.known[number] = self.form(number)
         why = f"{shown(self.keep.name)} is not proved on every leaf"
-        holds(cell, partial(_is_above, form, need), DEEPEST_HERE, why)
+        holds(cell, partial(is_above, *self.known[number]), DEEPEST_HERE, why)
 
-    def _form(self, number: str) -> tuple[Form, Any]:
+    def form(self, number: str) -> tuple[Form, Any]:
         """Return direction . place for all far corners, and what each of them has to exceed."""
-        keep = self.keep
-        if keep.normal is not None:
+        keep, u = self.keep, self.keep.normal
+        if u:
             demand(not number, "a leaf of a half-space names a direction")
-            u, nearest = keep.normal, arb(0)
         else:
             demand(number and int(number) < len(self.directions), "a leaf names no direction")
             u = [fmpq(x) for x in self.directions[int(number)]]
             flat = keep.along is None or u[keep.along] == 0
             demand(flat, "a direction leaves the plane in which bodies are compared")
-            assert keep.near is not None
-            nearest = max(sum(x * y for x, y in zip(u, p, strict=True)) for p in keep.near.corners)
         rows = {key: acb_mat([u]) * value for key, value in self._seen.items()}
         self.scene.work.add(len(rows) * (5 + 3 * len(keep.far.corners)))
         form = Form(self.scene.chain, self._joints, rows, self.scene.reach)
-        return form, nearest + keep.gap * arb(sum(x * x for x in u)).sqrt()
+        nearest = max((_dot(u, p) for p in keep.near.corners), default=fmpq(0))
+        return form, nearest + keep.gap * arb(_dot(u, u)).sqrt()
 
     @cached_property
     def _joints(self) -> list[int]:
@@ -264,7 +246,7 @@ class _Kept:
         return halved(self.scene.seen(self.keep, self.keep.far.corners), ())
 
 
-def _is_above(form: Form, need: Any, cell: Cell) -> int | None:
+def is_above(form: Form, need: Any, cell: Cell) -> int | None:
     """Tell whether all functions exceed a number all over a cell; else return the best cut."""
     linear, errors = form.over(cell)
     for values, bounds in zip(linear.tolist(), errors.tolist(), strict=True):
@@ -277,59 +259,53 @@ def _is_above(form: Form, need: Any, cell: Cell) -> int | None:
 # --- places, and how near they are ----------------------------------------------------------------
 
 
-class _Place:
+class Place:
     """A place of each hull: what bounds their distance from above, by the joints that move.
 
-    Joints that move are those of `moving`; those of `values` have a value, rad or length; all
-    others take any value within their limits.
+    Joints of `moving` move; those of `values` have a value, rad or length; all others take any
+    value within their limits.
     """
 
     def __init__(
-        self, scene: Scene, value: Any, moving: Sequence[int], values: dict[int, Any]
+        self, scene: Scene, value: Any, moving: Sequence[int], values: Mapping[int, Any]
     ) -> None:
-        table = value if isinstance(value, dict) else {}
-        others = ["inside"] if "inside" in table else []
-        table_of(value, "place", ("keep", "near", "far", *others))
-        self.scene = scene
+        others = ["inside"] if isinstance(value, dict) and "inside" in value else []
+        table = table_of(value, "place", ("keep", "near", "far", *others))
+        self.scene, self.moving, self.values = scene, moving, values
         self.keep = scene.keep[index(table["keep"], "place", len(scene.keep))]
-        self.moving, self.values = moving, values
-        near = [] if self.keep.near is None else self.keep.near.corners
-        far = self.keep.far.corners
-        self.near = _mean(weights_of(table["near"], "near", len(near)), near)
-        self.far = _mean(weights_of(table["far"], "far", len(far)), far)
+        parts = self.keep.near.corners, self.keep.far.corners
+        self.near, self.far = (
+            _mean(weights_of(table[end], end, len(part)), part)
+            for end, part in zip(("near", "far"), parts, strict=True)
+        )
         self.need = self.keep.gap
         if others:
             demand(self.keep.along is not None, "inside: of pairs of bodies only")
-            for text, place, part in zip(
-                items(table["inside"], "inside", 2, 2),
-                (self.near, self.far),
-                (near, far),
-                strict=True,
-            ):
-                self.need += TILT * _inside(decimal(text, "inside"), place, part)
+            radii = [decimal(x, "inside") for x in items(table["inside"], "inside", 2, 2)]
+            for radius, place, part in zip(radii, (self.near, self.far), parts, strict=True):
+                _check_inside(radius, place, part)
+                self.need += TILT * radius
 
     @cached_property
     def _prepared(self) -> tuple[list[tuple[Form, bool]], Any]:
-        """Return vectors, the sum of whose lengths is at least the distance with what is left out.
+        """Return vectors whose lengths and the number beside them are together the distance.
 
-        The vector without any joint of any value has both places; of each other one the angles of
-        such joints turn it as they like, and it stands for its longest swing.
+        Waves are put together by their turns in the joints of any value. Where these are 0, the
+        vector is known; another one is swung by those joints, and stands for its longest swing.
         """
         scene, keep, chain = self.scene, self.keep, self.scene.chain
         joints = scene.between(keep)
         own = [j for j in joints if j in self.moving]
         free = [j for j in joints if j not in self.moving and j not in self.values]
-        slides = {j: scene.limits[j] for j in free if not chain.turns[j]}
-        terms = scene.seen(keep, [self.far])
         start: Key = (tuple(0 for _ in chain.turns), None)
-        if keep.near is not None:
+        terms = scene.seen(keep, [self.far])
+        if keep.normal:
+            seen = acb_mat([[x / arb(_dot(keep.normal, keep.normal)).sqrt() for x in keep.normal]])
+        else:
             terms[start] = terms.get(start, acb_mat(3, 1)) - acb_mat([[x] for x in self.near])
             seen = acb_mat([[int(i == k) for i in range(3)] for k in keep.axes])
-        else:
-            assert keep.normal is not None
-            length = arb(sum(x * x for x in keep.normal)).sqrt()
-            seen = acb_mat([[x / length for x in keep.normal]])
         terms = {key: seen * value for key, value in terms.items()}
+        slides = {j: scene.limits[j] for j in free if not chain.turns[j]}
         rest = arb(0)
         for (_, slide), value in terms.items():
             if slide in slides:
@@ -341,11 +317,10 @@ class _Place:
         for (turns, slide), value in terms.items():
             groups.setdefault(tuple(turns[j] for j in free), {})[turns, slide] = value
         zero: Terms = {start: acb_mat(seen.nrows(), 1)}
-        forms = [
-            (Form(chain, own, group or zero, scene.reach, together=True), not any(free_turns))
-            for free_turns, group in groups.items()
-        ]
-        return forms, rest
+        return [
+            (Form(chain, own, group or zero, scene.reach, together=True), not any(swung))
+            for swung, group in groups.items()
+        ], rest
 
     def is_violated(self, cell: Cell) -> int | None:
         """Tell whether the distance is too small all over a cell; else return the best cut."""
@@ -366,20 +341,18 @@ class _Place:
 
     def _length(self, values: Sequence[Any], count: int, known: bool) -> Any:
         """Return at least the length of a vector, or of its swing; of a half-space the height."""
-        if not known:
-            pairs = zip(values[:count], values[count:], strict=True)
-            return swing([acb(x, y) for x, y in pairs])
-        return values[0] if self.keep.near is None else norm(values[:count])
+        if known:
+            return values[0] if self.keep.normal else norm(values[:count])
+        return swing([acb(x, y) for x, y in zip(values[:count], values[count:], strict=True)])
 
     def crosses(self) -> bool:
         """Tell whether two segments without a distance cross, all joints at their values."""
         keep, scene = self.keep, self.scene
-        if keep.near is None or keep.gap != 0 or keep.along is None:
-            return False
-        if len(keep.near.corners) != 2 or len(keep.far.corners) != 2:
+        sizes = [len(hull.corners) for hull in (keep.near, keep.far)]
+        if sizes != [2, 2] or keep.gap != 0 or keep.along is None:
             return False
         [found] = held(scene.seen(keep, keep.far.corners), self.values).values()
-        columns = list(zip(*found.tolist(), strict=True))
+        columns = zip(*found.tolist(), strict=True)
         far = [[column[k].real for k in keep.axes] for column in columns]
         near = [[arb(corner[k]) for k in keep.axes] for corner in keep.near.corners]
         return all(
@@ -394,67 +367,56 @@ def _side(line: Sequence[Any], p: Sequence[Any]) -> Any:
 
 
 def _mean(weights: Sequence[Any], places: Sequence[Sequence[Any]]) -> list[Any]:
-    columns = zip(*places, strict=True)
-    return [sum(w * x for w, x in zip(weights, column, strict=True)) for column in columns]
+    return [_dot(weights, column) for column in zip(*places, strict=True)]
 
 
-def _inside(radius: Any, place: Sequence[Any], part: Sequence[Sequence[Any]]) -> Any:
-    """Return the radius of a disc about a place of a part, if the disc lies within the part."""
+def _check_inside(radius: Any, place: Sequence[Any], part: Sequence[Sequence[Any]]) -> None:
+    """Refuse a disc about a place of a part that does not lie within the part."""
     demand(radius >= 0, "inside: a radius is negative")
     demand(radius == 0 or len(part) > 2, "inside: a disc about a place of a part without an area")
     for k, b in enumerate(part):
         e = [x - y for x, y in zip(b, part[k - 1], strict=True)]
         d = [x - y for x, y in zip(place, b, strict=True)]
         cross = [e[i] * d[i - 2] - e[i - 2] * d[i] for i in range(3)]
-        far = sum(x * x for x in cross) >= radius**2 * sum(x * x for x in e)
+        far = _dot(cross, cross) >= radius**2 * _dot(e, e)
         demand(far, "inside: a disc reaches beyond an edge of its part")
-    return radius
 
 
 # --- no path --------------------------------------------------------------------------------------
 
 
-class _Separation:
-    """Leaves on which something is violated, and open ones that may not lead to the goal."""
+def _check_no_path(scene: Scene, proof: Any) -> None:
+    """Refuse unless open leaves that hold the start lead to none that holds the goal."""
+    table = table_of(proof, "proof", ("places", "tree"))
+    kinds, [start, goal] = scene.claim.joints, scene.claim.points
+    moving = [j for j, kind in enumerate(kinds) if kind == "moves"]
+    fixed = [j for j, kind in enumerate(kinds) if kind == "held"]
+    values = dict(zip(fixed, scene.chain.scaled(fixed, [start[j] for j in fixed]), strict=True))
+    rows = items(table["places"], "places", 0, MOST_POINTS)
+    places = [Place(scene, row, moving, values) for row in rows]
+    tree = text_of(table["tree"], "tree", MOST_BYTES)
+    scene.work.add(LETTER_WORK * len(tree))
+    found = list(nodes(whole_box(scene, moving), tree, scene.work))
+    for node in found:
+        if node.number:
+            demand(int(node.number) < len(places), "a leaf names a place that is not there")
+            place = places[int(node.number)]
+            why = f"{shown(place.keep.name)} is not violated all over a leaf"
+            holds(node.cell, place.is_violated, DEEPEST_HERE, why)
+    leaves = _Leaves(scene, moving, found)
+    reached, ends = leaves.reached(start), leaves.at(goal)
+    demand(reached and ends, "the start or the goal is on no open leaf")
+    demand(not reached & ends, "open leaves lead from the start to the goal")
 
-    def __init__(self, scene: Scene, proof: Any) -> None:
-        self.scene, chain, kinds = scene, scene.chain, scene.claim.joints
-        self.table = table_of(proof, "proof", ("places", "tree"))
-        self.start, self.goal = scene.claim.points
-        self.moving = [j for j, kind in enumerate(kinds) if kind == "moves"]
-        fixed = [j for j, kind in enumerate(kinds) if kind == "held"]
-        values = dict(zip(fixed, chain.scaled(fixed, [self.start[j] for j in fixed]), strict=True))
-        rows = items(self.table["places"], "places", 0, MOST_POINTS)
-        self.places = [_Place(scene, row, self.moving, values) for row in rows]
 
-    @property
-    def whole(self) -> Box:
-        """All values of the joints that move; of the others 0, on which nothing depends."""
-        half = fmpq(180) if self.scene.form["angle_unit"] == "deg" else fmpq(31416, 10**4)
-        ends = [
-            (limits or (-half, half)) if j in self.moving else (fmpq(0), fmpq(0))
-            for j, limits in enumerate(self.scene.limits)
-        ]
-        return Box(tuple(low for low, _ in ends), tuple(high for _, high in ends))
-
-    def check(self) -> None:
-        """Refuse unless the open leaves that hold the start lead to none that holds the goal."""
-        scene = self.scene
-        tree = text_of(self.table["tree"], "tree", MOST_BYTES)
-        scene.work.add(LETTER_WORK * len(tree))
-        found = list(nodes(self.whole, tree, scene.work))
-        for node in found:
-            if node.number:
-                demand(
-                    int(node.number) < len(self.places), "a leaf names a place that is not there"
-                )
-                place = self.places[int(node.number)]
-                why = f"{shown(place.keep.name)} is not violated all over a leaf"
-                holds(node.cell, place.is_violated, DEEPEST_HERE, why)
-        leaves = _Leaves(scene, self.moving, found)
-        goal, reached = leaves.at(self.goal), leaves.reached(self.start)
-        demand(goal and reached, "the start or the goal is on no open leaf")
-        demand(not reached & goal, "open leaves lead from the start to the goal")
+def whole_box(scene: Scene, moving: Sequence[int]) -> Box:
+    """Return all values of the joints that move; of others 0, on which nothing depends."""
+    half = fmpq(180) if scene.form["angle_unit"] == "deg" else fmpq(31416, 10**4)
+    ends = [
+        (limits or (-half, half)) if j in moving else (fmpq(0), fmpq(0))
+        for j, limits in enumerate(scene.limits)
+    ]
+    return Box(tuple(low for low, _ in ends), tuple(high for _, high in ends))
 
 
 class _Leaves:
@@ -462,16 +424,14 @@ class _Leaves:
 
     def __init__(self, scene: Scene, moving: Sequence[int], found: Sequence[Node[Box]]) -> None:
         self.work, self.moving, self.chain = scene.work, moving, scene.chain
-        self.open = [node.number == "" for node in found]
-        self.low = [self._scaled(node.cell.low) for node in found]
-        self.high = [self._scaled(node.cell.high) for node in found]
-        self.next = [0] * len(found)  # the node after all within this one
+        self.is_open = [node.number == "" for node in found]
+        self.boxes = [(self._scaled(n.cell.low), self._scaled(n.cell.high)) for n in found]
+        self.after = [0] * len(found)  # the node that follows all within this one
         for k in reversed(range(len(found))):
-            cut = found[k].number is None
-            self.next[k] = self.next[self.next[k + 1]] if cut else k + 1
-        turning = [scene.chain.turns[j] for j in moving]
+            leaf = found[k].number is not None
+            self.after[k] = k + 1 if leaf else self.after[self.after[k + 1]]
         size = _largest_length(scene.form)
-        self.near = [TOUCHING * (1 if turns else size) for turns in turning]
+        self.near = [TOUCHING * (1 if scene.chain.turns[j] else size) for j in moving]
         self.seams = [scene.limits[j] is None for j in moving]
 
     def _scaled(self, point: Point) -> list[Any]:
@@ -479,21 +439,17 @@ class _Leaves:
 
     def at(self, point: Point) -> set[int]:
         """Return the open leaves that hold a configuration, or may do so."""
-        x = self._scaled(point)
-        away = [
-            math.floor(float(y / (2 * arb.pi())) + 0.5) if seam else 0
-            for y, seam in zip(x, self.seams, strict=True)
-        ]
-        whole = [y - 2 * k * arb.pi() for y, k in zip(x, away, strict=True)]
-        return self._touching(whole, whole)
+        turn, place = 2 * arb.pi(), list[Any]()
+        for x, seam in zip(self._scaled(point), self.seams, strict=True):
+            place.append(x - turn * math.floor(float(x / turn) + 0.5) if seam else x)
+        return self._touching(place, place)
 
     def reached(self, start: Point) -> set[int]:
         """Return the open leaves that chains of touching ones join to the start."""
         found = self.at(start)
         todo = list(found)
         while todo:
-            k = todo.pop()
-            new = self._touching(self.low[k], self.high[k]) - found
+            new = self._touching(*self.boxes[todo.pop()]) - found
             found |= new
             todo += new
         return found
@@ -506,20 +462,17 @@ class _Leaves:
             a = [x + s - e for x, s, e in zip(low, shift, self.near, strict=True)]
             b = [x + s + e for x, s, e in zip(high, shift, self.near, strict=True)]
             k, count = 0, 0
-            while k < len(self.open):
+            while k < len(self.boxes):
                 count += 1
-                if self._apart(k, a, b):
-                    k = self.next[k]
+                ends = zip(*self.boxes[k], a, b, strict=True)
+                if any(upper < c or d < lower for lower, upper, c, d in ends):
+                    k = self.after[k]
                     continue
-                if self.open[k]:
+                if self.is_open[k]:
                     found.add(k)
                 k += 1
             self.work.add(NODE_WORK * count)
         return found
-
-    def _apart(self, k: int, low: Sequence[Any], high: Sequence[Any]) -> bool:
-        own = zip(self.low[k], self.high[k], low, high, strict=True)
-        return any(b < c or d < a for a, b, c, d in own)
 
 
 def _largest_length(form: NormalForm) -> Any:
@@ -535,30 +488,25 @@ def _largest_length(form: NormalForm) -> Any:
 
 def _check_witness(scene: Scene, value: Any) -> None:
     """Refuse unless something is violated at the configuration that a witness names."""
-    given = value if isinstance(value, dict) else {}
-    where = ("at",) if "at" in given else ("cell", "weights")
-    what = "limit" if "limit" in given else "place"
-    table = table_of(value, "witness", (*where, what))
+    demand(scene.claim.kind != NO_PATH, f"a witness does not refute a claim of {NO_PATH}")
     cells = cells_of(scene.claim)
-    if "at" in table:
-        point = configuration(table["at"], "at", scene.form)
-        box = cells[0]
-        if not isinstance(box, Box) or not all(
-            a <= x <= b for a, x, b in zip(box.low, point, box.high, strict=True)
-        ):
-            refuse("the configuration of the witness is not in a box of the claim")
+    box = cells[0] if isinstance(cells[0], Box) else None
+    where = ("cell", "weights") if box is None else ("at",)
+    what = "limit" if isinstance(value, dict) and "limit" in value else "place"
+    table = table_of(value, "witness", (*where, what))
+    if box is None:
+        corners = cells[index(table["cell"], "cell", len(cells))].corners
+        point = tuple(_mean(weights_of(table["weights"], "weights", len(corners)), corners))
     else:
-        cell = cells[index(table["cell"], "cell", len(cells))]
-        if isinstance(cell, Box):
-            refuse("the witness of a box is a configuration")
-        weights = weights_of(table["weights"], "weights", len(cell.corners))
-        point = tuple(_mean(weights, cell.corners))
+        point = configuration(table["at"], "at", scene.form)
+        ends = zip(box.low, point, box.high, strict=True)
+        demand(all(a <= x <= b for a, x, b in ends), "the witness is not in the box of the claim")
     if what == "limit":
         limit = table["limit"]
         demand(isinstance(limit, str) and limit in scene.beyond(point), "the limit is not violated")
         return
     joints = range(len(point))
     values = dict(zip(joints, scene.chain.scaled(joints, point), strict=True))
-    place = _Place(scene, table["place"], [], values)
+    place = Place(scene, table["place"], [], values)
     violated = place.is_violated(Box(point, point)) == HOLDS or place.crosses()
     demand(violated, f"{shown(place.keep.name)} is not violated at the witness")
