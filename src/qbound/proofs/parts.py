@@ -1,4 +1,4 @@
-"""Convex parts of an outline, exact: cut for a certificate, and verified for `check_arb`.
+"""Convex parts of an outline, exact: cut for a certificate, and verified for the second checker.
 
 An outline is a list of corners with two rational coordinates; parts are lists of their numbers, in
 the sense of the outline. A corner in the middle of a straight edge stays a corner, so that inner
