@@ -7,9 +7,11 @@ import math
 import os
 import re
 import resource
+import shlex
 import subprocess
 import sys
 from importlib import resources
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,8 +23,22 @@ from qbound import check
 from qbound.model.robotfile import robot_text
 from qbound.proofs.second import verify
 from support import brute_force, planar
-from support.certificates import drop, in_robot, proved, put, refuted, rehash
-from support.claims import ARM, BODIES, HALVES, MAKERS, SEGMENTS, SQUARE, box, moved, original, path
+from support.certificates import Draft, drop, in_robot, no_path, proved, put, refuted, rehash
+from support.claims import (
+    ARM,
+    BODIES,
+    HALVES,
+    MAKERS,
+    RING,
+    SHORT,
+    SQUARE,
+    between,
+    box,
+    moved,
+    original,
+    path,
+    polygon,
+)
 
 FILE = Path(check.__file__)
 
@@ -615,3 +631,442 @@ def test_where_the_checkers_differ_they_are_known_to(name):
     data = changed(start, change)
     found = [verdict(checker, data) for checker in CHECKERS]
     assert ["" if isinstance(x, ValueError) else x for x in found] == wanted
+
+
+# --- faulty provers -------------------------------------------------------------------------------
+
+
+def altered(name, **values):
+    """Return a kernel's function that has its result with other values."""
+    true = getattr(check, name)
+    return lambda *args: true(*args)._replace(**values)
+
+
+def of_other_keep(name, change):
+    """Return a kernel's function to which a thing to keep is described otherwise."""
+    true = getattr(check, name)
+
+    def faulty(steps, pose, keep, *rest):
+        return true(steps, pose, replace(keep, **change(keep)), *rest)
+
+    return faulty
+
+
+def first_corner(hull):
+    return replace(hull, corners=hull.corners[:1])
+
+
+CLIPPING, GRAZING = path("20 0, 30 0"), path("15 0, 24 0")
+"""The hand comes into the crate; it comes nearer than the clearance, by 3 mm."""
+
+HIGH = ARM.replace("offset = -1.5", "offset = 3.5")
+CLOSE = SHORT.replace("radius = 1.2", "radius = 0.5")
+FAULTY = {
+    "the distance is forgotten": (
+        {"is_kept": of_other_keep("is_kept", lambda keep: {"gap": 0})}, lambda: proved(BODIES, GRAZING)),
+    "one corner stands for the far hull": (
+        {"is_kept": of_other_keep("is_kept", lambda keep: {"far": first_corner(keep.far)})},
+        lambda: proved(BODIES, path("105 30, 105 28"))),
+    "one corner stands for the near hull": (
+        {"is_kept": of_other_keep("is_kept", lambda keep: {"near": first_corner(keep.near)})},
+        lambda: proved(BODIES, CLIPPING)),
+    "nothing bends": ({"motion": altered("motion", bend=0)}, lambda: proved(HIGH, path("-180 0, 0 0"))),
+    "the middle stands for a leaf": (
+        {"motion": altered("motion", bend=0, slopes={})}, lambda: proved(BODIES, GRAZING)),
+    "directions are twice as long": (
+        {"is_kept": lambda *args, true=check.is_kept: true(*args[:3], tuple(2 * x for x in args[3]), args[4])},
+        lambda: proved(BODIES, GRAZING)),
+    "the bend of what is violated is forgotten": (
+        {"motion": altered("motion", bend=0)},
+        lambda: no_path(CLOSE, between("0 0", "180 9", "moves any"), depth=3)),
+    "a joint of any value keeps its middle": (
+        {"motion": altered("motion", radius=0)}, lambda: no_path(CLOSE, between("0 0", "180 9", "moves any"))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FAULTY)
+def test_what_a_faulty_prover_claims_is_refused(monkeypatch, name):
+    patches, maker = FAULTY[name]
+    with monkeypatch.context() as kernel:
+        for function, faulty_one in patches.items():
+            kernel.setattr(check, function, faulty_one)
+        data = maker()
+    assert not brute_force.tells_the_truth(data), "the fault does not show"
+    assert [isinstance(verdict(checker, data), ValueError) for checker in CHECKERS] == [True, True]
+
+
+# --- the answer -----------------------------------------------------------------------------------
+
+
+def said(data):
+    return check.check(json.dumps(data)).said
+
+
+def test_the_answer_says_what_was_verified_and_of_what():
+    data = original("box")
+    assert said(data).splitlines() == [
+        f"robot 'arm', sha256 of its normal form {data['sha256']}, not compared with any robot file",
+        "proved: at every configuration of the set all of the following is kept",
+        "all limits of joints, and with 0 cm to spare each of",
+        "  'floor': point 'tip' of frame '2', radius 0.25 cm: at least -1.5 cm of height along (0, 0, 1), in all its places",
+        "  'gap': point 'tip' of frame '2', radius 0.25 cm and point 'post' of frame '0': at least 0.5 cm apart",
+        "not claimed: 'spare' (used = false)",
+        "set: box; 2 configurations ('q1' / deg, 'q2' / deg)",
+        "  from low to high: (-10, -20) (8, 12)",
+    ]
+
+
+SAID = {
+    "the box is that of the file": ("box", put(*POINTS, 0, 0, ["-1.50e0", "-2"]), "from low to high: (-1.5, -2) (8, 12)"),
+    "the margin is that of the file": ("bodies, square", put("claim", "margin", "0.0050"), "with 0.005 m to spare"),
+    "bodies by their kinds": ("bodies", None, "'upper arm, pillar': capsule 'upper arm' of frame '1', radius 0.04 m and disc 'pillar' of frame '0', radius 0.1 m: at least 0.01 m apart, seen along the common axis"),
+    "what is not claimed of bodies": ("bodies", None, "not claimed: 1 allowed pairs, bodies of one frame"),
+    "no distance": ("segments", None, "not overlapping, seen along the common axis"),
+    "a hole": ("ring", None, "  hole: (2, 2) (2, 6) (6, 6) (6, 2)"),
+    "an outline": ("ring", None, "set: polygon, 1 outline(s), 1 hole(s); 8 configurations"),
+    "islands": ("two squares", None, "set: polygon, 2 outline(s); 8 configurations"),
+    "a witness": ("witness", None, "refuted: 'floor' is violated at 'q1' = 90 deg, 'q2' = 0.5 deg"),
+    "a witness of a cell": ("witness of a cell", None, "refuted: 'floor' is violated at 'q1' = 67.5 deg, 'q2' = 0 deg"),
+    "a limit": ("limit", None, "refuted: the limit 'q2.upper' is violated at 'q1' = 0 deg, 'q2' = 170.5 deg"),
+    "no path": ("no path", None, "proved: no path within the limits keeps all of the following"),
+    "start and goal": ("no path", None, "  from start to goal: (70) (-100)"),
+    "joints on paths": ("no path, any slide", None, "'shoulder' moves\n  'elbow' takes any value, even jumps"),
+    "a joint that is held": ("no path, one held", None, "'elbow' is held"),
+    "a name that would end the quotes": ("box", in_robot('name = "arm"', 'name = "a\', proved"'), '"a\', proved"'),
+    "a name that would steer a terminal": ("box", in_robot('"arm"', r'"\u001b[2J proved"'), r"'\x1b[2J proved'"),
+    "a name of lines": ("box", in_robot('"arm"', r'"a\nproved: b"'), r"'a\nproved: b'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_the_answer_names_what_the_file_says(name):
+    start, change, line = SAID[name]
+    assert line in said(changed(start, change or (lambda _: None)))
+
+
+def test_a_long_path_is_named_by_its_ends_its_ranges_and_a_hash_of_all_its_places():
+    """By the ranges alone, two paths had one printed answer, which read as start and end."""
+    places = [f"{k % 7} {k}" for k in range(51)]
+    other = [*places[:20], "5.5 20", *places[21:]]
+    free = ARM.split("[[boundary]]")[0]
+    one, two = (said(proved(free, path(", ".join(row)))) for row in (places, other))
+    printed = " ".join(f"({q.replace(' ', ', ')})" for q in places)
+    assert f"its sha256 is {check.digest(printed)}" in one
+    assert "path from (0, 0) to (1, 50)" in one
+    assert "'q1' is between 0 and 6 deg in the set" in one
+    assert one != two
+
+
+@pytest.mark.parametrize(("shift", "angle"), [(0, True), (1, False), (-180, True)])
+def test_that_a_joint_takes_every_angle_is_said_where_it_does_so_without_a_gap(shift, angle):
+    """Two islands that do not touch go round in their ranges only."""
+    low = [["-180", "0"], ["0", "0"], ["0", "8"], ["-180", "8"]]
+    high = [[str(int(x) + 180 + shift), y] for x, y in low]
+    both = polygon([low, high], [*HALVES, *([i + 4 for i in row] for row in HALVES)])
+    if not shift:
+        both = polygon([[low[0], high[1], high[2], low[3]]], HALVES)
+    free = ARM.split("[[boundary]]")[0].replace("limits = [-170, 170]", "")
+    if shift == -180:
+        both = path("-180 0, 180 0")
+    assert ("'q1' takes every angle" in said(proved(free, both))) == angle
+
+
+@pytest.mark.parametrize("places", [30, 38])
+def test_a_violation_in_the_last_digits_is_one(places):
+    for digit, wanted in (("1", "refuted"), ("0", "")):
+        robot = ARM.replace("radius = 0.25", "").replace("-1.5", f"2.{'0' * places}{digit}")
+        at = {"at": ["0", "0"], "place": {"keep": 0, "near": [], "far": ["1"]}}
+        data = Draft(robot, box("0 0", "0 0")).file(witness=at)
+        assert verdict("second", data) == wanted or not wanted
+        assert verdict("first", data) == wanted or not wanted
+
+
+# --- the command ----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with a copy of the checker, certificates and robot files."""
+    (tmp_path / "check.py").write_bytes(FILE.read_bytes())
+    for name in ("box", "witness"):
+        (tmp_path / f"{name}.json").write_text(json.dumps(original(name)))
+    (tmp_path / "wrong.json").write_text(json.dumps(original("box") | {"sha256": "0" * 64}))
+    robots = {
+        "same": ARM,
+        "dos": "\ufeff" + ARM.replace("\n", "\r\n"),
+        "words": "# mine\n" + ARM.replace("[3, 0, 0]", "[3.0, 0, -0.0]"),
+        "other": ARM.replace("[3, 0, 0]", "[3.1, 0, 0]"),
+        "none": "hello",
+        "huge": "#" * 5_000_000,
+    }
+    for name, text in robots.items():
+        (tmp_path / f"{name}.toml").write_bytes(text.encode())
+    (tmp_path / "latin.toml").write_bytes(ARM.encode() + b"# \xe9")
+    return tmp_path
+
+
+def run(folder, *words, **options):
+    command = [sys.executable, "-I", "check.py", *words]
+    options = {"capture_output": True, "timeout": 60} | options
+    return subprocess.run(command, cwd=folder, text=True, check=False, **options)
+
+
+COMMANDS = {
+    "box.json": (0, "proved"),
+    "witness.json": (3, "refuted"),
+    "wrong.json": (2, "not proved: sha256"),
+    "box.json --robot same.toml": (0, "compared with 'same.toml': the same"),
+    "box.json --robot dos.toml": (0, "compared with 'dos.toml': the same"),
+    "box.json --robot words.toml": (0, "compared with 'words.toml': the same"),
+    "witness.json --robot same.toml": (3, "compared with 'same.toml': the same"),
+    "box.json --robot other.toml": (2, "not proved: the robot is not that of 'other.toml'"),
+    "box.json --robot none.toml": (2, "not proved: robot"),
+    "box.json --robot latin.toml": (2, "not UTF-8"),
+    "box.json --robot huge.toml": (2, "more than"),
+    "box.json --robot nothing.toml": (2, "cannot be read"),
+    "box.json --robot .": (2, "cannot be read"),
+    "box.json --robot": (2, "usage"),
+    "box.json --robot ''": (2, "usage"),
+    "box.json --robot=same.toml": (2, "usage"),
+    "box.json same.toml": (2, "usage"),
+    "box.json --sha256 0": (2, "usage"),
+    "box.json --robot same.toml --print robot": (2, "usage"),
+    "box.json --print": (2, "usage"),
+    "box.json --print all": (2, "usage"),
+    "box.json --print robot": (0, '"keep": ['),
+    "wrong.json --print robot": (2, "not proved: sha256"),
+    "nothing.json": (2, "cannot be read"),
+    ".": (2, "cannot be read"),
+    "''": (2, "usage"),
+    "--robot": (2, "usage"),
+    "": (2, "usage"),
+    "--help": (0, "usage"),
+    "--version": (0, "qbound/certificate/6"),
+    "--help box.json": (2, "usage"),
+}
+
+
+@pytest.mark.parametrize("words", COMMANDS)
+def test_the_status_is_0_proved_3_refuted_2_anything_else(folder, monkeypatch, capsys, words):
+    monkeypatch.chdir(folder)
+    status, text = COMMANDS[words]
+    assert check.main(shlex.split(words)) == status
+    out = capsys.readouterr().out
+    assert text in out
+    assert out.isascii()
+    assert (status == 2) == (out.startswith("not proved: "))
+
+
+def test_the_file_runs_alone_anywhere(folder):
+    for words, status in (("box.json --robot same.toml", 0), ("witness.json", 3), ("wrong.json", 2)):
+        done = run(folder, *words.split())
+        assert (done.returncode, done.stderr) == (status, "")
+
+
+def test_the_normal_form_that_is_printed_has_the_hash_of_the_file(folder):
+    printed = run(folder, "box.json", "--print", "robot").stdout
+    assert check.digest(printed) == original("box")["sha256"]
+    form = json.loads(printed)
+    assert [row["name"] for row in form["keep"]] == ["floor", "gap"]
+    assert form["keep"][1] == {"name": "gap", "near": 1, "far": 0, "gap": "0.75", "along": None}
+    assert form["hulls"] == [
+        {"frame": 2, "corners": [["2", "0", "0"]]},
+        {"frame": 0, "corners": [["0", "0", "4.5"]]},
+    ]
+
+
+BESIDE = ["__future__", "dataclasses", "fractions", "hashlib", "json", "math", "re", "tomllib", "typing"]  # fmt: skip
+
+
+@pytest.mark.parametrize("option", [["-I"], []])
+def test_modules_beside_the_checker_do_not_answer_for_it(folder, option):
+    """Python looks for modules in the folder of a script first, unless it runs with -I."""
+    for name in BESIDE:
+        (folder / f"{name}.py").write_text("import os\nos._exit(0)\n")
+    words = [sys.executable, *option, folder / "check.py", folder / "wrong.json"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout[:12]) == (2, "not proved: ")
+
+
+def test_an_older_python_has_no_answer_and_not_the_status_of_one():
+    """It ended with 1, by an exception, when that meant refuted."""
+    ast.parse(FILE.read_text(encoding="utf-8"), feature_version=(3, 8))
+    older = "import runpy, sys; sys.version_info = (3, 10, 12); runpy.run_path(sys.argv[1])"
+    words = [sys.executable, "-I", "-c", older, FILE]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "")
+    assert done.stdout == "not proved: check.py needs Python 3.11 or newer\n"
+    assert 1 not in (check.PROVED, check.REFUTED, check.NO_ANSWER)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_an_answer_that_cannot_be_printed_is_no_proof(folder):
+    with Path("/dev/full").open("w") as full:
+        done = run(folder, "box.json", capture_output=False, stdout=full, stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (2, "")
+    words = f"{sys.executable} -I check.py box.json >&-"
+    done = subprocess.run(words, shell=True, cwd=folder, stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (2, b"")
+
+
+def test_names_in_any_script_reach_any_terminal(folder):
+    (folder / "box.json").write_text(json.dumps(changed(*ACCEPTED["a name in another script"])))
+    done = run(folder, "box.json", env={"PYTHONIOENCODING": "ascii", "LC_ALL": "C"})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert r"'Gr\xf6\xdfe \u202e \U0001f916'" in done.stdout
+
+
+CRASHES = {
+    KeyboardInterrupt: 130, RecursionError: 2, MemoryError: 2, ZeroDivisionError: 2, KeyError: 2,
+    AssertionError: 2, OverflowError: 2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", CRASHES)
+def test_whatever_happens_no_crash_is_an_answer(folder, monkeypatch, capsys, fault):
+    def crash(*_):
+        raise fault("inside")
+
+    monkeypatch.setattr(check, "read_robot", crash)
+    assert check.main([str(folder / "box.json")]) == CRASHES[fault]
+    out = capsys.readouterr().out
+    assert out.startswith("not proved: ")
+    assert fault.__name__ not in out
+
+
+def test_a_fault_of_the_second_checker_is_a_refusal(monkeypatch):
+    def crash(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("qbound.proofs.second.proof.cells_of", crash)
+    assert isinstance(verdict("second", original("box")), ValueError)
+
+
+# --- hostile files --------------------------------------------------------------------------------
+
+
+def with_text(text):
+    return original("box") | {"robot": text}
+
+
+def with_tree(name, *place, tree):
+    data = original(name)
+    put(*place, tree)(data)
+    return data
+
+
+def balanced(depth, letters="ab"):
+    return "." if not depth else letters[depth % len(letters)] + balanced(depth - 1, letters) * 2
+
+
+def colliding(count):
+    """A path along decimals whose values all have one hash; nothing is to be kept."""
+    data = Draft(ARM.split("[[boundary]]")[0], path("0 0, 1 1")).file()
+    data["claim"]["points"] = [[[f"{k * (2**61 - 1)}e-20", "0"] for k in range(1, count + 1)]]
+    return data | {"proof": {"directions": [], "trees": []}}
+
+
+def long_outline(count=1000):
+    """An outline of many corners, not convex, with as many digits as may be."""
+    x = [f"{0.6 + 0.0003 * k:.4f}{'1' * 35}" for k in range(count // 2)]
+    loop = [f"[{a}, {0.4 + (float(a) - 0.7) ** 2 / 2:.9f}]" for a in x] + [f"[{a}, 0.9]" for a in x[::-1]]
+    crate = "[[0.6, 0.4], [0.9, 0.4], [0.9, 0.7], [0.6, 0.7]]"
+    return with_text(BODIES.replace(crate, f"[{', '.join(loop)}]"))
+
+
+def obstacles(count):
+    disc = '[[obstacle]]\nname = "o{}"\ndisc = {{ at = [9, 9, 0], radius = 0.1 }}\n'
+    return with_text(BODIES + "".join(map(disc.format, range(count))))
+
+
+def free_joints(count, boundaries=0):
+    """The text of an arm of many joints without limits, beside far walls."""
+    joint = '[[joint]]\nname = "q{0}"\ntype = "revolute"\nparent = "{0}"\nframe = "{1}"\norigin = [1, 0, 0]\naxis = [{2}, 1, 1]\n'
+    wall = '[[boundary]]\nname = "w{}"\ntype = "half-space"\npoint = "tip"\nnormal = [0, 0, 1]\noffset = -99\n'
+    home = ", ".join(f"q{j} = 0" for j in range(count))
+    rows = [joint.format(j, j + 1, j % 2) for j in range(count)]
+    rows += [f'[[point]]\nname = "tip"\nframe = "{count}"\nat = [1, 0, 0]\n', *map(wall.format, range(boundaries))]
+    return ARM.split("[[joint]]")[0].replace("q1 = 0, q2 = 0", home) + "".join(rows)
+
+
+def walls(count, letters):
+    trees = [["a" * letters + "." * (letters + 1)]] * count
+    draft = Draft(free_joints(6, count), box(" ".join("0" * 6), " ".join("1" * 6)))
+    return draft.file(proof={"directions": [], "trees": trees})
+
+
+def seams(depth):
+    draft = Draft(free_joints(7), {"set": "no path"} | between("1 " * 7, "2 " * 7, "moves " * 7))
+    return draft.file(proof={"places": [], "tree": balanced(depth, "abcdefg")})
+
+
+HOSTILE = {
+    "equal hashes of 20,000 configurations": lambda: colliding(20_000),
+    "outlines of a thousand corners": long_outline,
+    "a thousand obstacles": lambda: obstacles(1900),
+    "a tree of a million leaves": lambda: with_tree("box", *TREES, 0, 0, tree="a" * 1_000_000 + "." * 1_000_001),
+    "a deep tree of open leaves": lambda: with_tree("no path over seams", *ROOT, tree="a" * 120 + "." * 121),
+    "a long dotted key": lambda: with_text("a." * 200_000 + "a = 1"),
+    "dotted keys in a table": lambda: with_text("a = {" + "a." * 200_000 + "a = 1}"),
+    "a long dotted header": lambda: with_text("[" + "a." * 200_000 + "a]"),
+    "quoted dotted keys": lambda: with_text("'a'." * 100_000 + "a = 1"),
+    "a long key": lambda: with_text("a" * 400_000 + " = 1"),
+    "a long number": lambda: with_text("a = " + "1" * 400_000),
+    "a long string": lambda: with_text("a = '" + "1" * 400_000),
+    "many keys": lambda: with_text("".join(f"a{k} = 1\n" for k in range(40_000))),
+    "many tables": lambda: with_text("[[joint]]\n" * 45_000),
+    "deep TOML": lambda: with_text("a = " + "[" * 100_000),
+    "many quotes": lambda: with_text('"' * 400_000),
+    "many backslashes": lambda: with_text('a = "' + "\\" * 400_000),
+    "a file without an end": lambda: None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_is_answered_in_bounded_time_and_memory(tmp_path, name):
+    data, file = HOSTILE[name](), tmp_path / "hostile.json"
+    file.write_text(json.dumps(data), encoding="utf-8")
+
+    def limits():
+        resource.setrlimit(resource.RLIMIT_AS, (500_000_000, 500_000_000))
+        resource.setrlimit(resource.RLIMIT_CPU, (30, 30))
+
+    words = [sys.executable, "-I", FILE, file if data else "/dev/zero"]
+    done = subprocess.run(words, preexec_fn=limits, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) in ((0, ""), (2, ""))
+    assert not re.search("Error|Exception|Traceback|fault of the checker|memory", done.stdout)
+    if data:
+        assert verdict("second", data) == "proved" or done.returncode == 2
+
+
+COSTLY = {
+    "two thousand walls of six joints": lambda: walls(2000, 0),
+    "many walls and deep trees": lambda: walls(300, 119),
+    "a wide tree": lambda: with_tree("box", *TREES, 0, 0, tree=balanced(19)),
+    "a wide tree of open leaves": lambda: with_tree("no path over seams", *ROOT, tree=balanced(14)),
+    "seams of seven joints": lambda: seams(10),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COSTLY)
+def test_work_is_counted_before_it_is_done(monkeypatch, name):
+    """With a hundredth of the work that is allowed, all of these end early."""
+    monkeypatch.setattr(check.Work, "MOST", check.Work.MOST // 200)
+    monkeypatch.setattr("qbound.proofs.second.reading.MOST_WORK", 150_000)
+    data = COSTLY[name]()
+    for checker in CHECKERS:
+        assert "too much work" in str(verdict(checker, data))
+    assert check.Work.done <= 1.5 * check.Work.MOST
+
+
+def test_the_bounds_of_the_page_are_those_of_the_checker():
+    page = (Path(__file__).parents[1] / "book/certificate.md").read_text(encoding="utf-8")
+    for bound in (check.MAX_FILE, check.MAX_ROBOT, check.MAX_CELLS, check.MAX_BOUNDARIES):
+        assert f"{bound:,}" in page
+    for bound in (f"{check.MAX_JOINTS} joints", f"At most {check.MAX_DEPTH} cuts"):
+        assert bound in page
+    assert "1,800 degrees or 30 radians" in page
+    assert {"deg": 1800, "rad": 30} == check.LARGEST_ANGLE
+    bits = math.log2(check.SLACK / check.ONE)
+    assert f"2<sup>-{check.BITS}</sup>" in page
+    assert f"2<sup>{bits:.0f}</sup>" in page

@@ -71,6 +71,7 @@ class Draft:
     """A claim about a robot, read by the checker's own reader."""
 
     def __init__(self, robot: str, claim: Json, parts: Json = None) -> None:
+        check.Work.done = 0
         self.text, self.parts = robot, parts_of(robot) if parts is None else parts
         self.written = {"margin": "0"} | claim
         self.robot = check.read_robot(robot, self.parts)
