@@ -231,7 +231,7 @@ def proved(robot, claim, parts=None, deepest=14):
             for row in rows:
                 if row is not None:
                     directions.append(row)
-                form, need = kept.form(str(len(directions) - 1) if row is not None else "")
+                [form], need = kept.form(str(len(directions) - 1) if row is not None else "")
                 cut = proof.is_above(form, need, cell)
                 if cut == HOLDS:
                     return f"{len(directions) - 1}." if row is not None else "."

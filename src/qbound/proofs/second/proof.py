@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import product
 from operator import mul
@@ -59,8 +59,8 @@ MOST_DIRECTIONS = 20_000
 DEEPEST_HERE = 14
 """Cuts of a leaf on top of each other, where the bound of this checker is the weaker one."""
 
-MOST_FORMS = 500
-"""Forms of one thing to keep that are remembered."""
+MOST_NUMBERS = 500_000
+"""Balls in the forms that are remembered, some 100 bytes each."""
 
 LETTER_WORK, NODE_WORK = 100, 3
 """Microseconds for each node that is kept, and for each one that is compared."""
@@ -126,12 +126,32 @@ class Keep(NamedTuple):
         return [k for k in range(3) if k != self.along]
 
 
+class _Memory:
+    """Forms that several leaves name; all are forgotten when they get too many."""
+
+    def __init__(self) -> None:
+        self.known: dict[int | str, tuple[list[Form], Any]] = {}
+        self.size = 0
+
+    def get(
+        self, key: int | str, make: Callable[[], tuple[list[Form], Any]]
+    ) -> tuple[list[Form], Any]:
+        """Return forms and a number that belongs to them; make them if they are not known."""
+        if key not in self.known:
+            found = make()
+            size = sum(form.size for form in found[0])
+            if self.size + size > MOST_NUMBERS:
+                self.known, self.size = {}, 0
+            self.known[key], self.size = found, self.size + size
+        return self.known[key]
+
+
 class Scene:
     """A robot in balls, what it keeps, and a claim about it."""
 
     def __init__(self, form: NormalForm, claim: Claim, work: Work) -> None:
         self.form, self.claim, self.work = form, claim, work
-        self.chain = Chain(form, work)
+        self.chain, self.memory = Chain(form, work), _Memory()
         hulls = [Hull(h["frame"], [[*map(exact, p)] for p in h["corners"]]) for h in form["hulls"]]
         self.keep = [
             Keep(
@@ -174,7 +194,7 @@ class Scene:
         """Return the waves of places of the far frame, as columns, seen from the near one."""
         places = acb_mat([[*place, 1] for place in corners]).transpose()
         terms = self.chain.terms(keep.near.frame, keep.far.frame)
-        self.work.add(len(terms) * (2 + len(corners)))
+        self.work.add(len(terms) * (4 + len(corners)))
         return {key: pose * places for key, pose in terms.items()}
 
 
@@ -210,18 +230,15 @@ class _Kept:
 
     def __init__(self, scene: Scene, keep: Keep, directions: Sequence[Sequence[int]]) -> None:
         self.scene, self.keep, self.directions = scene, keep, directions
-        self.known: dict[str, tuple[Form, Any]] = {}
+        self.memory = _Memory()
 
     def check(self, cell: Cell, number: str) -> None:
         """Refuse unless the far hull is far enough along a direction, all over a cell."""
-        if number not in self.known:
-            if len(self.known) >= MOST_FORMS:
-                self.known.clear()
-            self.known[number] = self.form(number)
+        [form], need = self.memory.get(number, partial(self.form, number))
         why = f"{shown(self.keep.name)} is not proved on every leaf"
-        holds(cell, partial(is_above, *self.known[number]), DEEPEST_HERE, why)
+        holds(cell, partial(is_above, form, need), DEEPEST_HERE, why)
 
-    def form(self, number: str) -> tuple[Form, Any]:
+    def form(self, number: str) -> tuple[list[Form], Any]:
         """Return direction . place for all far corners, and what each of them has to exceed."""
         keep, u = self.keep, self.keep.normal
         if u:
@@ -232,10 +249,10 @@ class _Kept:
             flat = keep.along is None or u[keep.along] == 0
             demand(flat, "a direction leaves the plane in which bodies are compared")
         rows = {key: acb_mat([u]) * value for key, value in self._seen.items()}
-        self.scene.work.add(len(rows) * (5 + 3 * len(keep.far.corners)))
+        self.scene.work.add(len(rows) * (15 + 8 * len(keep.far.corners)))
         form = Form(self.scene.chain, self._joints, rows, self.scene.reach)
         nearest = max((_dot(u, p) for p in keep.near.corners), default=fmpq(0))
-        return form, nearest + keep.gap * arb(_dot(u, u)).sqrt()
+        return [form], nearest + keep.gap * arb(_dot(u, u)).sqrt()
 
     @cached_property
     def _joints(self) -> list[int]:
@@ -286,12 +303,11 @@ class Place:
                 _check_inside(radius, place, part)
                 self.need += TILT * radius
 
-    @cached_property
-    def _prepared(self) -> tuple[list[tuple[Form, bool]], Any]:
+    def _prepared(self) -> tuple[list[Form], Any]:
         """Return vectors whose lengths and the number beside them are together the distance.
 
         Waves are put together by their turns in the joints of any value. Where these are 0, the
-        vector is known; another one is swung by those joints, and stands for its longest swing.
+        vector is known, and the first one; another one is swung by those joints as they like.
         """
         scene, keep, chain = self.scene, self.keep, self.scene.chain
         joints = scene.between(keep)
@@ -317,10 +333,8 @@ class Place:
         for (turns, slide), value in terms.items():
             groups.setdefault(tuple(turns[j] for j in free), {})[turns, slide] = value
         zero: Terms = {start: acb_mat(seen.nrows(), 1)}
-        return [
-            (Form(chain, own, group or zero, scene.reach, together=True), not any(swung))
-            for swung, group in groups.items()
-        ], rest
+        parts = [group or zero for group in groups.values()]
+        return [Form(chain, own, part, scene.reach, together=True) for part in parts], rest
 
     def is_violated(self, cell: Cell) -> int | None:
         """Tell whether the distance is too small all over a cell; else return the best cut."""
@@ -329,12 +343,14 @@ class Place:
 
     def distance(self, cell: Cell) -> tuple[Any, Form]:
         """Return at least the distance, or height, all over a cell, and the least exact form."""
-        forms, total = self._prepared
-        worst = (-1.0, forms[0][0])
-        for form, known in forms:
+        forms, total = self.scene.memory.get(id(self), self._prepared)
+        worst = (-1.0, forms[0])
+        for form in forms:
             linear, errors = form.over(cell)
             rows = zip(linear.tolist(), errors.tolist(), strict=True)
-            total += highest([self._length(row, form.count, known) + e for row, [e] in rows])
+            total += highest(
+                [self._length(row, form.count, form is forms[0]) + e for row, [e] in rows]
+            )
             error = max(float(row[0]) for row in errors.tolist())
             worst = max(worst, (error, form), key=lambda pair: pair[0])
         return total, worst[1]
@@ -471,7 +487,7 @@ class _Leaves:
                 if self.is_open[k]:
                     found.add(k)
                 k += 1
-            self.work.add(NODE_WORK * count)
+            self.work.add(NODE_WORK * (count + len(turns)))
         return found
 
 

@@ -21,7 +21,7 @@ LARGEST = fmpq(10) ** 100
 
 LARGEST_ANGLE = {"deg": 1800, "rad": 30}
 
-MOST_WORK = 15_000_000
+MOST_WORK = 12_000_000
 """About the microseconds that a check may take; counted before they are spent."""
 
 DECIMAL = re.compile(r"(-?)([0-9]+)(?:[.]([0-9]+))?(?:[eE]([+-]?[0-9]{1,3}))?")

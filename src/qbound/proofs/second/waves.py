@@ -233,6 +233,11 @@ class Form:
         self.reach[None] = 1.0
 
     @property
+    def size(self) -> int:
+        """How many balls it has, at most."""
+        return len(self.turns) * (len(self.joints) ** 2 + 5 * self.count + 5)
+
+    @property
     def cost(self) -> int:
         """About the microseconds of one cell."""
         n, k = len(self.joints), len(self.turns)
@@ -301,6 +306,7 @@ class Form:
 
     def best_cut(self, cell: Cell) -> int | None:
         """Return the letter of the cut that lessens the error most; None where there is none."""
+        self.chain.work.add(len(self.turns) * (1 + len(self.joints)) ** 2)
         best, found = 0.0, None
         for letter, step in cell.cuts(self.joints):
             d = [abs(float(x)) for x in self.chain.scaled(self.joints, step)]
