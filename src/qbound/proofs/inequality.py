@@ -103,9 +103,7 @@ class Arm:
     def __init__(self, form: Mapping[str, Any], margin: Fraction = Fraction(0)) -> None:
         self.form = form
         self.angle = math.radians(1.0) if form["angle_unit"] == "deg" else 1.0
-        rows = form["joints"]
-        self.turning = np.array([row["turns"] for row in rows])
-        self.units = np.where(self.turning, self.angle, 1.0)
+        self.units = np.array([self.angle if row["turns"] else 1.0 for row in form["joints"]])
         self.steps = [self._step(row) for row in form["steps"]]
         self.names = [str(row["name"]) for row in form["keep"]]
         self.asked = [Fraction(row["gap"]) + margin for row in form["keep"]]
@@ -114,10 +112,8 @@ class Arm:
         self.kind_of = np.zeros(len(self.names), dtype=int)
         self.row_of = np.zeros(len(self.names), dtype=int)
         for number, kind in enumerate(self.kinds):
-            self.kind_of[kind.things], self.row_of[kind.things] = (
-                number,
-                np.arange(len(kind.things)),
-            )
+            self.kind_of[kind.things] = number
+            self.row_of[kind.things] = np.arange(len(kind.things))
         self.size = sum(step.reach for step in self.steps) + max(
             (
                 np.linalg.norm(np.concatenate([kind.corners, kind.places], axis=1), axis=2).max()
@@ -207,7 +203,7 @@ class Arm:
             Joints that take any value.
         """
         corners = kind.corners[rows] if corners is None else corners
-        steps, count = self.steps[kind.near : kind.far], len(cells)
+        steps = self.steps[kind.near : kind.far]
         r, axes, pivots = self._posed(kind, corners, cells.centres)
         reach = [abs(step.factor) * cells.reach[:, step.joint, None] for step in steps]
         spread, moves = np.zeros(r.shape[:2]), dict[int, Floats]()
@@ -225,7 +221,7 @@ class Arm:
             else:
                 spread = spread + step.sweep
         bend = _bend(r, steps, reach, moves)
-        slopes = np.zeros((count, cells.centres.shape[1], *r.shape[1:]))
+        slopes = np.zeros((*cells.centres.shape, *r.shape[1:]))
         for k, move in moves.items():
             slopes[:, steps[k].joint] += steps[k].factor * move
         places = kind.places[rows]
