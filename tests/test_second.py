@@ -1,27 +1,23 @@
 """The second checker: its normal form, its bounds against samples, and what it must refuse."""
 
-import copy
-import hashlib
 import json
-import math
-from itertools import product
 
 import numpy as np
 import pytest
 
 pytest.importorskip("flint")
 
-from flint import acb_mat, arb, ctx, fmpq
+from flint import acb_mat, ctx, fmpq
 
+from qbound import check
 from qbound.model.robotfile import packaged_robots, parse_robot, robot_text
 from qbound.proofs.second import proof, verify
-from qbound import check
-from qbound.proofs.second.cells import HOLDS, Box, Simplex, cells_of, numbered
-from qbound.proofs.second.normal import canonical, is_convex, normal_form, text
-from qbound.proofs.second.reading import Claim, Work, exact, read_claim
-from qbound.proofs.second.waves import Form, halved, held
+from qbound.proofs.second.cells import Box, Simplex, numbered
+from qbound.proofs.second.normal import is_convex, normal_form, text
+from qbound.proofs.second.reading import Claim, Work, decimal, exact
+from qbound.proofs.second.waves import Form, halved
 from qbound.proofs.verdict import Verdict
-
+from support import certificates
 
 # --- random robots, and where their places are ----------------------------------------------------
 
@@ -54,7 +50,7 @@ def random_robot(rng, planar=False):
         for k, frame in enumerate(frames)
     ]
     near, far = sorted(rng.choice(len(frames), 2, replace=False).tolist())
-    table = {
+    return {
         "schema": 1,
         "name": "random",
         "length_unit": "m",
@@ -74,7 +70,6 @@ def random_robot(rng, planar=False):
             },
         ],
     }
-    return table
 
 
 def as_text(table):
@@ -181,87 +176,6 @@ def test_a_distance_is_within_the_bound_whatever_the_other_joints_are(seed):
 
 
 # --- certificates ---------------------------------------------------------------------------------
-
-
-def sealed(robot, claim, parts=None, **more):
-    """A certificate as a table, its hash right."""
-    form = normal_form(robot, parts or {})
-    digest = hashlib.sha256(canonical(form).encode()).hexdigest()
-    start = {"schema": "qbound/certificate/6", "robot": robot, "parts": parts or {}}
-    return {**start, "sha256": digest, "claim": {"margin": "0", **claim}, **more}
-
-
-def scene_and_cells(robot, claim, parts):
-    data = sealed(robot, claim, parts)
-    form = normal_form(robot, parts or {})
-    read = read_claim(data["claim"], form)
-    return proof.Scene(form, read, Work()), data
-
-
-def candidates(scene, keep, cell):
-    """Directions that may separate two hulls at the middle of a cell, as three integers."""
-    middle = cell.middle
-    values = dict(enumerate(scene.chain.scaled(range(len(middle)), middle)))
-    [found] = held(scene.seen(keep, keep.far.corners), values).values()
-    far = [[float(x.real) for x in row] for row in zip(*found.tolist(), strict=True)]
-    near = [[float(x) for x in corner] for corner in keep.near.corners]
-    steps = [np.subtract(r, p) for r, p in product(far, near)]
-    if keep.along is not None:
-        for hull in (near, far):
-            for k in range(len(hull) if len(hull) > 1 else 0):
-                across = np.cross(np.subtract(hull[k], hull[k - 1]), np.eye(3)[keep.along])
-                steps += [across, -across]
-    for step in steps:
-        if keep.along is not None:
-            step[keep.along] = 0
-    steps = [s / abs(s).max() for s in steps if abs(s).max() > 1e-9]
-    gaps = [min(s @ r for r in far) - max(s @ p for p in near) for s in steps]
-    best = [steps[k] for k in np.argsort(np.divide(gaps, np.linalg.norm(steps, axis=1)))[::-1][:3]]
-    return [np.rint(1000 * s).astype(int).tolist() for s in best]
-
-
-def proved(robot, claim, parts=None, deepest=14):
-    """A certificate of a set; its search trusts the second checker's own bound."""
-    with ctx.workprec(192):
-        scene, data = scene_and_cells(robot, claim, parts)
-        directions, trees = [], []
-
-        def grown(kept, cell, depth):
-            rows = [None] if kept.keep.normal else candidates(scene, kept.keep, cell)
-            for row in rows:
-                if row is not None:
-                    directions.append(row)
-                [form], need = kept.form(str(len(directions) - 1) if row is not None else "")
-                cut = proof.is_above(form, need, cell)
-                if cut == HOLDS:
-                    return f"{len(directions) - 1}." if row is not None else "."
-                if row is not None:
-                    directions.pop()
-            assert cut is not None and depth < deepest, kept.keep.name
-            halves = [grown(kept, half, depth + 1) for half in cell.halves(cut)]
-            return "abcdefg"[cut] + "".join(halves)
-
-        for keep in scene.keep:
-            kept, corners = proof._Kept(scene, keep, directions), [*keep.near[1], *keep.far[1]]
-            needed = keep.normal or keep.gap != 0 or len(corners) > 3
-            cells = cells_of(scene.claim) if needed else []
-            trees.append([grown(kept, cell, 0) for cell in cells])
-    return {**data, "proof": {"directions": directions, "trees": trees}}
-
-
-def both(data):
-    """The answer of both checkers, which agree; a refusal is None."""
-    text, found = json.dumps(data), []
-    for checker in (verify, check.check):
-        try:
-            answer = checker(text)
-        except ValueError:
-            answer = None
-        found.append(answer if answer is None else answer == Verdict.REFUTED)
-        if checker is check.check and answer is not None:
-            found[-1] = answer.refuted
-    assert found[0] == found[1], found
-    return None if found[0] is None else ("refuted" if found[0] else "proved")
 
 
 BOXES = {
@@ -382,11 +296,96 @@ def test_a_set_is_proved(name, kind):
     (a, b), (c, d) = BOXES[name]
     points = {"box": [BOXES[name]], "path": [BOXES[name]], "polygon": [[[a, b], [c, b], [c, d]]]}
     more = {"triangles": [[0, 1, 2]]} if kind == "polygon" else {}
-    data = proved(robot_text(name)[0], {"set": kind, "points": points[kind], **more})
+    claim = {"set": kind, "points": points[kind], **more}
+    data = certificates.proved(robot_text(name)[0], claim)
     assert verify(json.dumps(data)) == Verdict.PROVED
-    for k, rows in enumerate(data["proof"]["trees"]):
-        if rows:
-            wrong = copy.deepcopy(data)
-            wrong["proof"]["trees"][k][0] = "a" + wrong["proof"]["trees"][k][0]
-            with pytest.raises(ValueError, match="tree"):
-                verify(json.dumps(wrong))
+    trees = data["proof"]["trees"]
+    for k in [k for k, rows in enumerate(trees) if rows]:
+        data["proof"]["trees"] = [[*rows] for rows in trees]
+        data["proof"]["trees"][k][0] = "a" + trees[k][0]
+        with pytest.raises(ValueError, match="tree"):
+            verify(json.dumps(data))
+
+
+# --- pieces ---------------------------------------------------------------------------------------
+
+
+def test_numbers_are_written_in_full():
+    for written in ("0", "-0.5", "12", "0.000125", "-120", "3.14"):
+        assert text(exact(written)) == written
+    assert text(exact("1.50e-3")) == "0.0015"
+    assert text(exact("-0.0")) == "0"
+
+
+@pytest.mark.parametrize(
+    "number", ["1.", ".5", "+1", "1e", "٣", "0x1", " 1", "1e1000", "1" * 41, 1, True]
+)
+def test_decimals_are_read_strictly(number):
+    with pytest.raises(ValueError, match="decimal"):
+        decimal(number, "here")
+
+
+def test_equal_places_have_one_number_whatever_their_hash():
+    prime = 2**61 - 1
+    points = [(fmpq(k * prime, 10**40), fmpq(0)) for k in (3, 1, 2, 1, 3)]
+    assert numbered(points) == [2, 0, 1, 0, 2]
+
+
+@pytest.mark.parametrize(
+    ("corners", "convex"),
+    [
+        ([(0, 0), (1, 0), (0, 1)], True),
+        ([(0, 0), (0, 1), (1, 0)], True),
+        ([(0, 0), (1, 0), (2, 0), (0, 1)], True),
+        ([(0, 0), (2, 0), (1, 0), (0, 1)], False),
+        ([(0, 0), (1, 0), (2, 0)], False),
+        ([(0, 0), (2, 0), (1, 1), (2, 2), (0, 2)], False),
+        ([(0, 0), (4, 3), (0, 3), (4, 0), (2, 5)], False),
+        ([(0, 0), (2, 0), (0, 2)] * 2, False),
+        ([(0, 0), (0, 0), (2, 0), (0, 2)], False),
+    ],
+)
+def test_an_outline_is_convex_where_it_turns_one_way_once_round(corners, convex):
+    assert is_convex(corners) == convex
+
+
+@pytest.mark.parametrize("joints", [["moves", "any"], ["moves", "held"]])
+def test_a_joint_without_limits_is_where_it_is_some_turns_on(joints):
+    robot = robot_text("two-links-on-a-table")[0]
+    points = [[["100", "-60"], ["-100", "-60"]]]
+    data = certificates.no_path(robot, {"points": points, "joints": joints})
+    for turns in (-3, -1, 0, 2, 4):
+        data["claim"]["points"][0][1][0] = str(360 * turns - 100)
+        assert verify(json.dumps(data)) == Verdict.PROVED
+        data["claim"]["points"][0][1][0] = str(360 * turns + 101)
+        with pytest.raises(ValueError, match="lead from the start to the goal"):
+            verify(json.dumps(data))
+
+
+def test_a_leaf_is_cut_further_where_its_bound_needs_it(monkeypatch):
+    robot = """schema = 1
+name = "crank"
+length_unit = "m"
+angle_unit = "deg"
+home = { q = 0 }
+tool = "end"
+joint = [{ name = "q", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 1, 0] }]
+point = [{ name = "end", frame = "1", at = [1, 0, 0] }]
+boundary = [{ name = "floor", type = "half-space", point = "end", normal = [0, 0, 1], offset = -0.99 }]
+"""  # noqa: E501
+    claim = {"set": "box", "points": [[["-80"], ["80"]]]}
+    data = certificates.proved(robot, claim)
+    assert len(data["proof"]["trees"][0][0]) > 1
+    data["proof"]["trees"] = [["."]]
+    assert verify(json.dumps(data)) == Verdict.PROVED
+    monkeypatch.setattr(proof, "DEEPEST_HERE", 0)
+    with pytest.raises(ValueError, match="not proved on every leaf"):
+        verify(json.dumps(data))
+
+
+def test_work_is_bounded(monkeypatch):
+    claim = {"set": "box", "points": [BOXES["pp-portal"]]}
+    data = certificates.proved(robot_text("pp-portal")[0], claim)
+    monkeypatch.setattr("qbound.proofs.second.reading.MOST_WORK", 100)
+    with pytest.raises(ValueError, match="too much work"):
+        verify(json.dumps(data))
