@@ -16,6 +16,8 @@ from qbound.proofs import contact, inequality, safe, second, statements, subdivi
 from qbound.proofs.certify import Subject, certify
 from qbound.proofs.inequality import Arm, Seen, Step
 from qbound.proofs.subdivide import Boxes, Forest, Simplices
+from qbound.urdf.arm import import_urdf
+from qbound.urdf.robot_text import robot_text as urdf_text
 from support import arms_in_planes, brute_force
 from support.robot_files import box_of, robot_file
 from support.six_joints import around_home, six_joint_arm
@@ -56,6 +58,16 @@ def test_five_degrees_about_home_of_six_joints_are_proved_by_one_leaf_a_boundary
     answer = certify(six_joint_arm(), statements.box(*around_home(5)))
     assert answer.verdict == both_checkers(answer.text) == "proved"
     assert answer.leaves == len(answer.searches) == 10
+
+
+def test_all_pairs_of_an_imported_arm_of_seven_joints_are_proved():
+    """114 pairs of balls of the Panda within 5 degrees of its home: one leaf each."""
+    text = urdf_text(import_urdf("panda.urdf", srdf="panda.srdf"))
+    home = (0, -45, 0, -135, 0, 90, 45)
+    ends = ([str(q + step) for q in home] for step in (-5, 5))
+    answer = certify(text, statements.box(*ends))
+    assert answer.verdict == both_checkers(answer.text) == "proved"
+    assert answer.leaves == len(answer.searches) == 114
 
 
 @pytest.mark.parametrize("half", [5, 20])
