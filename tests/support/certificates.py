@@ -292,7 +292,7 @@ def rehash(data: Json) -> None:
     """Make the hash fit the robot, if a checker reads it."""
     for form_of in (check.normal_form, normal_form):
         try:
-            form = form_of(data["robot"], data["parts"])
+            form = form_of(data.get("robot", ""), data.get("parts"))
         except ValueError:
             continue
         data["sha256"] = check.digest(check.canonical(form))
