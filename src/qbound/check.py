@@ -1417,16 +1417,19 @@ def _keeps(
         where, known = f"parts.{name!a}", index(len(seen[name]))
         corners = [[seen[name][known(k, where)] for k in loop] for loop in loops]
         demand_filled([seen[name]], corners, where)
-    hulls, numbers = list[tuple[int, tuple[Exact, ...]]](), dict[Any, int]()
+    hulls, numbers, shapes = (
+        list[tuple[int, tuple[Exact, ...]]](),
+        dict[Any, int](),
+        dict[str, int](),
+    )
 
     def hull(thing: Thing, loop: Sequence[int] | None = None) -> int:
         key = thing.kind == "point", thing.name, None if loop is None else tuple(loop)
         if key not in numbers:
-            numbers[key] = len(hulls)
-            corners = _lifted(thing, flat)
-            hulls.append(
-                (thing.frame, corners if loop is None else tuple(corners[k] for k in loop))
-            )
+            whole = _lifted(thing, flat)
+            corners = whole if loop is None else tuple(whole[k] for k in loop)
+            numbers[key] = shapes.setdefault(f"{thing.frame} {_written(corners)}", len(hulls))
+            hulls.extend([(thing.frame, corners)] * (len(shapes) > len(hulls)))
         return numbers[key]
 
     keeps = list[KeepRow]()
