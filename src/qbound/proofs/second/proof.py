@@ -65,11 +65,11 @@ MOST_NUMBERS = 500_000
 LETTER_WORK, NODE_WORK = 100, 3
 """Microseconds for each node that is kept, and for each one that is compared."""
 
-TOUCHING = fmpq(1, 10**30)
+TOUCHING = fmpq(1, 2**100)
 """Leaves nearer than this, in radians or parts of the largest length, count as touching."""
 
-TILT = 1 - fmpq(1, 10**15)
-"""A disc, seen along an axis that is off its own one by rounding, is smaller by less than this."""
+TILT = fmpq(1, 10**9)
+"""Parts of the largest length that discs need to spare: planes of frames may differ that much."""
 
 
 def verified(text: str | bytes) -> Verdict:
@@ -175,6 +175,15 @@ class Scene:
         columns = zip(*self.claim.points, strict=True)
         ends = [largest([*c, *(x or ())]) for c, x in zip(columns, self.limits, strict=True)]
         return self.chain.scaled(range(len(ends)), ends)
+
+    @cached_property
+    def largest_length(self) -> Any:
+        """The largest length of the robot and the claim."""
+        places = [place for hull in self.form["hulls"] for place in hull["corners"]]
+        places += [step["origin"] for step in self.form["steps"]]
+        places += [joint["limits"] for joint in self.form["joints"] if not joint["turns"]]
+        lengths = [exact(x) for place in places for x in place]
+        return max(map(abs, [*lengths, *(keep.gap for keep in self.keep)]))
 
     def beyond(self, point: Point) -> list[str]:
         """Return the names of all limits that a configuration violates."""
@@ -301,7 +310,8 @@ class Place:
             radii = [decimal(x, "inside") for x in items(table["inside"], "inside", 2, 2)]
             for radius, place, part in zip(radii, (self.near, self.far), parts, strict=True):
                 _check_inside(radius, place, part)
-                self.need += TILT * radius
+                self.need += radius
+            self.need -= TILT * scene.largest_length * (max(radii) > 0)
 
     def _prepared(self) -> tuple[list[Form], Any]:
         """Return vectors whose lengths and the number beside them are together the distance.
@@ -446,8 +456,8 @@ class _Leaves:
         for k in reversed(range(len(found))):
             leaf = found[k].number is not None
             self.after[k] = k + 1 if leaf else self.after[self.after[k + 1]]
-        size = _largest_length(scene.form)
-        self.near = [TOUCHING * (1 if scene.chain.turns[j] else size) for j in moving]
+        sizes = [1 if turns else scene.largest_length for turns in scene.chain.turns]
+        self.near = [TOUCHING * sizes[j] for j in moving]
         self.seams = [scene.limits[j] is None for j in moving]
 
     def _scaled(self, point: Point) -> list[Any]:
@@ -491,14 +501,6 @@ class _Leaves:
         return found
 
 
-def _largest_length(form: NormalForm) -> Any:
-    """Return the largest length of a robot."""
-    places = [place for hull in form["hulls"] for place in hull["corners"]]
-    places += [step["origin"] for step in form["steps"]]
-    places += [joint["limits"] for joint in form["joints"] if not joint["turns"]]
-    return max(abs(exact(x)) for place in places for x in place)
-
-
 # --- a witness ------------------------------------------------------------------------------------
 
 
@@ -521,6 +523,7 @@ def _check_witness(scene: Scene, value: Any) -> None:
         limit = table["limit"]
         demand(isinstance(limit, str) and limit in scene.beyond(point), "the limit is not violated")
         return
+    demand(not scene.beyond(point), "the witness is beyond a limit, and names a place")
     joints = range(len(point))
     values = dict(zip(joints, scene.chain.scaled(joints, point), strict=True))
     place = Place(scene, table["place"], [], values)
