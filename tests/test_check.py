@@ -4,14 +4,13 @@
 import ast
 import json
 import math
-import os
 import re
 import resource
 import shlex
 import subprocess
 import sys
-from importlib import resources
 from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 import pytest
@@ -20,16 +19,14 @@ from jsonschema import validate
 pytest.importorskip("flint")
 
 from qbound import check
-from qbound.model.robotfile import robot_text
 from qbound.proofs.second import verify
-from support import brute_force, planar
-from support.certificates import Draft, drop, in_robot, no_path, proved, put, refuted, rehash
+from support import brute_force
+from support.certificates import Draft, drop, in_robot, no_path, proved, put, rehash
 from support.claims import (
     ARM,
     BODIES,
     HALVES,
     MAKERS,
-    RING,
     SHORT,
     SQUARE,
     between,
@@ -858,7 +855,11 @@ def test_the_status_is_0_proved_3_refuted_2_anything_else(folder, monkeypatch, c
 
 
 def test_the_file_runs_alone_anywhere(folder):
-    for words, status in (("box.json --robot same.toml", 0), ("witness.json", 3), ("wrong.json", 2)):
+    for words, status in (
+        ("box.json --robot same.toml", 0),
+        ("witness.json", 3),
+        ("wrong.json", 2),
+    ):
         done = run(folder, *words.split())
         assert (done.returncode, done.stderr) == (status, "")
 
@@ -969,7 +970,9 @@ def colliding(count):
 def long_outline(count=1000):
     """An outline of many corners, not convex, with as many digits as may be."""
     x = [f"{0.6 + 0.0003 * k:.4f}{'1' * 35}" for k in range(count // 2)]
-    loop = [f"[{a}, {0.4 + (float(a) - 0.7) ** 2 / 2:.9f}]" for a in x] + [f"[{a}, 0.9]" for a in x[::-1]]
+    loop = [f"[{a}, {0.4 + (float(a) - 0.7) ** 2 / 2:.9f}]" for a in x] + [
+        f"[{a}, 0.9]" for a in x[::-1]
+    ]
     crate = "[[0.6, 0.4], [0.9, 0.4], [0.9, 0.7], [0.6, 0.7]]"
     return with_text(BODIES.replace(crate, f"[{', '.join(loop)}]"))
 
@@ -985,7 +988,10 @@ def free_joints(count, boundaries=0):
     wall = '[[boundary]]\nname = "w{}"\ntype = "half-space"\npoint = "tip"\nnormal = [0, 0, 1]\noffset = -99\n'
     home = ", ".join(f"q{j} = 0" for j in range(count))
     rows = [joint.format(j, j + 1, j % 2) for j in range(count)]
-    rows += [f'[[point]]\nname = "tip"\nframe = "{count}"\nat = [1, 0, 0]\n', *map(wall.format, range(boundaries))]
+    rows += [
+        f'[[point]]\nname = "tip"\nframe = "{count}"\nat = [1, 0, 0]\n',
+        *map(wall.format, range(boundaries)),
+    ]
     return ARM.split("[[joint]]")[0].replace("q1 = 0, q2 = 0", home) + "".join(rows)
 
 
@@ -1066,7 +1072,7 @@ def test_the_bounds_of_the_page_are_those_of_the_checker():
     for bound in (f"{check.MAX_JOINTS} joints", f"At most {check.MAX_DEPTH} cuts"):
         assert bound in page
     assert "1,800 degrees or 30 radians" in page
-    assert {"deg": 1800, "rad": 30} == check.LARGEST_ANGLE
+    assert check.LARGEST_ANGLE == {"deg": 1800, "rad": 30}
     bits = math.log2(check.SLACK / check.ONE)
     assert f"2<sup>-{check.BITS}</sup>" in page
     assert f"2<sup>{bits:.0f}</sup>" in page

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (a table)
 """Both checkers on mutants and on random robots; what they accept is true by other kinematics."""
 
 import os
@@ -25,20 +26,22 @@ ROBOTS = int(os.environ.get("QBOUND_CHECK_ROBOTS", "30"))
 
 @pytest.mark.parametrize("first", range(0, 2000, 100))
 def test_both_checkers_agree_on_mutants_and_what_they_accept_is_true(first):
-    faults = {seed: mutations.fault_of(mutations.mutant(seed), seed) for seed in range(first, first + 100)}
+    faults = {
+        seed: mutations.fault_of(mutations.mutant(seed), seed) for seed in range(first, first + 100)
+    }
     assert not {seed: fault for seed, fault in faults.items() if fault}
 
 
 LIES = {
     "a margin that is not kept": ("box", lambda d: d["claim"].update(margin="3")),
     "a larger box": ("bodies", lambda d: d["claim"]["points"][0].__setitem__(1, ["40", "15"])),
-    "a path into the crate": ("bodies, path", lambda d: d["claim"]["points"][0].append(["40", "0"])),
+    "a path to the crate": ("bodies, path", lambda d: d["claim"]["points"][0].append(["40", "0"])),
     "a witness that is safe": ("witness", lambda d: d["witness"].update(at=["0", "0"])),
     "a witness beside its set": ("witness", lambda d: d["witness"].update(at=["90", "2"])),
     "a witness of another thing": ("witness", lambda d: d["witness"]["place"].update(keep=1)),
     "a limit that is kept": ("limit", lambda d: d["witness"].update(limit="q2.lower")),
     "a path along one side": ("no path", lambda d: d["claim"].update(points=[[["70"], ["110"]]])),
-    "a path over a seam": ("no path, any turn", lambda d: d["claim"]["points"].__setitem__(0, [["170", "0"], ["-170", "0"]])),
+    "a path over a seam": ("no path, any turn", lambda d: d["claim"].update(points=[[["170", "0"], ["-170", "0"]]])),
 }  # fmt: skip
 
 
@@ -116,10 +119,12 @@ def test_what_is_accepted_of_random_robots_is_true():
     told = Counter()
     for seed in range(ROBOTS):
         for data in attempts(seed):
-            one, other = mutations.answers(data)
+            one, _ = mutations.answers(data)
             kind = data["claim"]["set"] + " " + one.partition(":")[0]
             told[kind] += 1
             if data["claim"]["set"] != "no path":  # found with the first one's own inequality
                 assert not one.startswith("refused"), (seed, one)
             assert mutations.fault_of(data, seed) == "", seed
-    assert {"box proved", "path proved", "box refuted", "no path proved", "no path refused"} <= {*told}, told
+    assert {"box proved", "path proved", "box refuted", "no path proved", "no path refused"} <= {
+        *told
+    }, told

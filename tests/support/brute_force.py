@@ -32,9 +32,7 @@ def tells_the_truth(content: dict[str, Any], seed: int = 0, samples: int = 400) 
     return bool(kept(robot, claim, q).min() >= -ROUNDING * (1 + np.abs(q).max()))
 
 
-def kept(
-    robot: dict[str, Any], claim: dict[str, Any], q: Array, limits: bool = True
-) -> Array:
+def kept(robot: dict[str, Any], claim: dict[str, Any], q: Array, limits: bool = True) -> Array:
     """Return the smallest margin of boundaries in use, and of limits, shape (N,)."""
     left_out = {row["name"] for row in boundaries(robot) if not row.get("used", True)}
     sides = [f"{joint['name']}.{side}" for joint in robot["joint"] for side in ("lower", "upper")]
@@ -181,7 +179,9 @@ def place(
         axis, x = unit(row["axis"]), sense * value
         r = turned(r, axis, x * radian) if turns else r + x[:, None] * axis
         for fixed, angle in zip(np.eye(3), row.get("rpy", (0, 0, 0)), strict=True):
-            r = turned(r, fixed, np.full(len(q), angle * radian))  # roll first, then pitch, then yaw
+            r = turned(
+                r, fixed, np.full(len(q), angle * radian)
+            )  # roll first, then pitch, then yaw
         r = r + np.array(row["origin"], dtype=float)
     return r
 

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (robots and a table)
 """Robots and certificates of every kind, small enough to be read: what checkers are tested on."""
 
 from __future__ import annotations
@@ -238,10 +239,14 @@ def moved(loop: Json, by: int) -> Json:
 
 BRIGHT = ARM.replace("offset = -1.5", "offset = 1.75")  # the tip at 2 touches it exactly
 BOOM = planar.planar(
-    "", "[-0.7, 0.2]", slide=True,
+    "",
+    "[-0.7, 0.2]",
+    slide=True,
     posts=planar.post("north", 0, 1.2, 1.2) + planar.post("south", 0, -1.2, 1.2),
 )
-SHORT = planar.planar("", "", posts=planar.post("north", 0, 1, 1.2) + planar.post("south", 0, -1, 1.2))
+SHORT = planar.planar(
+    "", "", posts=planar.post("north", 0, 1, 1.2) + planar.post("south", 0, -1, 1.2)
+)
 WIDE = planar.turning().replace("origin = [0, 0, 0]", "origin = [0, 0, 0]\nlimits = [-200, 200]")
 
 MAKERS: dict[str, tuple[str, Callable[[], Json]]] = {
@@ -269,7 +274,7 @@ MAKERS: dict[str, tuple[str, Callable[[], Json]]] = {
     "segments": ("proved", lambda: proved(SEGMENTS, box("60", "120"))),
     "lift": ("proved", lambda: proved(LIFT, box("-0.3 -0.1 -0.2", "0.1 0.2 0.3"))),
     "lift, path": ("proved", lambda: proved(LIFT, path("-0.2 -0.1 0, 0.1 0.2 9"))),
-    "no thing to keep": ("proved", lambda: proved(ARM.split("[[boundary]]")[0], box("0 0", "1 1"))),
+    "no thing to keep": ("proved", lambda: proved(ARM.split("[[boundary]]", maxsplit=1)[0], box("0 0", "1 1"))),
     "witness": ("refuted", lambda: refuted(ARM, box("0 0", "90 1"), at=["90", "0.5"])),
     "witness of a pair": ("refuted", lambda: refuted(ARM, box("-90 -130", "0 95"), at=["-48", "-124"])),
     "witness of a cell": (

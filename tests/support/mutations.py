@@ -50,7 +50,9 @@ def parent(data: Json, path: tuple[Any, ...]) -> Json:
     return data
 
 
-def where(wanted: Callable[[Json], object], change: Callable[[random.Random, Json], Json]) -> Change:
+def where(
+    wanted: Callable[[Json], object], change: Callable[[random.Random, Json], Json]
+) -> Change:
     """Return a change of one of the values that are of some sort."""
 
     def apply(rng: random.Random, data: Json) -> None:
@@ -96,7 +98,11 @@ def cut(rng: random.Random, tree: str) -> str:
     leaf = rng.choice((".", "0.", "1.", "2.", "7.", f"a{letter}.{letter}."))
     leaves = [*re.finditer("[0-9]*[.]", tree)]
     spot = rng.choice(leaves) if leaves else re.match("", tree)
-    found = [tree[:i] + letter + tree[i + 1 :], tree[:i] + tree[i + 1 :], tree[:i] + letter + tree[i:]]
+    found = [
+        tree[:i] + letter + tree[i + 1 :],
+        tree[:i] + tree[i + 1 :],
+        tree[:i] + letter + tree[i:],
+    ]
     found += [tree[: spot.start()] + leaf + tree[spot.end() :]] * 3 if spot else []
     return rng.choice([*found, ".", "0.", "a..", "a0.1.", "b..", letter])
 
@@ -153,15 +159,22 @@ def drop_or_rename(rng: random.Random, data: Json) -> None:
         if rng.random() < 0.5:
             table[rng.choice([*keys, "at", "cell", "limit", "triangles", "proof"])] = value
     else:
-        table[rng.choice(("extra", "at", "cell", "triangles", "joints", "limit"))] = other(rng, None)
+        table[rng.choice(("extra", "at", "cell", "triangles", "joints", "limit"))] = other(
+            rng, None
+        )
 
 
-PAIRS = [("revolute", "prismatic"), ('"pair"', '"half-space"'), ('"deg"', '"rad"'), ("used = false", ""),
-         ("clearance", "offset"), ("radius = ", "radius = -"), ("clearance = ", "clearance = -"),
-         ("limits", "rpy"), ("capsule", "disc"), ('"all"', '"none"'), ("crank", "rpy"),
-         ("parallelogram", "revolute"), ("[0, 0, 1]", "[0, 0, -1]"), ("[0, 1, 0]", "[1, 0, 0]")]  # fmt: skip
-ADDED = ["x = 1", "[[body]]", "[extra]", "home.q1 = 0", "used = false", "radius = 0.5", "clearance = 0",
-         'at = ["1", "2", "3"]', "limits = [-90, 90]", "limits = [-2, 2]", "rpy = [0, 90, 0]", "rpy = [0, 0, 30]"]  # fmt: skip
+PAIRS = [
+    *(("revolute", "prismatic"), ('"pair"', '"half-space"'), ('"deg"', '"rad"'), ("crank", "rpy")),
+    *(("clearance", "offset"), ("radius = ", "radius = -"), ("clearance = ", "clearance = -")),
+    *(("limits", "rpy"), ("capsule", "disc"), ('"all"', '"none"'), ("used = false", "")),
+    *(("parallelogram", "revolute"), ("[0, 0, 1]", "[0, 0, -1]"), ("[0, 1, 0]", "[1, 0, 0]")),
+]
+ADDED = [
+    *("x = 1", "[[body]]", "[extra]", "home.q1 = 0", "used = false", "radius = 0.5"),
+    *("clearance = 0", 'at = ["1", "2", "3"]', "limits = [-90, 90]", "limits = [-2, 2]"),
+    *("rpy = [0, 90, 0]", "rpy = [0, 0, 30]"),
+]
 
 
 def in_robot(rng: random.Random, data: Json) -> None:

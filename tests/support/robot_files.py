@@ -12,8 +12,7 @@ def robot_file(
     rng = random.Random(seed)
     frames = ["0", *(f"f{j}" for j in range(1, joints + 1))]
     lines = [
-        'schema = 1\nname = "random"\nlength_unit = "cm"\nangle_unit = "'
-        f'{unit}"',
+        f'schema = 1\nname = "random"\nlength_unit = "cm"\nangle_unit = "{unit}"',
         f"home = {{ {', '.join(f'q{j} = 0' for j in range(1, joints + 1))} }}\ntool = 'tip'",
     ]
     for j in range(joints):
