@@ -1,4 +1,4 @@
-"""What is proved? Exact numbers, balls, cells, and certificates that a checker accepts.
+"""Proofs: exact numbers, balls, cells, and certificates that a checker accepts.
 
 - answers: `verdict` (proved, refuted, undecided: of every prover);
 - numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
@@ -20,8 +20,6 @@
   their halves, the search that cuts them), `safe` (a direction for each leaf), `contact` (places
   of two hulls that are too near), `witness` (what refutes), `no_path` (that nothing leads from
   start to goal), `separator` (few boxes that separate), `minorant` (other bounds, to compare);
-- the second checker, after `qbound.check`: `grammar`, `grammar_robot` and `grammar_values` (what a
-  file may say), `cells` (what makes up the set), `interpolation` (boundary functions), `flat_balls`
-  (bodies in the plane of motion), `leaves` (bounds on leaves), `check_disconnected`, `check_arb`;
+- `second`: the second checker, which shares nothing with `qbound.check` nor with the provers;
 - `reports`: what was proved, as JSON and in words.
 """
