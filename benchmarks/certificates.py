@@ -17,7 +17,7 @@ sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
 from qbound import check
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import boxes, check_arb, statements
+from qbound.proofs import safe, second, statements
 from qbound.proofs.certify import certify
 from support.six_joints import around_home, six_joint_arm
 from test_boxes import least_margins
@@ -43,12 +43,12 @@ def seconds(task: Callable[[], Any]) -> tuple[float, Any]:
 
 def longest_edges(text: str, statement: dict[str, Any]) -> int:
     """Return the cells that halving the longest edge takes."""
-    ours = boxes.BoxBound.worst_joints
-    boxes.BoxBound.worst_joints = lambda self, centres, halves: halves.argmax(axis=1)  # type: ignore[method-assign]
+    ours = safe._Judge._cuts
+    safe._Judge._cuts = lambda self, kind, rows, cells, seen: cells.halfwidths.argmax(axis=1)  # type: ignore[method-assign]
     try:
         return certify(text, statement, most=100_000).leaves
     finally:
-        boxes.BoxBound.worst_joints = ours  # type: ignore[method-assign]
+        safe._Judge._cuts = ours  # type: ignore[method-assign]
 
 
 def main() -> None:
@@ -60,7 +60,7 @@ def main() -> None:
             text, statement = arm(half, left), statements.box(*around_home(half))
             proving, answer = seconds(lambda: certify(text, statement))  # noqa: B023
             checking, _ = seconds(lambda: check.check(answer.text))  # noqa: B023
-            balls, _ = seconds(lambda: check_arb.verify(answer.text))  # noqa: B023
+            balls, _ = seconds(lambda: second.verify(answer.text))  # noqa: B023
             row = (f"+-{half}", left or "as it is", answer.verdict, answer.leaves)
             times = (f"{x:.2f}" for x in (proving, checking, balls))
             print("|", " | ".join(map(str, (*row, longest_edges(text, statement), *times))), "|")

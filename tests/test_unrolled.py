@@ -9,7 +9,7 @@ import pytest
 from qbound import check, find_region
 from qbound.geometry import polygon
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import check_arb, statements, unrolled
+from qbound.proofs import second, statements, unrolled
 from qbound.proofs.certify import certify
 
 ARM = """schema = 1
@@ -80,9 +80,9 @@ def test_a_component_that_goes_round_is_proved_and_said_to_go_round(name):
     statement = statements.inner_polygon(robot, 0.3)
     answer = certify(text, statement)
     assert answer.verdict == "proved"
-    assert check_arb.verify(answer.text) == "proved"
-    said = check.check(answer.text)[1]
-    assert [f"takes every angle of '{q}'" in said for q in ("q1", "q2")] == list(component.wraps)
+    assert second.verify(answer.text) == "proved"
+    said = check.check(answer.text).said
+    assert [f"'{q}' takes every angle" in said for q in ("q1", "q2")] == list(component.wraps)
     degrees = robot.angle_unit == "deg"
     points = [tuple(map(Fraction, point)) for loop in statement["points"] for point in loop]
     widths = [max(column) - min(column) for column in zip(*points, strict=True)]

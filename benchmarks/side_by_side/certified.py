@@ -25,7 +25,7 @@ def text_of(scene: str) -> str:
 
 def rings_of(certificate: str, degrees: bool) -> list[list[list[list[float]]]]:
     """Return the polygon that a certificate is about, in radians: one component, its loops."""
-    loops = json.loads(certificate)["statement"]["points"]
+    loops = json.loads(certificate)["claim"]["points"]
     turn = radians if degrees else float
     return [[[[turn(float(x)) for x in point] for point in loop] for loop in loops]]
 

@@ -2,25 +2,32 @@
 
 import random
 
+ALL_KINDS = "revolute revolute prismatic parallelogram"
 
-def robot_file(seed: int, joints: int = 2, kinds: str = "revolute prismatic") -> str:
+
+def robot_file(
+    seed: int, joints: int = 2, kinds: str = "revolute prismatic", unit: str = "deg"
+) -> str:
     """Write a robot whose numbers are short decimals, so that every reader sees the same ones."""
     rng = random.Random(seed)
     frames = ["0", *(f"f{j}" for j in range(1, joints + 1))]
     lines = [
-        'schema = 1\nname = "random"\nlength_unit = "cm"\nangle_unit = "deg"',
+        f'schema = 1\nname = "random"\nlength_unit = "cm"\nangle_unit = "{unit}"',
         f"home = {{ {', '.join(f'q{j} = 0' for j in range(1, joints + 1))} }}\ntool = 'tip'",
     ]
     for j in range(joints):
         kind = rng.choice(kinds.split())
-        rpy = f"rpy = {_vector(rng, 90)}\n" if rng.random() < 0.4 else ""
+        rpy = f"rpy = {_vector(rng, 90 if unit == 'deg' else 3)}\n" if rng.random() < 0.4 else ""
         limits = "limits = [-4, 6]\n" if kind == "prismatic" else ""
+        if kind == "parallelogram":
+            limits += f'bar = "b{j + 1}"\ncrank = {_vector(rng, 8)}\n'
         lines.append(
             f'[[joint]]\nname = "q{j + 1}"\ntype = "{kind}"\nparent = "{frames[j]}"\n'
             f'frame = "{frames[j + 1]}"\norigin = {_vector(rng, 8)}\naxis = {_vector(rng, 1)}\n'
             f"{rpy}{limits}"
         )
-    for name, frame in [("tip", frames[-1]), ("base", "0"), ("mid", rng.choice(frames))]:
+    bars = [f"b{j}" for j in range(len(frames)) if f'bar = "b{j}"' in "".join(lines)]
+    for name, frame in [("tip", frames[-1]), ("base", "0"), ("mid", rng.choice(frames + bars))]:
         lines.append(
             f'[[point]]\nname = "{name}"\nframe = "{frame}"\nat = {_vector(rng, 9)}\n'
             f"radius = {rng.randint(0, 20) / 10}\n"

@@ -35,10 +35,10 @@ def certify(scene: str, iterations: int = 0) -> Timed:
 
 def check(scene: str) -> Timed:
     """Check by the checker that takes balls of Arb."""
-    from qbound.proofs import check_arb
+    from qbound.proofs import second
 
     found = certificate(scene)
-    wall, processor, _ = timed(lambda: check_arb.verify(found.text))
+    wall, processor, _ = timed(lambda: second.verify(found.text))
     return wall, processor, described(scene, found)
 
 

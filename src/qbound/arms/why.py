@@ -28,9 +28,8 @@ from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
-from qbound.proofs.disconnected import certify_disconnected
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
-from qbound.proofs.no_path import certify_no_path
+from qbound.proofs.no_path import certify_disconnected, certify_no_path
 from qbound.proofs.paving import Paving
 from qbound.proofs.proved_region import prove_region, proved_component
 from qbound.proofs.structure import Structure
@@ -458,7 +457,7 @@ def _proved_components(asked: _Asked, region: Region) -> tuple[int, int]:
 
 def _for_file(asked: _Asked) -> Certificate | None:
     """Return a certificate that two ends are separated, where a paving of few cells gives one."""
-    if no_certificate(asked.robot) or _of_bodies(asked.robot):
+    if no_certificate(asked.robot):
         return None
     start, goal = asked.ends[:, asked.moving]
     found = connection(asked.problem, start, goal, FEW_CELLS)
@@ -502,7 +501,7 @@ def _paved(asked: _Asked) -> Why | str:
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
-    if no_certificate(asked.robot) or _of_bodies(asked.robot):
+    if no_certificate(asked.robot):
         return None
     certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None

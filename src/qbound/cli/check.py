@@ -1,4 +1,4 @@
-"""``qbound check``: check a certificate, as ``python -I check.py`` does."""
+"""The command ``qbound check``: check a certificate, as ``python -I check.py`` does."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 from qbound import check
 from qbound.cli.terminal import say
 from qbound.model.robotfile import robot_text
-from qbound.proofs import check_arb
 from qbound.proofs.reports import folded
 
 
@@ -23,24 +22,19 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("certificate")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")
-    parser.add_argument("--sha256", metavar="HASH", help="the hash of that robot's file")
     parser.add_argument("--arb", action="store_true", help="check with python-flint as well")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Check; 0 proved, 3 refuted, 2 anything else, as `check.py`: 1 is no answer."""
-    if options.robot is not None and options.sha256 is not None:
-        raise ValueError("a robot and --sha256: give one of them")
-    if "" in (options.robot, options.sha256):
-        raise ValueError("an empty robot or hash pins nothing: name the robot or leave it out")
-    pin = options.sha256
-    if options.robot is not None:
-        pin = check.digest(robot_text(options.robot)[0])
+    if options.robot == "":
+        raise ValueError("an empty robot compares with nothing: name the robot or leave it out")
+    pin = None if options.robot is None else robot_text(options.robot)[0]
     with Path(options.certificate).open("rb") as file:
         data = file.read(check.MAX_FILE + 1)  # once: both checkers judge the same text
     try:
-        answer = check.check(data, pin)
+        answer = check.check(data, pin, options.robot or "")
     except ValueError as error:
         say(*folded(f"not proved: {error}"))
         return check.NO_ANSWER
@@ -56,7 +50,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _second_answer(data: bytes) -> str:
     """Return the verdict of the second checker, or why it has none."""
+    from qbound.proofs import second
+
     try:
-        return check_arb.verify(data).value
+        return second.verify(data).value
     except ValueError as error:
         return f"not proved: {error}"

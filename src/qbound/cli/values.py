@@ -72,7 +72,7 @@ def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
 
     Decimals of the robot file's units; a joint that is not named has its limits.
     """
-    from qbound.proofs.points import limits_as_decimals  # with the grammar of certificates
+    from qbound.proofs.points import limits_as_decimals  # with the decimals of certificates
 
     found = {}
     for text in texts:

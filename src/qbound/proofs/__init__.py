@@ -1,4 +1,4 @@
-"""What is proved? Exact numbers, balls, cells, and certificates that a checker accepts.
+"""Proofs: exact numbers, balls, cells, and certificates that a checker accepts.
 
 - answers: `verdict` (proved, refuted, undecided: of every prover);
 - numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
@@ -13,15 +13,13 @@
   `trigonometry` (cosines and sines of arrays, with a proved error),
   `connection` (what is joined, and what is not), `blocked` (ranges of one joint that nothing
   passes);
-- bodies: `parts` (of outlines), `features` (what separates them), `separating` (the search for one
-  on each cell), `overlap` (places that refute);
+- bodies: `parts` (convex parts of outlines);
 - certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
-  which polygon), `unrolled` (what goes all the way round a joint, cut open), `minorant` (lower
-  bounds), `boxes` (the search over a box) and `forest` (the cuts of a search), `certify` (the
-  search, and the file), `no_path` (that nothing leads past a range), `separator` (few boxes that
-  separate) and `disconnected` (that nothing leads round them), `witness` (what refutes);
-- the second checker, after `qbound.check`: `grammar`, `grammar_robot` and `grammar_values` (what a
-  file may say), `cells` (what makes up the set), `interpolation` (boundary functions), `flat_balls`
-  (bodies in the plane of motion), `leaves` (bounds on leaves), `check_disconnected`, `check_arb`;
+  which polygon), `unrolled` (what goes all the way round a joint, cut open), `certify` (prove,
+  refute, and write the file), `inequality` (the one inequality, in floats), `subdivide` (cells,
+  their halves, the search that cuts them), `safe` (a direction for each leaf), `contact` (places
+  of two hulls that are too near), `witness` (what refutes), `no_path` (that nothing leads from
+  start to goal), `separator` (few boxes that separate), `minorant` (other bounds, to compare);
+- `second`: the second checker, which shares nothing with `qbound.check` nor with the provers;
 - `reports`: what was proved, as JSON and in words.
 """

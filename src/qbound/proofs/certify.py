@@ -1,7 +1,7 @@
 """Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
 
-The search here is floating point and untrusted: what it finds is written down, and the checkers
-(`check`, `check_arb`) decide. See `forms.bending` for the bound, `statements` for the sets.
+The search here is floating point and untrusted: what it finds is written down in the format of the
+book's page "The certificate", and the checkers decide.
 """
 
 from __future__ import annotations
@@ -10,63 +10,37 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
+from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from qbound import check
-from qbound.boundary.functions import clearance
 from qbound.export.formats import json_text
-from qbound.forms.bending import second_order, worst_edges
-from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.simplices import halved
-from qbound.model.robot import BodyPair, Boundary, Parallelogram, Robot
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.boxes import search_box
-from qbound.proofs.cells import Cell, cells_of
-from qbound.proofs.features import (
-    Features,
-    Parts,
-    all_features,
-    asked_distance,
-    is_of_bodies,
-    parts_of,
-)
-from qbound.proofs.forest import Forest, Search, Tell, silent
-from qbound.proofs.grammar import GRAMMAR, GRAMMAR_OF_BODIES, read_statement
-from qbound.proofs.grammar_robot import read_robot
-from qbound.proofs.minorant import Bound
-from qbound.proofs.separating import Simplices, box_cell, search_features, together
+from qbound.proofs import safe
+from qbound.proofs.inequality import Arm, Floats
+from qbound.proofs.parts import parts_of
 from qbound.proofs.statements import (
     Statement,
     decimal,
     home_vertices,
     inner_polygon,
     scaled_polygon,
-    units,
-    wider,
 )
+from qbound.proofs.subdivide import Search, Tell, silent
 from qbound.proofs.triangulation import CrossesItself
 from qbound.proofs.verdict import Verdict
-from qbound.proofs.witness import Evidence, Witness, beyond_limits, deepest, witness
-from qbound.tolerances import NEGLIGIBLE
-
-Floats = NDArray[np.float64]
+from qbound.proofs.witness import Evidence, Witness, beyond_limits, cells_of, deepest, witness
 
 MOST_CELLS = 200_000
 """Cells that a search opens for one boundary before it gives up."""
 
-FIRST_LOOK = 1000
-"""Cells opened for one boundary at first: enough to see that most sets are not safe."""
+FEW_CELLS = 20_000
+"""The same for each scale that `bracket_scale` tries."""
 
 SEARCHING = 0.99
 """Part of the work that is told of as the search; the rest is the check of what it found."""
-
-DEEPEST = 60
-"""Cuts on top of each other before a search gives up; the checkers follow 120."""
-
 
 PER_ARC = (12, 48, 192)
 """Points on each arc of a region, in turn, until its polygon is proved."""
@@ -103,30 +77,71 @@ class Certificate:
 
 def no_certificate(robot: Robot) -> str:
     """Say why no certificate can hold a robot; empty where one can."""
-    count = len(robot.joints)
-    if count > check.MAX_JOINTS:
-        return f"certificates take at most {check.MAX_JOINTS} joints; this robot has {count}"
-    if any(isinstance(joint, Parallelogram) for joint in robot.joints):
-        return "certificates know no parallelogram"
+    for most, count, what in (
+        (check.MAX_JOINTS, len(robot.joints), "joints"),
+        (check.MAX_BOUNDARIES, len(robot.used), "boundaries"),
+    ):
+        if count > most:
+            return f"certificates take at most {most:,} {what}; this robot has {count:,}"
     return ""
 
 
-def _certifiable(text: str) -> Robot:
-    """Read a robot, and refuse it before any work if no certificate can hold it."""
-    robot = parse_robot(tomllib.loads(text))
-    reason = no_certificate(robot)
-    if reason:
-        raise ValueError(reason)
-    return robot
+@dataclass(frozen=True)
+class Subject:
+    """A robot that a certificate is about: its text, and what certificates make of it.
+
+    Raises
+    ------
+    ValueError
+        Where it is used, if no certificate can hold the robot.
+    """
+
+    text: str
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The robot, refused before any work if no certificate can hold it."""
+        robot = parse_robot(tomllib.loads(self.text))
+        reason = no_certificate(robot)
+        if reason:
+            raise ValueError(reason)
+        return robot
+
+    @cached_property
+    def parts(self) -> dict[str, list[list[int]]]:
+        """Convex parts of the outlines that are not convex."""
+        return parts_of(self.robot)
+
+    @cached_property
+    def form(self) -> dict[str, Any]:
+        """The normal form."""
+        return check.normal_form(self.text, self.parts)
+
+    def written(self, claim: Statement, **evidence: Any) -> str:
+        """Return the file of a claim with its proof or witness."""
+        content = {
+            "schema": check.SCHEMA,
+            "claim": claim,
+            "parts": self.parts,
+            "robot": self.text,
+            "sha256": check.digest(check.canonical(self.form)),
+            **evidence,
+        }
+        return json_text(content)
+
+    def confirmed(self, claim: Statement, verdict: Verdict, **evidence: Any) -> Certificate:
+        """Write a file and hand it to the checker: what that does not confirm is not answered."""
+        text = self.written(claim, **evidence)
+        try:
+            said = check.check(text).said
+        except ValueError as error:
+            said = f"not confirmed in exact arithmetic: {error}"
+            return Certificate(Verdict.UNDECIDED, "", said)
+        return Certificate(verdict, text, said)
 
 
 def certify(
-    text: str,
-    statement: Statement,
-    *,
-    most: int = MOST_CELLS,
-    bound: Bound = second_order,
-    tell: Tell = silent,
+    text: str, statement: Statement, *, most: int = MOST_CELLS, tell: Tell = silent
 ) -> Certificate:
     """Prove or refute that every boundary in use holds all over a set.
 
@@ -138,9 +153,6 @@ def certify(
         From `statements`.
     most : int
         Cells that are opened for one boundary before the answer is "undecided".
-    bound : callable
-        The lower bound on a simplex; the checkers only follow `minorant.second_order`. A box has
-        its own, see `boxes`.
     tell : callable
         Told how far it is, from 0 to 1.
 
@@ -160,7 +172,7 @@ def certify(
 
     Nobody has to believe it: the checker stands alone, and says whether the statement is refuted.
 
-    >>> check.check(answer.text)[0]
+    >>> check.check(answer.text).refuted
     False
 
     What is not safe is refuted, with a configuration that violates a boundary:
@@ -169,29 +181,34 @@ def certify(
     >>> answer.verdict.value, answer.witness is not None
     ('refuted', True)
     """
-    robot = _certifiable(text)
-    exact = read_robot(text)
-    cells = cells_of(read_statement(statement, exact), GRAMMAR)
-    parts = parts_of(robot, exact)
-    evidence = beyond_limits(exact, statement, cells)
+    subject = Subject(text)
+    return _certified(subject, statement, most, tell)
+
+
+def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
+    form = subject.form
+    check.read_claim(statement, check.read_robot(subject.text, subject.parts))
+    arm = Arm(form, Fraction(statement["margin"]))
+    evidence = beyond_limits(arm, statement)
     if evidence is not None:
-        return _refuted(text, robot, statement, cells, evidence, parts)
-    corners = [cell.corners for cell in cells]
-    for few in (min(most, FIRST_LOOK), most):
-        searches = search_all(
-            robot, statement, corners, few, bound, lambda part: tell(SEARCHING * part), parts=parts
-        )
-        verdict = _verdict(searches)
-        if verdict is not Verdict.UNDECIDED:
-            break
-    if verdict is Verdict.UNDECIDED:
-        return Certificate(verdict, "", _left(searches), searches)
-    if verdict is Verdict.PROVED:
-        proof = {name: list(found.trees) for name, found in searches.items()}
-        return _confirmed(text, statement, verdict, searches, parts, proof=proof)
-    violated = {name: f.violation for name, f in searches.items() if f.violation is not None}
-    evidence = deepest(robot, statement, cells, violated, parts)
-    return _refuted(text, robot, statement, cells, evidence, parts, searches)
+        return _refuted(subject, arm, statement, evidence, {})
+    cells = cells_of(arm, statement)
+    found, directions = safe.search(arm, cells, most, lambda part: tell(SEARCHING * part))
+    searches = by_boundary(arm, found)
+    violated = {k: search.violation for k, search in found.items() if search.violation is not None}
+    if violated:
+        return _refuted(subject, arm, statement, deepest(arm, statement, violated), searches)
+    if any(search.left for search in found.values()):
+        return Certificate(Verdict.UNDECIDED, "", _left(searches), searches)
+    proof = proof_of(arm, found, directions)
+    answer = subject.confirmed(statement, Verdict.PROVED, proof=proof)
+    return replace(answer, searches=searches)
+
+
+def proof_of(arm: Arm, found: Mapping[int, Search], directions: list[list[int]]) -> dict[str, Any]:
+    """Return the proof of a set as a certificate writes it."""
+    trees = [[*found[k].trees] if k in found else [] for k in range(len(arm.names))]
+    return {"directions": directions, "trees": trees}
 
 
 def certify_region(
@@ -207,11 +224,11 @@ def certify_region(
     too few points, and says nothing of the component: it is drawn again through more, and what is
     left in the end is undecided.
     """
-    robot = _certifiable(text)
+    subject = Subject(text)
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
-            statement = inner_polygon(robot, inset, per_arc, margin, held)
-            answer = certify(text, statement, tell=tell)
+            statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
+            answer = _certified(subject, statement, MOST_CELLS, tell)
             if answer.verdict is not Verdict.REFUTED:
                 return answer
     why = "undecided: the polygon through points of the region's arcs leaves the region or crosses"
@@ -219,197 +236,34 @@ def certify_region(
 
 
 def _refuted(
-    text: str,
-    robot: Robot,
+    subject: Subject,
+    arm: Arm,
     statement: Statement,
-    cells: Sequence[Cell],
     evidence: Evidence,
-    parts: Parts | None,
-    searches: dict[str, Search] | None = None,
+    searches: dict[str, Search],
 ) -> Certificate:
     """Write a refutation, and say how deep its witness lies."""
-    answer = _confirmed(text, statement, Verdict.REFUTED, searches or {}, parts, **evidence)
-    return replace(answer, witness=witness(robot, statement, cells, evidence, parts))
+    answer = subject.confirmed(statement, Verdict.REFUTED, witness=evidence)
+    return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
 
 
-def _verdict(searches: dict[str, Search]) -> Verdict:
-    """Return the answer of searches, which nothing has confirmed."""
-    refuted = any(found.violation is not None for found in searches.values())
-    return Verdict.of(not any(found.left for found in searches.values()), refuted)
+def by_boundary(arm: Arm, found: Mapping[int, Search]) -> dict[str, Search]:
+    """Put the searches of all pairs of parts of two bodies together, by name."""
+    groups: dict[str, list[Search]] = {}
+    for k, search in found.items():
+        groups.setdefault(arm.names[k], []).append(search)
+    return {name: _together(searches) for name, searches in groups.items()}
 
 
-def search_all(
-    robot: Robot,
-    statement: Statement,
-    cells: Sequence[Any],
-    most: int,
-    bound: Bound = second_order,
-    tell: Tell = silent,
-    *,
-    parts: Parts | None = None,
-) -> dict[str, Search]:
-    """Search every boundary in use that can be violated at all.
-
-    Parameters
-    ----------
-    cells : sequence of sequence of point
-        Corners of simplices; of a box the low and the high one. In the file's units.
-    parts : mapping, optional
-        From `parts_of`; needed of a robot with pairs of bodies.
-    """
-    corners = np.array(cells, dtype=float) * units(robot)
-    forms, bodies = _forms(robot, statement), _between_bodies(robot, statement)
-    count, found = len(forms) + len(bodies), {}
-    for k, (name, form) in enumerate(forms.items()):
-        told = partial(_tell_of_all, tell, k, count)
-        if statement["set"] == "box":
-            found[name] = search_box(form, corners[0, 0], corners[0, 1], most, told)
-        else:
-            found[name] = search(form, corners, most, bound, told)
-    for k, (asked, boundary) in enumerate(bodies, len(forms)):
-        told = partial(_tell_of_all, tell, k, count)
-        features = all_features(asked, boundary, parts or {})
-        found[boundary.name] = _search_bodies(features, corners, statement["set"], most, told)
-    return found
-
-
-def _search_bodies(
-    features: Sequence[Features], corners: Floats, kind: str, most: int, tell: Tell
-) -> Search:
-    """Search all pairs of parts of two bodies, or the places of one above a plane."""
-    cells = box_cell(corners[0, 0], corners[0, 1]) if kind == "box" else Simplices(corners)
-    found = []
-    for k, pair in enumerate(features):
-        told = partial(_tell_of_all, tell, k, len(features))
-        found.append(search_features(pair, cells, most, told))
-        if found[-1].violation is not None:
-            break
-    return together(found)
-
-
-def _tell_of_all(tell: Tell, k: int, count: int, part: float) -> None:
-    tell((k + part) / count)
-
-
-def search(
-    form: HarmonicForm,
-    cells: Floats,
-    most: int,
-    bound: Bound = second_order,
-    tell: Tell = silent,
-) -> Search:
-    """Cut cells across the edge that bends most until the bound is positive on each.
-
-    Parameters
-    ----------
-    cells : ndarray, shape (N, k, n)
-        Corners of simplices, rad or length.
-    """
-    slack = NEGLIGIBLE * np.abs(form.waves.amplitudes).sum()
-    forest = Forest(len(cells))
-    numbers, roots, parts = np.arange(len(cells)), np.arange(len(cells)), np.ones(len(cells))
-    leaves, opened = 0, 0
-    for _ in range(DEEPEST):
-        centres = form(cells.mean(axis=1))
-        if len(cells) and centres.min() < -slack:
-            worst, left = int(centres.argmin()), float(parts.sum() / forest.size)
-            violation = int(roots[worst]), cells[worst].mean(axis=0)
-            return Search((), leaves, len(cells), left, violation)
-        proved = bound(form, cells) > slack
-        forest.close(numbers[proved])
-        leaves, opened = leaves + int(proved.sum()), opened + len(cells)
-        cells, numbers, roots, parts = (x[~proved] for x in (cells, numbers, roots, parts))
-        tell(1 - float(parts.sum()) / forest.size)
-        if not len(cells) or opened > most:
-            break
-        edges = worst_edges(form, cells)
-        cells, numbers = halved(cells, edges), forest.cut(numbers, edges)
-        roots, parts = np.repeat(roots, 2), np.repeat(parts / 2, 2)
-    return Search(forest.trees(), leaves, len(cells), float(parts.sum() / max(forest.size, 1)))
-
-
-def leaves(cells: Floats, trees: Sequence[str]) -> Floats:
-    """Return the simplices on which a proof rests, shape (N, k, n), from its cells and trees."""
-    found = []
-    for cell, tree in zip(cells, trees, strict=True):
-        todo = [cell]
-        for letter in tree:
-            top = todo.pop()
-            if letter == ".":
-                found.append(top)
-            else:
-                edge = np.array([ord(letter) - ord("a")])
-                todo += list(halved(top[None], edge)[::-1])
-    return np.array(found)
-
-
-# --- what is asked for ----------------------------------------------------------------------------
-
-
-def _forms(robot: Robot, statement: Statement) -> dict[str, HarmonicForm]:
-    """Forms of the boundaries of points in use, by name; without those that nothing can violate."""
-    asked = wider(robot, statement)
-    return {
-        boundary.name: clearance(asked, boundary)
-        for boundary in asked.used
-        if not is_of_bodies(boundary) and asked.least_distance(boundary) != 0
-    }
-
-
-def _between_bodies(robot: Robot, statement: Statement) -> list[tuple[Robot, Boundary]]:
-    """Return the boundaries of bodies that anything can violate, with the robot that asks."""
-    asked = wider(robot, statement)
-    bodies = [boundary for boundary in asked.used if is_of_bodies(boundary)]
-    return [(asked, boundary) for boundary in bodies if _can_be_violated(asked, boundary)]
-
-
-def _can_be_violated(robot: Robot, boundary: Boundary) -> bool:
-    """Tell whether it needs a proof: what has no inside is 0 apart, but for two segments."""
-    if not isinstance(boundary, BodyPair):
-        return True
-    bodies = [robot.body(name) for name in boundary.bodies]
-    corners = sum(len(body.shape.places) for body in bodies)
-    return corners > 3 or asked_distance(robot, boundary) != 0
-
-
-# --- the file -------------------------------------------------------------------------------------
-
-
-def _confirmed(
-    robot: str,
-    statement: Statement,
-    verdict: Verdict,
-    searches: dict[str, Search],
-    parts: Parts | None = None,
-    **evidence: Any,
-) -> Certificate:
-    """Write the file of grammar 2, or of bodies, and hand it to the checker."""
-    if parts is not None:
-        evidence = {"parts": parts, **evidence}
-    grammar = GRAMMAR if parts is None else GRAMMAR_OF_BODIES
-    found = confirmed(robot, grammar, statement, verdict, **evidence)
-    return replace(found, searches=searches)
-
-
-def confirmed(
-    robot: str, grammar: int, statement: Statement, verdict: Verdict, **evidence: Any
-) -> Certificate:
-    """Write a file and hand it to the checker: what that does not confirm is not answered."""
-    content = {
-        "schema": f"qbound/certificate/{grammar}",
-        "verdict": verdict,
-        "statement": statement,
-        "robot": robot,
-        "sha256": check.digest(robot),
-        **evidence,
-    }
-    text = json_text(content)
-    try:
-        said = check.check(text).said
-    except ValueError as error:
-        said = f"not confirmed in exact arithmetic: {error}"
-        return Certificate(Verdict.UNDECIDED, "", said)
-    return Certificate(verdict, text, said)
+def _together(searches: Sequence[Search]) -> Search:
+    violations = [found.violation for found in searches if found.violation is not None]
+    return Search(
+        trees=tuple(tree for found in searches for tree in found.trees),
+        leaves=sum(found.leaves for found in searches),
+        left=sum(found.left for found in searches),
+        part_left=max(found.part_left for found in searches),
+        violation=violations[0] if violations else None,
+    )
 
 
 def _left(searches: dict[str, Search]) -> str:
@@ -448,27 +302,24 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
     highest : float
         Scales above it are not tried.
     """
-    robot = _certifiable(text)
-    corners, parts = home_vertices(robot), parts_of(robot, read_robot(text))
+    subject = Subject(text)
+    arm, corners = Arm(subject.form), home_vertices(subject.robot)
     low, high, tries = 0.0, 0.0, highest
     while low < highest and (not low or not high or high - low > width) and tries > width:
-        answer = _tried(robot, scaled_polygon(robot, corners, tries), parts)
-        if answer is Verdict.UNDECIDED:
+        cells = cells_of(arm, scaled_polygon(subject.robot, corners, tries))
+        found = safe.search(arm, cells, FEW_CELLS)[0].values()
+        if any(search.violation is not None for search in found):
+            high = tries
+        elif any(search.left for search in found):
             break
-        low, high = (tries, high) if answer is Verdict.PROVED else (low, tries)
+        else:
+            low = tries
         tries = round((low + high) / 2, 12)
-    return Bracket(*(_at_scale(text, robot, corners, scale) for scale in (low, high)))
+    return Bracket(*(_at_scale(subject, corners, scale) for scale in (low, high)))
 
 
-def _tried(robot: Robot, statement: Statement, parts: Parts | None) -> Verdict:
-    loop = statement["points"][0]
-    cells = [[loop[k] for k in triangle] for triangle in statement["triangles"]]
-    return _verdict(search_all(robot, statement, cells, 20 * FIRST_LOOK, parts=parts))
-
-
-def _at_scale(
-    text: str, robot: Robot, corners: Floats, scale: float
-) -> tuple[str, Certificate | None]:
+def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Certificate | None]:
     if not scale:
         return "", None
-    return decimal(scale), certify(text, scaled_polygon(robot, corners, scale))
+    statement = scaled_polygon(subject.robot, corners, scale)
+    return decimal(scale), _certified(subject, statement, MOST_CELLS, silent)

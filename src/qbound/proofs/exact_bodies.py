@@ -27,7 +27,6 @@ from qbound.boundary.contacts import SIDES
 from qbound.boundary.functions import position, squared_distance
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.convex import convex_parts
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Point, Robot
 from qbound.printable import printable
 from qbound.proofs import parts
@@ -196,7 +195,7 @@ def _cores(body: Body, flat: int) -> Iterator[Core]:
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
     seen = [k for k in range(3) if k != flat]
     corners = [tuple(_fraction(place[k]) for k in seen) for place in places]
-    cut = _cut(corners, body.name) if len(places) > 2 else [list(range(len(places)))]
+    cut = parts.cut(corners, body.name) if len(places) > 2 else [list(range(len(places)))]
     sense = 1 if len(places) < 3 or parts.turns_left(corners) else -1
     edges = {edge for part in cut if len(part) > 2 for edge in _around(part)}
     for part in cut:
@@ -215,17 +214,6 @@ def _cores(body: Body, flat: int) -> Iterator[Core]:
 def _around(part: Sequence[int]) -> list[tuple[int, int]]:
     """Return the edges of a part, by the numbers of their ends."""
     return list(zip(part, [*part[1:], part[0]], strict=True))
-
-
-def _cut(corners: Sequence[tuple[Fraction, ...]], name: str) -> Sequence[Sequence[int]]:
-    """Cut an outline into convex parts; those of one with long decimals are verified."""
-    try:
-        return parts.cut(corners)
-    except ValueError:
-        found = convex_parts(np.array(corners, dtype=float))
-        own = found if parts.turns_left(corners) else [part[::-1] for part in found]
-        parts.check_parts(corners, own, name)
-        return own
 
 
 def _fraction(x: Any) -> Fraction:

@@ -1,21 +1,28 @@
 r"""Lower bounds of a boundary function over simplices of joint space (not in the paper).
 
-Three bounds from below: by the second derivative, which the certificates use, and two simpler ones
-to compare it with.
+Certificates have a bound of their own, on the way of a corner (`inequality`). These three are on
+the boundary function, a sum of waves, and are here to compare: by the second derivative, by the
+range of each wave, and by the slope.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.forms.bending import second_order
+from qbound.boundary.functions import clearance
+from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
+from qbound.model.robot import Robot
+from qbound.proofs.statements import Statement, corners_of, units, wider
+from qbound.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
+from qbound.tolerances import NEGLIGIBLE
 
-__all__ = ["Bound", "lipschitz", "natural", "second_order"]
+__all__ = ["Bound", "lipschitz", "natural", "search_all", "second_order"]
 
 Floats = NDArray[np.float64]
 
@@ -42,3 +49,41 @@ def natural(form: HarmonicForm, cells: Floats) -> Floats:
     trough = np.floor((high - math.pi) / (2 * math.pi)) >= np.ceil((low - math.pi) / (2 * math.pi))
     least = np.where(trough, -1.0, np.minimum(np.cos(low), np.cos(high)))
     return np.asarray(least @ np.abs(waves.amplitudes))
+
+
+def search_all(
+    robot: Robot, statement: Statement, bound: Bound, most: int = 300_000
+) -> dict[str, Search]:
+    """Cut the triangles of a polygon until a bound is positive on each, for every boundary in use.
+
+    Parameters
+    ----------
+    robot : Robot
+        All of its boundaries in use are about points.
+    most : int
+        Cells that are opened for one boundary before it is left.
+    """
+    asked = wider(robot, statement)
+    forms = {
+        boundary.name: clearance(asked, boundary)
+        for boundary in asked.used
+        if asked.least_distance(boundary) != 0
+    }
+    cells = Simplices(np.array(corners_of(statement), dtype=float) * units(robot))
+    return {
+        name: subdivide(cells, [0], _judge(form, bound), most)[0] for name, form in forms.items()
+    }
+
+
+def _judge(form: HarmonicForm, bound: Bound) -> Callable[[Cells, NDArray[Any]], Judged]:
+    slack = NEGLIGIBLE * np.abs(form.waves.amplitudes).sum()
+
+    def judge(cells: Cells, _: NDArray[Any]) -> Judged:
+        assert isinstance(cells, Simplices)
+        proved = bound(form, cells.corners) > slack
+        leaves = ["." if each else "" for each in proved]
+        margins = form(cells.centres)
+        margins = np.where(margins < -slack, margins, 0)
+        return Judged(leaves, worst_edges(form, cells.corners), margins, cells.centres)
+
+    return judge

@@ -1,41 +1,51 @@
-"""Certificates that no path leads from one configuration to another: a joint cannot pass a range.
+"""Certificates that no path leads from one configuration to another.
 
-Grammar 4 of the book's page "The certificate". What is written is what the checkers need: a range
-of one joint between the two configurations (round a joint without limits one on either way), the
-boundary that is violated all over it, and a tree that cuts the range until a bound shows it.
+Either a joint cannot pass some values, whatever the others do; or boxes of up to three joints are
+in the way while the others are held. Both are a tree over the joints that move, and a place of two
+hulls for each leaf on which a thing is violated throughout. Doubles: the checkers decide.
 """
 
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot
-from qbound.proofs.blocked import BlockedRange, likely
-from qbound.proofs.certify import Certificate, confirmed
-from qbound.proofs.grammar import GRAMMAR_OF_NO_PATH, NO_PATH
-from qbound.proofs.statements import decimal, units, within_limits
+from qbound.proofs.blocked import BlockedRange
+from qbound.proofs.certify import Certificate, Subject
+from qbound.proofs.contact import Contacts, contacts, violated
+from qbound.proofs.inequality import Arm, Bools, Floats, Ints
+from qbound.proofs.paving import Paving
+from qbound.proofs.safe import margins
+from qbound.proofs.separator import separator
+from qbound.proofs.statements import within_limits
+from qbound.proofs.subdivide import Boxes, Cells, Judged, subdivide
 from qbound.proofs.verdict import Verdict
-from qbound.tolerances import NEGLIGIBLE
+from qbound.proofs.witness import Evidence, place_of
 
-Floats = NDArray[np.float64]
+MOST_CELLS = 50_000
+"""Boxes that a search opens before it gives up."""
 
-INWARDS = 1e-6
-"""Part of a range by which either end is moved inwards: a bound needs room at a root."""
+TRIED = 2
+"""Things that are tried on a box: those that violate most of the cells that it meets."""
 
-DEEPEST = 60
-"""Cuts on top of each other before a search gives up."""
+SAMPLES = 65
+"""Values of a joint at which a range is looked at."""
+
+THIN = 2.0**-40
+"""Part of a joint's range that a leaf has to cover."""
 
 
 def certify_no_path(
     text: str, one: ArrayLike, other: ArrayLike, ranges: Sequence[BlockedRange]
 ) -> Certificate:
-    """Certify that no path leads from one configuration to another; not in the paper.
+    """Certify that no path leads from one configuration to another: a joint cannot pass.
+
+    Not in the paper.
 
     Parameters
     ----------
@@ -57,56 +67,231 @@ def certify_no_path(
     ValueError
         If a configuration is none of the robot's.
     """
-    robot = parse_robot(tomllib.loads(text))
-    ends = np.stack([robot.configuration(q) for q in (one, other)])
-    points = within_limits(robot, ends)
-    j = ranges[0].joint
-    placed = ranges if robot.joints[j].limits else _around(ends[0, j], ends[1, j], ranges)
-    rows = [_row(robot, each) for each in placed]
-    statement = {"set": NO_PATH, "margin": "0", "points": [points]}
-    proof = {"joint": robot.joints[j].name, "blocked": rows}
-    return confirmed(text, GRAMMAR_OF_NO_PATH, statement, Verdict.PROVED, proof=proof)
+    subject = Subject(text)
+    ends, j = _ends(subject.robot, one, other), ranges[0].joint
+    kinds = ["moves" if k == j else "any" for k in range(ends.shape[1])]
+    task = _Task(Arm(subject.form), kinds, ends[0])
+    names = [[k for k, name in enumerate(task.arm.names) if name == r.boundary] for r in ranges]
+    rows = [task.deepest_value(j, r.low, r.high, own) for r, own in zip(ranges, names, strict=True)]
+    low = np.zeros((len(rows), ends.shape[1]))
+    low[:, j] = rows
+    high = low.copy()
+    high[:, j] += THIN
+    things = sorted({k for own in names for k in own})
+    depth = np.array([[float(k in own) for k in things] for own in names])
+    return _certified(subject, task, ends, low, high, things, depth)
 
 
-def _around(start: float, goal: float, ranges: Sequence[BlockedRange]) -> list[BlockedRange]:
-    """Turn two ranges to where they lie within the turn above the start, the goal between."""
-    turned = []
-    for each in ranges:
-        back = math.tau * math.floor((each.low - start) / math.tau)
-        turned.append(BlockedRange(each.joint, each.low - back, each.high - back, each.boundary))
-    return sorted(turned, key=lambda r: r.low)
+def certify_disconnected(
+    text: str, one: ArrayLike, other: ArrayLike, paving: Paving
+) -> Certificate:
+    """Certify that no path joins two configurations while the joints that agree are held.
+
+    Not in the paper.
+
+    Parameters
+    ----------
+    text : str
+        The robot file, see `robotfile.robot_text`.
+    one, other : array_like, shape (n,)
+        rad or length; what is written is rounded to decimals.
+    paving : Paving
+        Of the joints that move, one to three; it separates the two.
+
+    Returns
+    -------
+    Certificate
+        Proved, or undecided where the checker does not follow.
+
+    Raises
+    ------
+    ValueError
+        If a configuration is none of the robot's, or the paving does not separate the two.
+    """
+    subject = Subject(text)
+    ends = _ends(subject.robot, one, other)
+    names = [f"{joint.name}.lower" for joint in subject.robot.joints]
+    moving = [names.index(name) for name, _ in paving.problem.limits]
+    kinds = ["moves" if k in moving else "held" for k in range(ends.shape[1])]
+    task = _Task(Arm(subject.form), kinds, ends[0])
+    things = [k for k, needed in enumerate(task.arm.needed) if needed]
+
+    def spread(values: Floats) -> Floats:
+        """Write values of the joints that move among those of all joints."""
+        rows = np.zeros((len(values), len(kinds)))
+        rows[:, moving] = values
+        return rows
+
+    def depths(low: Floats, high: Floats) -> Floats:
+        middle = task.placed(Boxes.between(spread(low), spread(high))).centres
+        return np.maximum(-margins(task.arm, things, middle), 0) / task.arm.size
+
+    start, goal = ends[:, moving]
+    found = separator(paving, start, goal, depths)
+    low, high = spread(found.low), spread(found.high)
+    return _certified(subject, task, ends, low, high, things, found.depth)
 
 
-def _row(robot: Robot, each: BlockedRange) -> dict[str, str]:
-    """Write a range as a certificate does, its ends a little inwards."""
-    low, high = each.low, each.high
-    if not np.isfinite([low, high]).all():  # a slide that a half-space ends
-        limits = robot.joints[each.joint].limits or (low, high)
-        low, high = max(low, limits[0]), min(high, limits[1])
-    room = INWARDS * (high - low)
-    unit = units(robot)[each.joint]
-    ends = [decimal(x / unit) for x in (low + room, high - room)]
-    first, last = (float(x) * unit for x in ends)
-    found = likely(robot, [robot.boundary(each.boundary)])
-    alone = next((row for _, j, row in found if j == each.joint), np.zeros(3))
-    turns, letter = robot.joints[each.joint].turns, chr(ord("a") + each.joint)
-    tree = _tree(alone, turns, first, last, letter)
-    return {"boundary": each.boundary, "from": ends[0], "to": ends[1], "tree": tree}
+def _ends(robot: Robot, one: ArrayLike, other: ArrayLike) -> Floats:
+    return np.stack([robot.configuration(q) for q in (one, other)])
 
 
-def _tree(alone: Floats, turns: bool, low: float, high: float, letter: str, depth: int = 0) -> str:
-    """Cut a range until minus the function of one joint is bounded from below by more than 0."""
-    c, a, b = alone
-    middle, half = (low + high) / 2, (high - low) / 2
-    if turns:
-        cosine, sine = math.cos(middle), math.sin(middle)
-        value, slope = c + a * cosine + b * sine, b * cosine - a * sine
-        bend = math.hypot(a, b) * half * half / 2
-    else:
-        value, slope = c + a * middle + b * middle * middle, a + 2 * b * middle
-        bend = abs(b) * half * half
-    slack = NEGLIGIBLE * float(np.abs(alone).sum())
-    if value + abs(slope) * half + bend < -slack or depth == DEEPEST:
-        return "."
-    lower = _tree(alone, turns, low, middle, letter, depth + 1)
-    return letter + lower + _tree(alone, turns, middle, high, letter, depth + 1)
+def _certified(
+    subject: Subject,
+    task: _Task,
+    ends: Floats,
+    low: Floats,
+    high: Floats,
+    things: Sequence[int],
+    depth: Floats,
+) -> Certificate:
+    """Cover cells by leaves, and write the certificate."""
+    judge = _Judge(task, low, high, things, depth)
+    moving = np.array([kind == "moves" for kind in task.kinds])
+    whole = Boxes.between(np.zeros((1, len(moving))), 1.0 * moving[None])
+    found = subdivide(whole, [0], judge, MOST_CELLS)[0]
+    if found.left:
+        return Certificate(Verdict.UNDECIDED, "", f"undecided: {found.left} boxes")
+    claim = {
+        "set": "no path",
+        "margin": "0",
+        "points": [within_limits(subject.robot, ends)],
+        "joints": task.kinds,
+    }
+    proof = {"places": judge.places, "tree": found.trees[0]}
+    return subject.confirmed(claim, Verdict.PROVED, proof=proof)
+
+
+class _Task:
+    """An arm, and which of its joints move; boxes are in parts of the ranges of these."""
+
+    def __init__(self, arm: Arm, kinds: list[str], start: Floats) -> None:
+        self.arm, self.kinds = arm, kinds
+        self.free = [kind == "any" for kind in kinds]
+        whole = 180.0 if arm.form["angle_unit"] == "deg" else 3.1416
+        rows = [joint["limits"] or (-whole, whole) for joint in arm.form["joints"]]
+        low, high = np.array(rows, dtype=float).T * arm.units
+        moves, free = (np.array([k == kind for k in kinds]) for kind in ("moves", "any"))
+        self.low = np.where(moves, low, np.where(free, (low + high) / 2, start))
+        self.size = np.where(moves, high - low, 0)
+
+    def placed(self, boxes: Boxes) -> Boxes:
+        """Return boxes in rad or length, shape (N, n)."""
+        return Boxes(self.low + self.size * boxes.centres, self.size * boxes.halfwidths)
+
+    def deepest_value(self, j: int, low: float, high: float, things: Sequence[int]) -> float:
+        """Return where in a range of joint j things are violated most, in parts of its range."""
+        end = self.low[j] + self.size[j]
+        if self.arm.form["joints"][j]["limits"] is None:
+            back = math.floor((low - self.low[j]) / math.tau) * math.tau
+            low, high = low - back, high - back
+        else:
+            low, high = max(low, self.low[j]), min(high, end)
+        q = np.tile(self.low, (SAMPLES, 1))
+        q[:, j] = np.linspace(low, high, SAMPLES + 2)[1:-1]
+        if self.arm.form["joints"][j]["limits"] is None:
+            q[:, j] -= np.where(q[:, j] > end, math.tau, 0)
+        points, best = Boxes(q, np.zeros_like(q)), np.full(SAMPLES, -np.inf)
+        for k in things:
+            best = np.maximum(best, self.values(np.full(SAMPLES, k), points)[0])
+        return float((q[best.argmax(), j] - self.low[j]) / self.size[j])
+
+    def values(
+        self, things: Ints, cells: Boxes, known: Sequence[Contacts] | None = None
+    ) -> tuple[Floats, list[Contacts]]:
+        """Return by how much things are violated all over cells, and the places that show it."""
+        values, shown = np.zeros(len(things)), dict[int, Contacts]()
+        for kind, positions, rows in self.arm.by_kind(things):
+            own = cells[positions]
+            if known is None:
+                found = contacts(self.arm, kind, rows, own)
+            else:
+                found = Contacts.joined([known[k] for k in positions])
+            values[positions] = violated(self.arm, kind, rows, own, found, self.free)
+            shown |= {int(at): found[k : k + 1] for k, at in enumerate(positions)}
+        return values, [shown[k] for k in range(len(things))]
+
+
+class _Judge:
+    """Judges boxes: closed where no cell is met, or a thing is violated; else cut.
+
+    Parameters
+    ----------
+    low, high : ndarray, shape (S, n)
+        The cells that leaves with a place have to cover, in parts of the ranges.
+    depth : ndarray, shape (S, things)
+        How deep a thing is violated in the middle of each cell; 0 where it is kept.
+    """
+
+    def __init__(
+        self, task: _Task, low: Floats, high: Floats, things: Sequence[int], depth: Floats
+    ) -> None:
+        moving = np.flatnonzero([kind == "moves" for kind in task.kinds])
+        self.task, self.moving, self.things = task, moving, np.array(things)
+        self.low, self.high, self.depth = low[:, moving], high[:, moving], depth
+        self.places = list[Evidence]()
+        self.numbers = dict[str, int]()
+
+    def __call__(self, cells: Cells, _: NDArray[Any]) -> Judged:
+        assert isinstance(cells, Boxes)
+        met = self._met(cells)
+        leaves = np.where(met.any(axis=1), "", ".").astype(object)
+        cuts = np.full(len(cells), -1)
+        left = np.flatnonzero(met.any(axis=1))
+        if len(left):
+            things, values, shown = self._best(cells[left], met[left])
+            closed = values > self.task.arm.spare
+            for k in np.flatnonzero(closed).tolist():
+                leaves[left[k]] = self._leaf(int(things[k]), shown[k])
+            rest = np.flatnonzero(~closed)
+            if len(rest):
+                own = [shown[k] for k in rest]
+                cuts[left[rest]] = self._cuts(cells[left[rest]], things[rest], own)
+        return Judged(leaves.tolist(), cuts, np.zeros(len(cells)), cells.centres)
+
+    def _met(self, cells: Boxes) -> Bools:
+        """Tell which boxes meet which cells, shape (N, S)."""
+        met = np.ones((len(cells), len(self.low)), dtype=bool)
+        for k, j in enumerate(self.moving):
+            met &= cells.low[:, j, None] < self.high[:, k]
+            met &= cells.high[:, j, None] > self.low[:, k]
+        return met
+
+    def _best(self, cells: Boxes, met: Bools) -> tuple[Ints, Floats, list[Contacts]]:
+        """Return a thing for each box, by how much it is violated throughout, and where.
+
+        The thing that violates most of the cells which the box meets, but for one that closes it.
+        """
+        count = met.sum(axis=1, keepdims=True)
+        score = met @ (self.depth > 0) / count + met @ self.depth / count
+        ranks = self.things[np.argsort(-score, axis=1)[:, :TRIED]]
+        placed, things = self.task.placed(cells), ranks[:, 0].copy()
+        best, shown = self.task.values(things, placed)
+        for rank in range(1, ranks.shape[1]):
+            left = np.flatnonzero(best <= self.task.arm.spare)
+            if len(left):
+                values, found = self.task.values(ranks[left, rank], placed[left])
+                for k in np.flatnonzero(values > self.task.arm.spare).tolist():
+                    row = left[k]
+                    things[row], best[row], shown[row] = ranks[row, rank], values[k], found[k]
+        return things, best, shown
+
+    def _cuts(self, cells: Boxes, things: Ints, shown: Sequence[Contacts]) -> Ints:
+        """Choose the cut that closes most halves, and then leaves the least to be gained."""
+        scores = np.full((len(cells), cells.cuts), -np.inf)
+        twice, known = np.repeat(things, 2), [each for each in shown for _ in range(2)]
+        for j in self.moving:
+            halves = cells.halves(np.full(len(cells), j))
+            values, _ = self.task.values(twice, self.task.placed(halves), known)
+            empty = ~self._met(halves).any(axis=1)
+            closes = (empty | (values > self.task.arm.spare)).reshape(-1, 2).sum(axis=1)
+            lacks = np.where(empty, 0, np.minimum(values, 0)).reshape(-1, 2).sum(axis=1)
+            scores[:, j] = 1e6 * closes + lacks / self.task.arm.size
+        return np.asarray(scores.argmax(axis=1))
+
+    def _leaf(self, thing: int, shown: Contacts) -> str:
+        place = place_of(self.task.arm, thing, shown)
+        number = self.numbers.setdefault(str(place), len(self.places))
+        if number == len(self.places):
+            self.places.append(place)
+        return f"{number}."

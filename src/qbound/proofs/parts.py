@@ -1,4 +1,4 @@
-"""Convex parts of an outline, exact: cut for a certificate, and verified for `check_arb`.
+"""Convex parts of an outline, exact: cut for a certificate, and verified for the second checker.
 
 An outline is a list of corners with two rational coordinates; parts are lists of their numbers, in
 the sense of the outline. A corner in the middle of a straight edge stays a corner, so that inner
@@ -10,10 +10,14 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from qbound.geometry.convex import convex_parts
-from qbound.proofs.grammar_values import refuse, shown
+from qbound.model.robot import BodyPair, Robot
+from qbound.printable import printable
 
 Corner = tuple[Any, ...]
 Edge = tuple[int, int]
@@ -22,19 +26,46 @@ LARGEST_WHOLE = 2**53
 """Whole numbers up to this are floats."""
 
 
-def cut(corners: Sequence[Corner]) -> list[list[int]]:
-    """Cut an outline into convex parts.
+def cut(corners: Sequence[Corner], name: str = "an outline") -> list[list[int]]:
+    """Cut an outline into convex parts; those of one with long decimals are verified.
 
     Raises
     ------
     ValueError
-        If it crosses itself, or its decimals are too long.
+        If it crosses itself.
     """
     whole = in_whole_numbers(corners)
     if max(abs(x) for corner in whole for x in corner) > LARGEST_WHOLE:
-        raise ValueError("an outline whose decimals are too long to be cut into convex parts")
-    parts = [_with_straight_corners(whole, part) for part in convex_parts(whole, exact=True)]
+        found = convex_parts(np.array(corners, dtype=float))
+        parts = [[*part] for part in found]
+        check_parts(corners, parts if turns_left(whole) else [p[::-1] for p in parts], name)
+    else:
+        parts = [_with_straight_corners(whole, part) for part in convex_parts(whole, exact=True)]
     return parts if turns_left(whole) else [part[::-1] for part in parts]
+
+
+def parts_of(robot: Robot) -> dict[str, list[list[int]]]:
+    """Cut all outlines of pairs in use that are not convex, by the name of their body.
+
+    Raises
+    ------
+    ValueError
+        If an outline cannot be cut, or no axis of its frame is along that of the joints.
+    """
+    pairs = [boundary for boundary in robot.used if isinstance(boundary, BodyPair)]
+    found = {}
+    for name in dict.fromkeys(name for pair in pairs for name in pair.bodies):
+        body = robot.body(name)
+        if len(body.shape.places) < 3:
+            continue
+        own = robot.plane.flat_coordinate(body.frame)
+        if own is None:
+            raise ValueError(f"{printable(name)}: its frame has no axis along that of the joints")
+        rows = [[x for k, x in enumerate(p) if k != own] for p in body.shape.places.tolist()]
+        pieces = cut([tuple(Fraction(repr(x)) for x in row) for row in rows], name)
+        if len(pieces) > 1:
+            found[name] = pieces
+    return found
 
 
 def in_whole_numbers(corners: Sequence[Corner]) -> list[Corner]:
@@ -78,7 +109,7 @@ def turns_left(corners: Sequence[Corner]) -> bool:
     """Tell whether an outline goes anticlockwise; `ValueError` if it has no area."""
     doubled = sum(a[0] * b[1] - b[0] * a[1] for a, b in _around(corners))
     if doubled == 0:
-        refuse("robot: an outline without an area")
+        raise ValueError("robot: an outline without an area")
     return bool(doubled > 0)
 
 
@@ -87,7 +118,7 @@ def check_parts(corners: Sequence[Corner], parts: Sequence[Sequence[int]], name:
 
     Edges are compared by the places of their ends.
     """
-    where = f"parts of {shown(name)}"
+    where = f"parts of {printable(name)}"
     corners = in_whole_numbers(corners)
     left = turns_left(corners)
     edges: Counter[Edge] = Counter()
@@ -97,13 +128,15 @@ def check_parts(corners: Sequence[Corner], parts: Sequence[Sequence[int]], name:
             sides = [_side(corners[i], corners[k], corners[m]) for m in part]
             sides = sides if left else [-side for side in sides]
             if any(side < 0 for side in sides) or not any(sides):
-                refuse(f"{where}: a part is not convex, flat, or goes the other way round")
+                raise ValueError(
+                    f"{where}: a part is not convex, flat, or goes the other way round"
+                )
         edges.update((number[corners[i]], number[corners[k]]) for i, k in _around(part))
     outline = Counter((number[a], number[b]) for a, b in _around(corners))
     if any(count > 1 for count in (*edges.values(), *outline.values())):
-        refuse(f"{where}: an edge occurs twice")
+        raise ValueError(f"{where}: an edge occurs twice")
     inner = edges - outline
     if any(edges[i, k] == 0 or edges[k, i] for i, k in outline):
-        refuse(f"{where}: an edge of the outline is not of one part alone")
+        raise ValueError(f"{where}: an edge of the outline is not of one part alone")
     if any(not inner[k, i] for i, k in inner):
-        refuse(f"{where}: an inner edge has a part on one side alone")
+        raise ValueError(f"{where}: an inner edge has a part on one side alone")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 from qbound.model.robot import Robot
-from qbound.proofs.grammar import DECIMAL
 from qbound.proofs.statements import Point, decimal, units
 from qbound.units import file_units, parse_joint_value
+
+DECIMAL = re.compile(r"-?[0-9]+([.][0-9]+)?([eE][+-]?[0-9]{1,3})?")
+"""How a certificate writes a number."""
 
 
 def read_points(robot: Robot, file: str) -> list[Point]:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.forms.bending import second_order
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
-from qbound.proofs import grammar, unrolled
-from qbound.proofs.cells import check_polygon
+from qbound.proofs import unrolled
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
 from qbound.region.arcs import Arc
@@ -34,6 +34,8 @@ Point = list[str]
 DIGITS = 12
 """Decimals that are written: a hundred times finer than a double resolves a turn in degrees."""
 
+MOST_POINTS = 20_000
+"""Configurations of a certificate."""
 
 ON_CHORD = 7
 """Points of a chord at which bodies are looked at."""
@@ -109,12 +111,18 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     i, j = free
     places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
-    triangulated = triangulate(places)
-    triangles = [list(triangle) for triangle in triangulated]
-    statement = {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
-    corners = tuple(tuple(tuple(point) for point in loop) for loop in rows)
-    check_polygon(grammar.Statement("polygon", Fraction(0), corners, tuple(triangulated)))
-    return statement
+    triangles = [list(triangle) for triangle in triangulate(places)]
+    return {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
+
+
+def corners_of(statement: Statement) -> list[list[Point]]:
+    """Return the corners of a statement's cells as they are written; of a box its two ends."""
+    points = [point for loop in statement["points"] for point in loop]
+    if statement["set"] == "polygon":
+        return [[points[k] for k in triangle] for triangle in statement["triangles"]]
+    if statement["set"] == "path":
+        return [[a, b] for loop in statement["points"] for a, b in pairwise(loop)]
+    return [points]
 
 
 def opened(points: Sequence[Sequence[str]]) -> list[list[str]]:
@@ -227,7 +235,7 @@ def inner_polygon(
     halfway = clearance_problem(with_extra_clearance(asked, inset / 2), held)
     loops = [_traced(loop, per_arc, halfway) for loop in component.loops]
     corners = sum(map(len, loops))
-    if corners > grammar.MOST_POINTS:
+    if corners > MOST_POINTS:
         raise ValueError(f"an inset of {inset:g} takes {corners} corners: ask for a larger one")
     polygons = [loops] if not any(component.wraps) else _cut_open(robot, component, loops, held)
     return _united(
@@ -328,7 +336,7 @@ def _points_of(arc: Arc, per_arc: int, halfway: Problem) -> Floats:
         chords = np.stack([q[:-1], q[1:]], axis=1)
         curved = ~straight[((s[:-1] + s[1:]) / 2 * parts).astype(int)]
         bad = np.flatnonzero(curved & _may_leave(halfway, chords))
-        if not len(bad) or len(s) > grammar.MOST_POINTS:
+        if not len(bad) or len(s) > MOST_POINTS:
             return q
         s = np.insert(s, bad + 1, (s[bad] + s[bad + 1]) / 2)
 

@@ -1,4 +1,4 @@
-"""Configurations that refute a statement: where a boundary or a limit is violated, and how deep.
+"""Configurations that refute a statement: where a thing or a limit is violated, and how deep.
 
 Nothing here is trusted: the checkers look at the configuration that is written down.
 """
@@ -8,27 +8,27 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.boundary.functions import clearance, margin_of
-from qbound.extras import require
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import BodyPair, Boundary, Robot
-from qbound.proofs import grammar_robot as exact
-from qbound.proofs.cells import Box, Cell
-from qbound.proofs.features import Features, FlatArm, Parts, all_features, is_of_bodies
-from qbound.proofs.overlap import shown_places
-from qbound.proofs.statements import Statement, decimal, units, wider
+from qbound.proofs.contact import Contacts, contacts
+from qbound.proofs.inequality import Arm, Floats
+from qbound.proofs.safe import margins
+from qbound.proofs.statements import Statement, corners_of, decimal
+from qbound.proofs.subdivide import Boxes, Simplices
 
-Floats = NDArray[np.float64]
 Evidence = dict[str, Any]
-"""The boundary, and the place: as a certificate writes them."""
+"""The witness as a certificate writes it."""
 
 SIDES = ("lower", "upper")
+
+SHRINK = 0.75 ** np.arange(80)
+"""Sizes of the neighbourhoods in which the deepest configuration is looked for."""
+
+CELLS = 50
+"""Cells in which it is looked for: those that are deepest in the middle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,179 +43,114 @@ class Witness:
     depth: float
 
 
-def beyond_limits(
-    robot: exact.Robot, statement: Statement, cells: Sequence[Cell]
-) -> Evidence | None:
+def cells_of(arm: Arm, statement: Statement) -> Boxes | Simplices:
+    """Return the cells of a statement, rad or length."""
+    corners = np.array(corners_of(statement), dtype=float) * arm.units
+    if statement["set"] == "box":
+        return Boxes.between(corners[:, 0], corners[:, 1])
+    return Simplices(corners)
+
+
+def beyond_limits(arm: Arm, statement: Statement) -> Evidence | None:
     """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
-    depths = [
-        (sign * (end - q[j]), f"{joint.name}.{side}", i, k)
-        for j, joint in enumerate(robot.joints)
-        for side, sign, end in zip(SIDES, (1, -1), joint.limits or (), strict=False)
-        for i, cell in enumerate(cells)
-        for k, q in enumerate(cell.corners)
-    ]
-    depth, name, i, k = max(depths, key=lambda row: row[0], default=(Fraction(0), "", 0, 0))
-    if depth <= 0:
-        return None
-    if isinstance(cells[i], Box):
-        return {"boundary": name, "at": statement["points"][0][k]}
-    weights = ["1" if c == k else "0" for c in range(len(cells[i].corners))]
-    return {"boundary": name, "cell": i, "weights": weights}
+    found: tuple[Fraction, Evidence] = Fraction(0), {}
+    for i, corners in enumerate(corners_of(statement)):
+        for k, q in enumerate(corners):
+            for j, joint in enumerate(arm.form["joints"]):
+                for side, sign, end in zip(SIDES, (1, -1), joint["limits"] or (), strict=False):
+                    depth = sign * (Fraction(end) - Fraction(q[j]))
+                    if depth > found[0]:
+                        at: Evidence = {"at": q}
+                        if statement["set"] != "box":
+                            weights = ["1" if c == k else "0" for c in range(len(corners))]
+                            at = {"cell": i, "weights": weights}
+                        found = depth, {**at, "limit": f"{joint['name']}.{side}"}
+    return found[1] or None
 
 
-def deepest(
-    robot: Robot,
-    statement: Statement,
-    cells: Sequence[Cell],
-    violated: Mapping[str, tuple[int, Floats]],
-    parts: Parts | None = None,
-) -> Evidence:
+def deepest(arm: Arm, statement: Statement, violated: Mapping[int, tuple[int, Floats]]) -> Evidence:
     """Follow each violated boundary to where it is violated most, and return the deepest.
 
     Parameters
     ----------
-    violated : mapping of str to (int, ndarray)
-        A cell, and a configuration in it (rad or length) that violates the boundary.
-    parts : mapping, optional
-        Of a robot with pairs of bodies, from `features.parts_of`.
+    violated : mapping of int to (int, ndarray)
+        By the number of a thing a cell, and a configuration in it that violates the thing.
     """
-    asked, scale = wider(robot, statement), units(robot)
-    corners = np.array([cell.corners for cell in cells], dtype=float) * scale
-    found = []
-    for name, (start, q) in violated.items():
-        margin = margin_function(asked, asked.boundary(name), parts)
-        if isinstance(cells[0], Box):
-            lowest = margin.lowest_in_box(corners[0, 0], corners[0, 1], q)
-            place: Evidence = {"at": _within(statement["points"][0], lowest / scale)}
+    cells, found = cells_of(arm, statement), list[tuple[float, Evidence]]()
+    for name in dict.fromkeys(arm.names[k] for k in violated):
+        things = [k for k, other in enumerate(arm.names) if other == name and arm.needed[k]]
+
+        def least(q: Floats, things: Sequence[int] = things) -> Floats:
+            shape = q.shape[:-1]
+            values = margins(arm, things, q.reshape(-1, q.shape[-1])).min(axis=1)
+            return np.asarray(values.reshape(shape))
+
+        start, q = next(violated[k] for k in violated if arm.names[k] == name)
+        if isinstance(cells, Boxes):
+            lowest = _lowest_in_box(least, cells.low[0], cells.high[0], q)
+            written = _within(statement["points"][0], lowest / arm.units)
+            at: Evidence = {"at": written}
         else:
-            cell, weights = _lowest(margin.value, corners, start, q)
-            lowest = weights @ corners[cell]
-            place = {"cell": cell, "weights": _decimals(weights)}
-        found.append((margin.depth(lowest), {"boundary": name, **place, **margin.shown(lowest)}))
-    return max(found, key=lambda row: row[0])[1]
+            cell, weights = _lowest(least, cells.corners, start, q)
+            lowest = weights @ cells.corners[cell]
+            at = {"cell": cell, "weights": _decimals(weights)}
+        own = margins(arm, things, lowest[None])[0]
+        thing = things[int(own.argmin())]
+        found.append((float(own.min()), {**at, "place": _shown(arm, thing, lowest)}))
+    return min(found, key=lambda row: row[0])[1]
 
 
-class MarginFunction(Protocol):
-    """What a boundary looks like from a configuration that may violate it; rad and lengths."""
-
-    def value(self, q: Floats) -> Floats:
-        """Return a number that is negative where it is violated, shape (...)."""
-
-    def lowest_in_box(self, low: Floats, high: Floats, q: Floats) -> Floats:
-        """Return the configuration of a box where it is violated most; q is one that violates."""
-
-    def depth(self, q: Floats) -> float:
-        """Return by how much it is violated, length."""
-
-    def shown(self, q: Floats) -> Evidence:
-        """Return what a certificate says beside the configuration."""
-
-
-def margin_function(robot: Robot, boundary: Boundary, parts: Parts | None) -> MarginFunction:
-    """Return the margin function of a boundary."""
-    if is_of_bodies(boundary):
-        return _OfBodies(robot, boundary, parts or {})
-    return _OfPoints(robot, boundary, clearance(robot, boundary))
-
-
-@dataclass(frozen=True, eq=False)
-class _OfPoints:
-    """One form."""
-
-    robot: Robot
-    boundary: Boundary
-    form: HarmonicForm
-
-    def value(self, q: Floats) -> Floats:
-        return self.form(q)
-
-    def lowest_in_box(self, low: Floats, high: Floats, q: Floats) -> Floats:
-        return _lowest_in_box(self.form, low, high, q)
-
-    def depth(self, q: Floats) -> float:
-        return _depth(self.robot, self.boundary.name, float(self.form(q)))
-
-    def shown(self, q: Floats) -> Evidence:
-        del q
-        return {}
-
-
-@dataclass(frozen=True, eq=False)
-class _OfBodies:
-    """The least margin of all pairs of parts."""
-
-    robot: Robot
-    boundary: Boundary
-    parts: Parts
-
-    @cached_property
-    def features(self) -> list[Features]:
-        return all_features(self.robot, self.boundary, self.parts)
-
-    def value(self, q: Floats) -> Floats:
-        return np.asarray(np.min([pair.margins(q) for pair in self.features], axis=0))
-
-    def lowest_in_box(self, low: Floats, high: Floats, q: Floats) -> Floats:
-        """Search around the lowest place so far, in boxes that shrink."""
-        rng = np.random.default_rng(0)
-        for size in 0.75 ** np.arange(80):
-            step = size * (high - low) * rng.uniform(-0.5, 0.5, (40, len(q)))
-            tries = np.concatenate([q[None], np.clip(q + step, low, high)])
-            q = tries[int(self.value(tries).argmin())]
-        return q
-
-    def depth(self, q: Floats) -> float:
-        return -float(self.value(q))
-
-    def shown(self, q: Floats) -> Evidence:
-        """Name the two parts that are nearest to each other, and a place of each."""
-        if not isinstance(self.boundary, BodyPair):
-            return {}
-        arm, names = FlatArm(self.robot), self.boundary.bodies
-        cores = [arm.cores(name, self.parts) for name in names]
-        worst = int(np.argmin([pair.margins(q) for pair in self.features]))
-        numbers = divmod(worst, len(cores[1]))
-        one, other = (own[k] for own, k in zip(cores, numbers, strict=True))
-        places = shown_places(arm, one, other, q)
-        rows = zip(numbers, places, strict=True)
-        return {"places": [{"part": k, "weights": _decimals(w)} for k, w in rows]}
-
-
-def witness(
-    robot: Robot,
-    statement: Statement,
-    cells: Sequence[Cell],
-    evidence: Evidence,
-    parts: Parts | None = None,
-) -> Witness:
+def witness(arm: Arm, statement: Statement, evidence: Evidence) -> Witness:
     """Read the configuration and its depth out of what the file says."""
     if "at" in evidence:
         q = np.array(evidence["at"], dtype=float)
     else:
-        corners = np.array(cells[evidence["cell"]].corners, dtype=float)
+        corners = np.array(corners_of(statement)[evidence["cell"]], dtype=float)
         q = np.array(evidence["weights"], dtype=float) @ corners
-    name, asked = evidence["boundary"], wider(robot, statement)
-    boundary = next((b for b in asked.used if b.name == name), None)
-    if boundary is not None:
-        margin = margin_function(asked, boundary, parts)
-        return Witness(name, tuple(q.tolist()), margin.depth(q * units(robot)))
-    joint, _, side = name.rpartition(".")
-    j = [other.name for other in robot.joints].index(joint)
-    limits = robot.joints[j].limits or (q[j], q[j])
-    end = limits[side == "upper"] / units(robot)[j]
-    return Witness(name, tuple(q.tolist()), abs(float(q[j] - end)))
+    if "place" in evidence:
+        thing = evidence["place"]["keep"]
+        depth = -float(margins(arm, [thing], q[None] * arm.units)[0, 0])
+        return Witness(arm.names[thing], tuple(q.tolist()), depth)
+    name, _, side = evidence["limit"].rpartition(".")
+    joints = arm.form["joints"]
+    j = [joint["name"] for joint in joints].index(name)
+    end = float(joints[j]["limits"][side == "upper"])
+    return Witness(evidence["limit"], tuple(q.tolist()), abs(float(q[j] - end)))
 
 
-def _lowest_in_box(form: HarmonicForm, low: Floats, high: Floats, q: Floats) -> Floats:
-    """Return the configuration of a box where a form is lowest, by a descent from two places."""
-    require("scipy")
-    from scipy.optimize import minimize
+def place_of(arm: Arm, thing: int, found: Contacts) -> Evidence:
+    """Write a place of the two hulls of a thing, the one row of `found`."""
+    row, hulls = arm.form["keep"][thing], arm.form["hulls"]
+    far = _folded(found.far[0], len(hulls[row["far"]]["corners"]))
+    if "normal" in row:
+        return {"keep": thing, "near": [], "far": _decimals(far)}
+    near = _folded(found.near[0], len(hulls[row["near"]]["corners"]))
+    written = {"keep": thing, "near": _decimals(near), "far": _decimals(far)}
+    radii = [decimal(max(float(x) - 1e-12, 0)) for x in found.inside[0]]
+    return written if radii == ["0", "0"] else {**written, "inside": radii}
 
-    bounds, found = list(zip(low, high, strict=True)), [q]
-    for start in (q, (low + high) / 2):
-        end = minimize(form, start, jac=form.gradient, bounds=bounds, method="L-BFGS-B").x
-        found.append(np.clip(end, low, high))
-    return min(found, key=lambda place: float(form(place)))
+
+def _shown(arm: Arm, thing: int, q: Floats) -> Evidence:
+    """Return places of both hulls of a thing that show that it is violated."""
+    kind, rows = arm.kinds[arm.kind_of[thing]], arm.row_of[[thing]]
+    return place_of(arm, thing, contacts(arm, kind, rows, Boxes(q[None], np.zeros((1, len(q))))))
+
+
+def _folded(weights: Floats, count: int) -> Floats:
+    """Add the weights of padded corners to that of the corner which they repeat."""
+    return np.append(weights[: count - 1], weights[count - 1 :].sum())
+
+
+def _lowest_in_box(
+    margin: Callable[[Floats], Floats], low: Floats, high: Floats, q: Floats
+) -> Floats:
+    """Search around the lowest configuration so far, in boxes that shrink."""
+    rng = np.random.default_rng(0)
+    for size in SHRINK:
+        step = size * (high - low) * rng.uniform(-1, 1, (60, len(q)))
+        tries = np.concatenate([q[None], np.clip(q + step, low, high)])
+        q = tries[int(margin(tries).argmin())]
+    return q
 
 
 def _within(ends: Sequence[Sequence[str]], q: Floats) -> list[str]:
@@ -224,30 +159,27 @@ def _within(ends: Sequence[Sequence[str]], q: Floats) -> list[str]:
     return [sorted((decimal(x), low, high), key=Fraction)[1] for x, low, high in rows]
 
 
-def _depth(robot: Robot, name: str, value: float) -> float:
-    """How far a boundary is violated, length."""
-    return -float(margin_of(robot, robot.boundary(name), value))
-
-
 def _lowest(
-    form: Callable[[Floats], Floats], cells: Floats, cell: int, q: Floats
+    margin: Callable[[Floats], Floats], cells: Floats, cell: int, q: Floats
 ) -> tuple[int, Floats]:
-    """Return the cell, and the weights of its corners, where a form is lowest, by a local search.
+    """Return the cell, and the weights of its corners, where a margin is lowest: a local search.
 
     In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
     the search starts at the centres and, in one cell, at a configuration that is known to be low.
     """
+    chosen = np.unique(np.append(margin(cells.mean(axis=1)).argsort()[:CELLS], cell))
+    cells, cell = cells[chosen], int(np.flatnonzero(chosen == cell)[0])
     count, k = cells.shape[:2]
     i, j = np.triu_indices(k, 1)
     tries = np.concatenate([np.eye(k), (np.eye(k)[i] + np.eye(k)[j]) / 2, np.full((1, k), 1 / k)])
     lowest, rows = np.full((count, k), 1 / k), np.arange(count)
     lowest[cell] = _weights(cells[cell], q)
-    for size in 0.75 ** np.arange(80):
+    for size in SHRINK:
         near = (1 - size) * lowest[:, None] + size * tries
         around = np.concatenate([lowest[:, None], near], axis=1)
-        lowest = around[rows, form(around @ cells).argmin(axis=1)]
-    best = int(form(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
-    return best, lowest[best]
+        lowest = around[rows, margin(around @ cells).argmin(axis=1)]
+    best = int(margin(np.einsum("nk,nkj->nj", lowest, cells)).argmin())
+    return int(chosen[best]), lowest[best]
 
 
 def _weights(cell: Floats, q: Floats) -> Floats:
@@ -258,8 +190,8 @@ def _weights(cell: Floats, q: Floats) -> Floats:
     return np.asarray(weights / weights.sum())
 
 
-def _decimals(weights: Floats) -> list[str]:
+def _decimals(weights: NDArray[Any]) -> list[str]:
     """Round weights to decimals whose sum is 1."""
     whole = [round(float(w) * 10**9) for w in weights]
     whole[int(np.argmax(weights))] += 10**9 - sum(whole)
-    return [f"{w // 10**9}.{w % 10**9:09}" for w in whole]
+    return [decimal(w / 10**9) for w in whole]

@@ -1,0 +1,336 @@
+"""The checker's arithmetic: what its numbers enclose, and its inequality against samples."""
+
+import ast
+import itertools
+import json
+import random
+import re
+import sys
+import tomllib
+from fractions import Fraction
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+import shapely
+
+from qbound import check
+from qbound.proofs import second
+from support import brute_force, planar
+from support.certificates import Draft, directions, places
+from support.claims import ARM, between, box
+from support.robot_files import ALL_KINDS, robot_file
+
+ONE = check.ONE
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def as_mpf(x):
+    return mpmath.mpf(x.numerator) / x.denominator
+
+
+@pytest.mark.parametrize(
+    "angle", ["0", "1e-60", "0.7", "-1.5707963267948966", "3.2", "-9.9", "31.4", "-64", "63.99"]
+)
+def test_cosine_and_sine_are_within_their_error(angle):
+    units = check.in_units(Fraction(angle))
+    with mpmath.workprec(500):
+        x = mpmath.mpf(units) / ONE
+        for found, true in zip(check.cos_sin(units), (mpmath.cos(x), mpmath.sin(x)), strict=True):
+            assert abs(found - ONE * true) < 2**17
+
+
+def test_pi_is_eighty_digits():
+    with mpmath.workprec(400):
+        assert abs(as_mpf(check.PI) - mpmath.pi) < mpmath.mpf(10) ** -80
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_unit_vector_is_off_by_less_than_two_units(seed):
+    rng = random.Random(seed)
+    v = [Fraction(rng.randint(-(10**9), 10**9), 10 ** rng.randint(0, 40)) for _ in range(3)]
+    with mpmath.workprec(500):
+        length = mpmath.sqrt(sum(as_mpf(x) ** 2 for x in v))
+        for found, x in zip(check.unit(v), v, strict=True):
+            assert abs(found - ONE * as_mpf(x) / length) < 2
+
+
+def test_a_length_is_rounded_up():
+    assert check.size((3, 4, 0)) >= 5
+    assert check.size((0, 0, 0)) >= 0
+    assert check.size((ONE, ONE, 0)) ** 2 > 2 * ONE**2
+
+
+def test_the_checker_is_one_file_of_the_standard_library_without_floats():
+    tree = ast.parse(Path(check.__file__).read_text(encoding="utf-8"))
+    nodes = [*ast.walk(tree)]
+    names = {a.name for node in nodes if isinstance(node, ast.Import) for a in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom)}
+    assert {name.split(".")[0] for name in names} <= set(sys.stdlib_module_names)
+    numbers = [node.value for node in nodes if isinstance(node, ast.Constant)]
+    assert not [number for number in numbers if isinstance(number, float)]
+
+
+# --- kinematics and the inequality, against samples -----------------------------------------------
+
+
+class Sample:
+    """A random arm, a leaf, and configurations of it; some joints may take any value."""
+
+    def __init__(self, seed, free_share=0.0, width=1.0):
+        self.rng, rng = random.Random(seed), np.random.default_rng(seed)
+        unit, count = self.rng.choice(("deg", "rad")), 1 + seed % 4
+        text = robot_file(seed, count, ALL_KINDS, unit)
+        self.table = tomllib.loads(text)
+        turns = np.array([row["type"] != "prismatic" for row in self.table["joint"]])
+        radian = 180 / np.pi if unit == "deg" else 1
+        size = width * np.where(turns, radian, 3)
+        low = np.where(turns, 2 * size * rng.uniform(-1, 1, count), rng.uniform(-4, 3, count))
+        high = low + size * rng.random(count) * rng.choice([0, 1, 1], count)
+        self.free = [bool(x) for x in rng.random(count) < free_share]
+        is_simplex = seed // 4 % 2
+        shares = rng.random((3, count)) if is_simplex else np.array([[0] * count, [1] * count])
+        corners = (low + shares * (high - low)).round(3)
+        corners[:, self.free] = np.where(turns, 0, 1)[self.free]  # 1 is the middle of a slide
+        exact = [[Fraction(str(x)) for x in q] for q in corners]
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        self.draft = Draft(text, box(" ".join(map(str, low)), " ".join(map(str, high))))
+        placed = [self.draft.arm.placed(q) for q in exact]
+        self.cell = check.Simplex(tuple(placed)) if is_simplex else check.Box(*placed)
+        self.pose = check.Pose(self.draft.steps, self.cell.middle)
+        self.middle = corners.mean(axis=0)
+        if is_simplex:
+            parts = np.concatenate([np.eye(3), rng.dirichlet([0.5] * 3, 60)])
+            self.q = parts @ corners
+        else:
+            ends = np.array([*itertools.product((0, 1), repeat=count)])
+            parts = np.concatenate([ends, rng.random((60, count))])
+            self.q = corners[0] + parts * (corners[1] - corners[0])
+        self.q = np.repeat(self.q, 20 if any(self.free) else 1, axis=0)
+        whole = np.where(turns, np.pi * radian, 5)  # the limits of slides are -4 and 6
+        anything = np.where(turns, 0, 1) + whole * rng.uniform(-1, 1, self.q.shape)
+        self.q = np.where(self.free, anything, self.q)
+
+    def corner(self):
+        return [round(self.rng.uniform(-9, 9), 3) for _ in range(3)]
+
+    def step_of(self, k):
+        """Return the steps of the joints of step k from the middle, in radians or lengths."""
+        step = self.draft.steps[k]
+        x = step.factor * (self.q - self.middle)[:, step.joint]
+        return np.radians(x) if step.turns and self.table["angle_unit"] == "deg" else x
+
+
+def in_floats(v, scale):
+    return np.array([x / ONE for x in v]) * scale
+
+
+@pytest.mark.parametrize("free_share", [0, 0.3])
+def test_a_place_is_as_near_to_its_linear_motion_as_the_bound_says(free_share):
+    tightest = 0.0
+    for seed in range(80):
+        s = Sample(seed, free_share)
+        scale = float(s.draft.arm.largest)
+        names, corner = brute_force.frames_of(s.table), s.corner()
+        near = s.rng.randrange(len(names)) if s.rng.random() < 0.3 else 0
+        far = s.rng.randrange(near, len(names))
+        placed = s.draft.arm.scaled([Fraction(str(x)) for x in corner])
+        found = check.motion(s.draft.steps, s.pose, near, far, placed, s.cell.widths, s.free)
+        linear = in_floats(found.place, scale)
+        for k, slope in found.slopes.items():
+            one = in_floats(slope, scale if s.draft.steps[k].turns else 1)
+            linear = linear + np.outer(s.step_of(k), one)
+        true = brute_force.place(s.table, {"frame": names[far], "at": corner}, s.q, near, s.middle)
+        error = np.linalg.norm(true - linear, axis=1).max()
+        bound = (found.bend + found.radius) / ONE * scale
+        assert error <= bound + 1e-12 * scale, seed
+        tightest = max(tightest, error / bound if bound > 1e-6 else 0)
+    assert tightest > 0.9
+
+
+def test_what_is_kept_on_a_leaf_is_kept_at_its_places():
+    held = 0
+    for seed in range(120):
+        s = Sample(seed, width=(0.02, 0.2, 1)[seed % 3])
+        margins = brute_force.margins(s.table, {"margin": 0}, s.q)
+        for keep in s.draft.arm.keeps:
+            try:
+                proof = proved_at(s, keep)
+            except LookupError:
+                continue
+            held += proof
+            assert not proof or margins[keep.name].min() > 0, (seed, keep.name)
+            assert proof or margins[keep.name].min() < 4 or seed % 3, (seed, keep.name)
+    assert held > 100
+
+
+def proved_at(s, keep):
+    rows = list(directions(keep, s.pose))
+    units = [keep.normal if keep.normal is not None else check.unit(row) for row in rows]
+    return any(check.is_kept(s.draft.steps, s.pose, keep, u, s.cell) for u in units)
+
+
+def test_what_is_violated_on_a_leaf_is_violated_at_its_places():
+    found = 0
+    for seed in range(200):
+        s = Sample(seed, 0.25 * (seed % 2), width=(0.02, 0.2, 0.5)[seed % 3])
+        margins = brute_force.margins(s.table, {"margin": 0}, s.q)
+        for row in places(s.draft):
+            keep, place = check.read_spots(s.draft.arm)(row, "")
+            if check.is_violated(s.draft.steps, s.pose, keep, place, s.cell, s.free):
+                found += 1
+                assert margins[keep.name].max() < 0, (seed, keep.name)
+    assert found > 30
+
+
+# --- what rounding may decide ---------------------------------------------------------------------
+
+SHELF = (
+    ARM.replace("origin = [0, 0, 2]", "origin = [0, 0, 8]")
+    .replace("offset = -1.5", "offset = 8")
+    .replace("radius = 0.25\n", "")
+    .replace("[3, 0, 0]", "[0, 0, 0]")
+)
+"""The tip stands on the shelf exactly, and 8 is the largest length, a power of two."""
+
+
+@pytest.mark.parametrize("part", [32, 1, Fraction(1, 32)])
+def test_what_is_less_than_the_slack_decides_nothing(part):
+    excess = f"{float(8 * part * check.SLACK / ONE):.12e}"
+    above = SHELF.replace("at = [2, 0, 0]", f"at = [0, 0, {excess}]")
+    below = SHELF.replace("at = [2, 0, 0]", f"at = [0, 0, -{excess}]")
+    place = {"at": ["0", "0"], "place": {"keep": 0, "near": [], "far": ["1"]}}
+    proof = {"proof": {"directions": [[0, 0, 1]], "trees": [["."], ["0."]]}}
+    for robot, evidence in ((above, proof), (below, {"witness": place})):
+        for text in (above, below):
+            data = json.dumps(Draft(text, box("0 0", "0 0")).file(**evidence))
+            if text is robot and part > 1:
+                assert check.check(data).refuted == (robot is below)
+            elif text is not robot or part < 1:
+                with pytest.raises(check.Refused, match=r"fails on a leaf|is not violated"):
+                    check.check(data)
+
+
+@pytest.mark.parametrize("unit", ["deg", "rad"])
+def test_many_turns_of_all_joints_add_less_than_the_slack(unit):
+    """A robot of seven parallelograms, whose frames stand where they stood, but for rounding."""
+    rows = [
+        f'[[joint]]\nname = "q{j}"\ntype = "parallelogram"\nparent = "{j}"\nframe = "{j + 1}"\n'
+        f'bar = "b{j}"\norigin = [0.1, 0.3, 1]\ncrank = [0, 0, 0]\naxis = [1, {j}, 2]\n'
+        for j in range(7)
+    ]
+    home = ", ".join(f"q{j} = 0" for j in range(7))
+    head = ARM.split("[[joint]]")[0].replace("q1 = 0, q2 = 0", home).replace("deg", unit)
+    point = '[[point]]\nname = "tip"\nframe = "7"\nat = [0.3, -0.1, 0.7]\n'
+    arm = check.Arm(check.read_robot(head + "".join(rows) + point, {}), Fraction(0))
+    turned = check.Pose(arm.steps, arm.placed([Fraction(29 - 7 * j) for j in range(7)]))
+    still = check.Pose(arm.steps, (0,) * 7)
+    tip = arm.scaled([Fraction(3, 10), Fraction(-1, 10), Fraction(7, 10)])
+    off = check.size(check.minus(turned.place(14, tip), still.place(14, tip)))
+    assert 0 < off < check.SLACK >> 16
+
+
+# --- discs, parts and leaves ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_disc_lies_within_a_part_if_every_edge_is_that_far(seed):
+    rng = random.Random(seed)
+    hull = shapely.MultiPoint(
+        [(rng.randint(-9, 9), rng.randint(-9, 9)) for _ in range(7)]
+    ).convex_hull
+    if hull.geom_type != "Polygon":
+        return
+    corners = [(Fraction(x), Fraction(0), Fraction(y)) for x, y in [*hull.exterior.coords][:-1]]
+    corners = corners[:: rng.choice((1, -1))]
+    shares = [Fraction(1, len(corners))] * len(corners)
+    at = check.mean(shares, corners)
+    depth = hull.exterior.distance(shapely.Point(float(at[0]), float(at[2])))
+    for part, within in ((0.999999, True), (1.000001, False)):
+        assert check._holds_disc(corners, (0, 2), at, Fraction(depth * part)) == within
+    outside = (at[0] + 30, at[1], at[2])
+    assert not check._holds_disc(corners, (0, 2), outside, Fraction(1, 10**9))
+
+
+def test_leaves_that_nearly_touch_are_one_way_on():
+    for gap, touch in ((check.TOUCH, True), (check.TOUCH + 2, False)):
+        leaves = check.Leaves([(0, 0)])
+        leaves.add(check.Box((0, 0), (ONE, ONE)), True)
+        leaves.after[0] = 1
+        beyond = check.Box((ONE + gap, ONE + gap), (2 * ONE, 2 * ONE))  # at a corner
+        assert [*leaves.touching(beyond)] == [0] * touch
+
+
+EVERYWHERE = planar.planar("", "[-90, 90]", "", posts=planar.wall("wall", 0, 1, 99))
+"""Violated at every configuration: so any leaf may be called so, and only touching counts."""
+
+
+def leaves_of(tree, low, high):
+    """Yield the open leaves of a tree by their corners, exactly."""
+    todo = [(low, high)]
+    for letter in re.findall("[a-g]|[0-9]*[.]", tree):
+        low, high = todo.pop()
+        if letter[-1] == ".":
+            if letter == ".":
+                yield low, high
+            continue
+        j = ord(letter) - ord("a")
+        cut = (low[j] + high[j]) / 2
+        todo += [((*low[:j], cut, *low[j + 1 :]), high), (low, (*high[:j], cut, *high[j + 1 :]))]
+
+
+SEAMS, HALF = (True, False, True), (Fraction(180), Fraction(90), Fraction(180))
+WHOLE = tuple(-h for h in HALF), HALF
+
+
+def are_joined(tree, start, goal):
+    """Tell whether open leaves lead from start to goal, by comparing all with all."""
+    found = [*leaves_of(tree, *WHOLE)]
+
+    def touch(a, b):
+        return all(
+            any(x + k <= v and u <= y + k for k in ((-360, 0, 360) if seam else (0,)))
+            for x, y, u, v, seam in zip(*a, *b, SEAMS, strict=True)
+        )
+
+    reached = {k for k, leaf in enumerate(found) if touch((start, start), leaf)}
+    goals = {k for k, leaf in enumerate(found) if touch((goal, goal), leaf)}
+    while (
+        new := {k for k, b in enumerate(found) if any(touch(found[i], b) for i in reached)}
+        - reached
+    ):
+        reached |= new
+    return bool(reached & goals), bool(reached and goals)
+
+
+def random_tree(rng, depth):
+    if not depth or rng.random() < 0.1:
+        return rng.choice(("0.", "0.", "0.", "0.", "."))
+    return rng.choice("abc") + random_tree(rng, depth - 1) + random_tree(rng, depth - 1)
+
+
+@pytest.mark.parametrize("first", range(0, 300, 50))
+def test_open_leaves_touch_at_faces_corners_and_seams(first):
+    draft = Draft(EVERYWHERE, {"set": "no path"} | between("0 0 0", "9 9 9", "moves moves moves"))
+    place, answers = {"keep": 0, "near": [], "far": ["1"]}, set()
+    for seed in range(first, first + 50):
+        rng = random.Random(seed)
+        tree = random_tree(rng, 6)
+        corners = [q for leaf in leaves_of(tree, *WHOLE) for q in leaf] + [(Fraction(20),) * 3]
+        start, goal = rng.choice(corners), rng.choice(corners)
+        data = draft.file(proof={"places": [place], "tree": tree})
+        points = [[[*map(check.exactly, q)] for q in (start, goal)]]
+        data["claim"] = data["claim"] | {"points": points}
+        joined, both_open = are_joined(tree, start, goal)
+        for verify in (check.check, second.verify):
+            try:
+                verify(json.dumps(data))
+                answer = "proved"
+            except ValueError as refusal:
+                answer = str(refusal)
+            wanted = "proved" if both_open and not joined else "lead" if joined else "no open leaf"
+            assert wanted in answer, seed
+        answers.add((joined, both_open))
+    assert len(answers) == 3
