@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.boundary.functions import clearance
 from qbound.forms.angles import TURN, first_from, nearest_turn, turns_within
 from qbound.forms.circle import CircleRoots, circle_roots
@@ -23,8 +24,6 @@ from qbound.model.robot import HalfSpace, Robot
 from qbound.region.arcs import legendre
 from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
 from qbound.tolerances import ON_BOUNDARY
-
-Floats = NDArray[np.float64]
 
 PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
 """Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""

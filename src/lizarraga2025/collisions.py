@@ -10,14 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound import clearance
+from qbound.arrays import Bools, Floats
 from qbound.boundary.functions import components
 from qbound.model.robot import HalfSpace, Pair, Robot
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 def misses_points(robot: Robot, q: Floats) -> Bools:

@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.model.robotfile import parse_robot, robot_table
 from qbound.printable import printable
@@ -21,7 +22,6 @@ from qbound.region import Region, find_region
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
 
-Floats = NDArray[np.float64]
 Path = str | Sequence[str]
 """``joint.elbow.origin.0``; as a sequence where a name has dots in it."""
 

@@ -10,15 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats
 from qbound.boundary.compiled import compiled_feasible
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
 from qbound.model.robot import Robot
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Predicate = Callable[[Robot, Floats], Bools]
 
 

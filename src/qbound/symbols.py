@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.extras import require
 from qbound.model.frames import whole_numbers
 from qbound.model.robot import Robot
 
 if TYPE_CHECKING:
     import sympy
-
-Array = NDArray[Any]
 
 
 def joint_symbols(robot: Robot) -> tuple[sympy.Symbol, ...]:

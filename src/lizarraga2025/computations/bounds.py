@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
@@ -16,13 +15,12 @@ from lizarraga2025.evidence.arms import corrected, pairs, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
 from qbound import HarmonicForm
+from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, components, pair_vector
 from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.circle import circle_roots
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.symbols import joint_symbols, with_symbols
-
-Floats = NDArray[np.float64]
 
 RESIDUAL = 1e-9
 """A component, cm, below which its bound counts as a root: offsets carry 1e-2, roundoff 1e-14."""

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
@@ -27,6 +26,7 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.arrays import Floats
 from qbound.boundary.functions import pair_vector
 from qbound.forms.angles import TURN
 from qbound.geometry import polygon
@@ -34,8 +34,6 @@ from qbound.measures import scaling
 from qbound.model.robot import Pair
 from qbound.region import paper_rule, solve, state
 from qbound.symbols import joint_symbols
-
-Floats = NDArray[np.float64]
 
 PICTURE: Final = "The picture, which was not at hand, may show it."
 

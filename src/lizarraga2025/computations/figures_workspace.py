@@ -8,7 +8,6 @@ from itertools import permutations, product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.collisions import (
@@ -43,16 +42,13 @@ from lizarraga2025.evidence.tool_paths import (
     spread_of_middles,
 )
 from lizarraga2025.verdicts import Outcome, judge, undetermined
+from qbound.arrays import Bools, Floats
 from qbound.boundary.functions import position
 from qbound.forms.angles import TURN
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import paper_rule
 from qbound.sampling import keeps_clear
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
 
 ROUNDS: Final = {
     f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(

@@ -40,6 +40,7 @@ from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
 from qbound import clearance, find_region
+from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, pair_vector
 from qbound.forms.circle import circle_roots
 from qbound.geometry import polygon
@@ -49,8 +50,6 @@ from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.region import Region, paper_rule, solve
 from qbound.region.problem import Problem, state
 from qbound.symbols import joint_symbols
-
-Floats = NDArray[np.float64]
 
 
 @computes("S-18")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -43,14 +42,13 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.region import paper_rule
 from qbound.sampling import sample
 
 if TYPE_CHECKING:
     import shapely
-
-Floats = NDArray[np.float64]
 
 
 @computes("S-30")

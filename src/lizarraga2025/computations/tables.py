@@ -12,7 +12,6 @@ from math import prod
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
@@ -50,14 +49,13 @@ from lizarraga2025.verdicts import (
     undetermined,
 )
 from qbound import HarmonicForm, clearance
+from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, components, pair_vector, position
 from qbound.forms.angles import TURN, first_from
 from qbound.forms.circle import circle_roots
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols
-
-Floats = NDArray[np.float64]
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 

@@ -5,20 +5,17 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, half_spaces, robot, tool_form
 from qbound import find_region
+from qbound.arrays import Bools, Floats
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.measures.scaling import SafeScale
 from qbound.model.robot import Robot
 from qbound.region import Component, Region, paper_rule, solve
 from qbound.sampling import Sample, sample
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 SCALE = 0.95
 """The book's scale: the paper states none."""

@@ -12,12 +12,10 @@ from functools import cache
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025 import printed as paper
+from qbound.arrays import Array
 from qbound.model.frames import Frame, Frames, axis_rotation
-
-Array = NDArray[Any]
 
 UNTURNED: Array = np.eye(3, dtype=int)
 """Orientation of a point's frame in its link."""

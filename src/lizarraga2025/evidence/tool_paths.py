@@ -8,11 +8,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
+from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.geometry.polylines import self_crossings
 from qbound.measures import scaling
@@ -25,7 +25,6 @@ from qbound.workspace.planar import planar_arm
 if TYPE_CHECKING:
     import shapely
 
-Floats = NDArray[np.float64]
 
 RIGHT, LEFT = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
 """The book's sequences for Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1."""

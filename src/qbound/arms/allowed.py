@@ -21,18 +21,16 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.closest import Witnesses, closest, random_configurations
 from qbound.arms.everywhere import apart_everywhere, touching_everywhere
 from qbound.arms.links import Link, links
 from qbound.arms.pair_forms import PairForms, pair_forms
+from qbound.arrays import Floats
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.proofs.exact import exact_robot
 from qbound.proofs.verdict import Verdict
-
-Floats = NDArray[np.float64]
 
 CELLS: Final = 1_000_000
 """Cells at which the search for a proof about two links ends."""

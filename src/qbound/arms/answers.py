@@ -7,17 +7,15 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.links import link_pair
 from qbound.arms.separations import Block, JointTravel, Separation
 from qbound.arms.why import Why
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
-
-Floats = NDArray[np.float64]
 
 DIGITS = {"deg": 2}
 """Decimals of what is shown; of lengths six."""

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arms.pair_forms import PairForms
+from qbound.arrays import Floats
 from qbound.forms.angles import TURN
 from qbound.forms.factors import basis
 from qbound.forms.harmonic import HarmonicForm, Kind
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 SAMPLES = 2048

@@ -10,16 +10,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.pair_forms import PairForms
+from qbound.arrays import Bools, Floats
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import ball, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.verdict import Verdict
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 BATCH: Final = 8192
 """Cells that are bounded at a time."""

@@ -21,16 +21,20 @@ from math import pi, tau
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from qbound.arms.gaps import NONE, Gaps, Indices, Intervals, on_circle, on_line
+from qbound.arms.gaps import (
+    NONE,
+    Gaps,
+    Intervals,
+    on_circle,
+    on_line,
+)
+from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.balls import Balls, blocks, squared_distances
 from qbound.boundary.chain import Pose
 from qbound.boundary.evaluator import limit_names
 from qbound.model.robot import Joint, Robot, refuse_no_robot
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 class Interval(NamedTuple):

@@ -10,10 +10,8 @@ from math import ceil, tau
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from qbound.arrays import Floats, Indices
 
 NONE = -1
 """Stands for an interval where a gap ends at an end of the range, or nowhere."""

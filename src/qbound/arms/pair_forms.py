@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.links import Link
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import stacked
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import Joint, Pair, Robot
@@ -23,7 +23,6 @@ from qbound.proofs.balls import above, arb, ball, balls, below, pi, precision
 from qbound.proofs.dyadic import BITS, magnitude
 from qbound.tolerances import ZERO_AMPLITUDE
 
-Floats = NDArray[np.float64]
 Ends = tuple[tuple[arb, arb], ...]
 
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.chain import Chain
 from qbound.model.robot import Robot
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,19 +20,16 @@ from dataclasses import dataclass
 from math import floor, log10
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from qbound.arms.fibres import fibres
 from qbound.arms.paths import ToolPaths
 from qbound.arms.voxels import Grid, coarsened, crossed, enclosed_volume
+from qbound.arrays import Bools, Floats, Indices
 from qbound.extras import require
 from qbound.model.robot import Robot, refuse_no_robot
 from qbound.model.rows import unit_vector
 from qbound.sampling import joint_ranges
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
 
 BANDS, SECTORS = 6, 12
 """Directions are told apart by so many bands of equal height, each with so many sectors."""

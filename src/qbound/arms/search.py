@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import evaluator
 from qbound.forms.angles import nearest_turn
 from qbound.model.robot import Robot
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 TRIES = 4000
 """Places drawn before a search gives up."""

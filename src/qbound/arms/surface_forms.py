@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names, stacked
 from qbound.boundary.parts import bounds_bodies
 from qbound.forms.angles import TURN
@@ -24,7 +25,6 @@ from qbound.model.robot import Robot
 from qbound.printable import printable
 from qbound.tolerances import NEGLIGIBLE
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 ON_FORM: Final = 1e-12

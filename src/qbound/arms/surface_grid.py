@@ -10,11 +10,9 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.surface_forms import SurfaceForms, settled
-
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
 
 PLACES: Final = 6
 """Places of the grid that a block has along each axis."""

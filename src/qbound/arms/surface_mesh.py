@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arms.surface_forms import BLOCK, ON_FORM, TIED, SurfaceForms
+from qbound.arrays import Bools, Floats
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
 
 MOST: Final = 3

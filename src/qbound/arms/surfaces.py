@@ -30,11 +30,11 @@ from qbound.arms.surface_forms import (
 )
 from qbound.arms.surface_grid import grid_values
 from qbound.arms.surface_mesh import Mesh, refined
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.printable import printable
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 RESOLUTION: Final = 40

@@ -9,13 +9,9 @@ from math import tau
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.paths import Paths
-
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
-Bools = NDArray[np.bool_]
+from qbound.arrays import Bools, Floats, Indices
 
 
 @dataclass(frozen=True, eq=False)

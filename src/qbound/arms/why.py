@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
@@ -36,7 +37,6 @@ from qbound.proofs.structure import Structure
 from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Region, find_region, violated
 
-Floats = NDArray[np.float64]
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 During = Callable[[str], AbstractContextManager[None]]
 """What is entered with a text while that lasts: for progress."""

@@ -12,17 +12,14 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.chain import Chain, Pose
 from qbound.boundary.lengths import denominators, lengths
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.tolerances import ROUNDING
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
 
 BLOCK = 256
 """Configurations a block: the distances of hundreds of pairs stay in the cache."""

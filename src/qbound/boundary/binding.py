@@ -16,12 +16,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.boundary.monomials import VALUE, Monomials
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 CERTAIN, BELOW = 2.0, -1.0
 """A row is left out only where it is at least the first; it is so by others that are not below

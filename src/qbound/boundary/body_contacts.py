@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.boundary.contacts import (
     Contacts,
@@ -22,7 +21,6 @@ from qbound.boundary.contacts import (
 from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 
-Floats = NDArray[np.float64]
 Found = tuple[str, Features, tuple[int, int]]
 
 

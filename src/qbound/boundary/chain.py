@@ -12,12 +12,10 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats, Indices
 from qbound.model.robot import Parallelogram, Point, Robot
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.intp]
 Pose = tuple[Floats, Floats]
 """Axes as columns, shape (3, 3, n), and origin, shape (3, n); n is 1 of what nothing moves."""
 

@@ -10,15 +10,13 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.machine import SINES, is_programmable, machine, program
 from qbound.model.robot import Robot, refuse_no_robot
 from qbound.model.values import real_numbers
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 SHARE = 2**16
 """Configurations that are worth a thread, at the least."""

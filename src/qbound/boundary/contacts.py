@@ -21,12 +21,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.errors import Sizes, coefficient_errors
 from qbound.tolerances import ROUNDING
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Tables = tuple[Floats, Floats, Floats, Floats]
 """Forms, sides, and the errors of both."""
 

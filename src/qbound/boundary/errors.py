@@ -11,12 +11,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.tolerances import ROUNDING
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.functions import clearance, term_size
 from qbound.boundary.lengths import Denominator, denominators, lengths
 from qbound.boundary.monomials import VALUE, Monomials, occurring, padded
@@ -28,9 +29,6 @@ from qbound.model.robot import Boundary, Robot
 from qbound.model.values import real_numbers
 from qbound.tolerances import ROUNDING
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
 Range = tuple[float, float] | None
 
 BLOCK = 8192

@@ -17,8 +17,8 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.boundary.contacts import Contacts, anticlockwise
 from qbound.boundary.parts import bounded_bodies
 from qbound.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
@@ -26,7 +26,6 @@ from qbound.model.frames import cross
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.tolerances import ROUNDING, ZERO_AMPLITUDE
 
-Array = NDArray[Any]
 Vector = tuple[Any, Any]
 """A vector of the plane, of numbers or of tables (3, 3)."""
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import reduce, singledispatch
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.frames import cross
@@ -30,8 +30,6 @@ from qbound.model.robot import (
 )
 from qbound.printable import printable
 from qbound.tolerances import ZERO_AMPLITUDE
-
-Array = NDArray[Any]
 
 
 def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicForm:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
+
 Denominator = tuple[Floats, Floats, Floats]
 
 NO_DISTANCE = 2.0**-1000

@@ -24,13 +24,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Singles
 from qbound.boundary.screen import Screen
 from qbound.extras import require
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Machine = Callable[[Floats, Integers, Singles, Bools, Integers], int]
 MachineOfOne = Callable[[Floats, Integers, Singles], int]
 

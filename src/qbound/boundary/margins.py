@@ -8,10 +8,9 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Bools
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Robot, refuse_no_robot
-
-Bools = NDArray[np.bool_]
 
 
 @overload

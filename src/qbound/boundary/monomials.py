@@ -10,15 +10,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array, Floats
 from qbound.forms.factors import FACTORS, Kind
 
-Array = NDArray[Any]
-Floats = NDArray[np.float64]
 Index = tuple[int, ...]
 Function = tuple[Kind, int]
 

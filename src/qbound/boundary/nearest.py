@@ -7,14 +7,14 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts
 from qbound.boundary.poses import PlanePoses
 from qbound.geometry.distance import closest
 from qbound.model.robot import Body, Boundary, HalfSpace, Robot
 
-Floats = NDArray[np.float64]
 Placed = tuple[str, Floats, float]
 
 

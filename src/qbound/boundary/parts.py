@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.bodycheck import is_oblique, off_plane
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.printable import printable
-
-Floats = NDArray[np.float64]
 
 
 def bounds_bodies(boundary: Boundary) -> bool:

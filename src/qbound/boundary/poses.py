@@ -7,11 +7,9 @@ along a direction of the other is linear in the pose: a row of numbers times a c
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.robot import Robot
-
-Floats = NDArray[np.float64]
 
 POSE = 7
 """Rows of a pose: cosine and sine of its turn, its origin (x, y) seen from the observer, the same

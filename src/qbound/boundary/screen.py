@@ -22,15 +22,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Singles
 from qbound.boundary.binding import binding
 from qbound.boundary.monomials import Monomials, padded
 from qbound.forms.factors import Kind
-
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Bools = NDArray[np.bool_]
 
 UNIT = 2.0**-24
 """Half a unit in the last place of single precision, relative."""

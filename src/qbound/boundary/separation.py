@@ -14,17 +14,14 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
 from qbound.boundary.poses import POSE, PlanePoses, of_far_places, of_near_places
 from qbound.geometry.distance import View, edges, signed
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Held, Robot
 from qbound.tolerances import ROUNDING
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
 
 CACHED, MOST = 2**17, 2**20
 """Numbers of a block of configurations: what the passes over all of them read again stays in the

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.chain import Step, depths, steps
 from qbound.boundary.functions import clearance, position
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
@@ -28,7 +28,6 @@ from qbound.region.arcs import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.version import __version__
 
-Floats = NDArray[np.float64]
 Data = dict[str, Any]
 
 OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.44])

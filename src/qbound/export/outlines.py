@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.export.formats import csv_text, npz_bytes
 from qbound.export.polygons import Piece, polygons
 from qbound.extras import require
@@ -16,8 +16,6 @@ from qbound.region import Region
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.forms.angles import TURN
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.region import Component
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from qbound.arrays import Floats
 from qbound.export.formats import csv_text, pose_columns, pose_heading
 from qbound.paths.encounters import Crossing, Margin, ParameterPoint
 from qbound.paths.report import PathReport
@@ -16,8 +14,6 @@ from qbound.paths.route import Route
 from qbound.paths.trajectory import Trajectory, row_times
 from qbound.tolerances import ON_BOUNDARY
 from qbound.units import amount, counted, joint_text
-
-Floats = NDArray[np.float64]
 
 
 def route_csv(route: Route, times: Trajectory | None = None) -> str:

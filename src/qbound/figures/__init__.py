@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.export.polygons import polygons
 from qbound.extras import require
 from qbound.forms.angles import TURN, whole_turns
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-Floats = NDArray[np.float64]
 
 FEASIBLE: Final = "#0072B2"
 COLLIDING: Final = "#D55E00"

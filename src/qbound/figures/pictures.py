@@ -10,10 +10,11 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from qbound import figures
 from qbound.arms.reach import Reach
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.figures import INK
 from qbound.figures.reach import draw_section
@@ -28,7 +29,6 @@ from qbound.workspace.areas import Workspace
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Floats = NDArray[np.float64]
 PANEL: Final = (5.4, 5.0)
 SMALL: Final = (3.2, 3.4)
 ACROSS: Final = 5

@@ -7,10 +7,10 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qbound.arms.surface_files import COLOURS, OTHERS, colour_of
 from qbound.arms.surfaces import Surface
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.figures import INK, STYLE, as_text, symbol
 from qbound.units import counted
@@ -18,7 +18,6 @@ from qbound.units import counted
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-Floats = NDArray[np.float64]
 
 VIEW: Final = (22.0, -55.0)
 """Elevation and azimuth of the eye, degrees."""

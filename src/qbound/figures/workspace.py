@@ -7,8 +7,9 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED, as_text
 from qbound.workspace.areas import SINGULAR, Workspace
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-Floats = NDArray[np.float64]
 
 ONCE: Final = "#CDE3F0"
 TWICE: Final = "#7FB8D8"

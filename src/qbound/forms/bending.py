@@ -16,11 +16,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.forms.harmonic import HarmonicForm
 from qbound.forms.waves import Waves
 from qbound.geometry.simplices import edges
-
-Floats = NDArray[np.float64]
 
 
 def second_order(form: HarmonicForm, cells: Floats) -> Floats:

@@ -8,10 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.tolerances import TANGENT, ZERO_AMPLITUDE
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ALL: Final = -1
 """Count of roots where every angle is one (a = b = c = 0)."""

@@ -13,8 +13,9 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Array
+
 Kind = Literal["revolute", "prismatic"]
-Array = NDArray[Any]
 
 
 NUMBERS = np.ndarray, np.generic, float, int

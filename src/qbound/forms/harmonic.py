@@ -16,8 +16,9 @@ from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.forms.factors import FACTORS, Kind, basis, basis_slope
 from qbound.forms.waves import Waves, to_waves
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HarmonicForm", "Kind", "add_constant", "basis", "basis_slope"]
 
-Array = NDArray[Any]
 Values = ArrayLike | Sequence[Any]
 """Joint values: floats, or objects such as balls and symbols."""
 

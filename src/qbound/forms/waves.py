@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.forms.factors import FACTORS, Kind
-
-Array = NDArray[Any]
 
 DROPPED = 1e-15
 """Amplitudes this small beside a form's largest are rounding."""

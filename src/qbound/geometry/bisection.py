@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
+
 HALVINGS = 52
 """So many halvings leave an interval no wider than the rounding of its length."""
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
+
 Whole = tuple[int, int]
 Loop = tuple[int, ...]
 """Corners by their numbers, in order."""

@@ -13,11 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.geometry.simplices import edges, halved
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 HALVINGS = 60
 """Rounds of halving after which a simplex is given up."""

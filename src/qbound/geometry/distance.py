@@ -10,13 +10,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats
 from qbound.geometry.polylines import cross
 from qbound.tolerances import ZERO_AMPLITUDE
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 class Edges(NamedTuple):

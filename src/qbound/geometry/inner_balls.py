@@ -12,12 +12,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.geometry.covering import IN_CACHE
 from qbound.geometry.mesh_solids import Convex, heights, winding_numbers
 from qbound.geometry.surface_distance import SurfaceDistance, one_a_cell
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
 
 SHRINKINGS = 12
 """Times that a ball is shrunk at most."""

@@ -13,6 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.geometry.covering import Cover, Work, few, fewer, uncovered, within
 from qbound.geometry.inner_balls import convex_balls, solid_balls
@@ -28,8 +29,6 @@ from qbound.geometry.simplices import edges, halved
 from qbound.geometry.solid_covers import box_cover
 from qbound.geometry.surface_distance import SurfaceDistance, one_a_cell
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
 
 MOST_SAMPLES = 700_000
 """Samples of the triangles, about, from which depths are known."""

@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.geometry.covering import AT_ONCE, IN_CACHE
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
 
 MOST_TERMS = 250_000_000
 """Corners times planes of a hull at most; a mesh with more is treated as if it had no hull."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.geometry.polylines import cross
-
-Floats = NDArray[np.float64]
 
 
 def area(vertices: ArrayLike) -> float:

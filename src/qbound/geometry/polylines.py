@@ -10,9 +10,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.tolerances import ON_BOUNDARY
 
-Floats = NDArray[np.float64]
 Curve = Callable[[Floats], Floats]
 """Parameters in [0, 1], shape (k,), to places, shape (k, d)."""
 

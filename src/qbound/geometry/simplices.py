@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
 
 
 def edges(cells: Floats) -> Floats:

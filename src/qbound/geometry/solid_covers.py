@@ -9,13 +9,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.geometry.bisection import last_before
 from qbound.geometry.covering import Cover, few, uncovered, within
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
 
 MOST_OF_A_KIND = 4000
 """Balls of a cover at most: more is a slip in the excess asked for."""

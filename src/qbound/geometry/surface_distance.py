@@ -12,11 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Indices
 from qbound.tolerances import OUTWARD
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Indices = NDArray[np.intp]
 
 MOST_GROUPS = 1_000
 """Groups of samples, about."""

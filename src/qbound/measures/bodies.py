@@ -10,15 +10,14 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.boundary.parts import flat_parts
 from qbound.boundary.separation import Separation
 from qbound.geometry.distance import signed_distance
 from qbound.model.robot import Body, BodyPair, Robot
 from qbound.tolerances import CONTACT
-
-Floats = NDArray[np.float64]
 
 
 def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = None) -> Floats:

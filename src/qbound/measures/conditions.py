@@ -13,13 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.harmonic import HarmonicForm
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,16 +12,15 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.factors import basis_and_slope
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.values import real_numbers
 from qbound.region import Component, Problem, Region
 from qbound.region.arcs import Arc, integrate
-
-Floats = NDArray[np.float64]
 
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.functions import clearance, margin_of
 from qbound.boundary.parts import bounds_bodies
@@ -22,8 +23,6 @@ from qbound.measures.conditions import Conditions, conditions
 from qbound.measures.worst_bodies import least_margin_over
 from qbound.model.robot import Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
-
-Floats = NDArray[np.float64]
 
 ROUNDS, PLACES = 14, 33
 MOST_TRIANGLES = 2_000_000

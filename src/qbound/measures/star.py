@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
@@ -22,8 +23,6 @@ from qbound.measures.scaling import first_exit, violation
 from qbound.region import Component, Problem
 from qbound.region.arcs import Arc
 from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
-
-Floats = NDArray[np.float64]
 
 PLACES, ROUNDS = 129, 12
 

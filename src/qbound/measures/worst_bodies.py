@@ -8,8 +8,8 @@ of these from below over a simplex. So no simplex that contains the least value 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.body_contacts import body_contacts
 from qbound.boundary.contacts import Contacts
 from qbound.boundary.parts import bounded_bodies
@@ -19,8 +19,6 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import edges, halved
 from qbound.measures.conditions import conditions
 from qbound.model.robot import BodyPair, Boundary, Robot
-
-Floats = NDArray[np.float64]
 
 MOST_CELLS = 200_000
 """Simplices looked at before what is left is said to be undecided."""

@@ -10,13 +10,12 @@ from typing import Annotated, Any
 
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.model.frames import whole_numbers
 from qbound.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from qbound.model.shapes import Point
 
-Array = NDArray[Any]
 Source = Mapping[str, Any]
 Convert = Callable[[Any], Any]
 Find = Callable[[str], Point]

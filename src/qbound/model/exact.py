@@ -15,8 +15,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary
 from qbound.model.joints import Joint, Parallelogram
 from qbound.model.robot import Robot
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
     arb = flint.arb
 
-Array = NDArray[Any]
 Table = Mapping[str, Any]
 
 LARGEST_EXPONENT = 400

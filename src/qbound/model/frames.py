@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.tolerances import ZERO_AMPLITUDE
-
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType, structs
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.model.frames import Frame, axis_rotation, roll_pitch_yaw
 from qbound.model.rows import (
     LARGEST,
@@ -29,7 +29,6 @@ from qbound.model.rows import (
 )
 from qbound.model.schema import shown
 
-Array = NDArray[Any]
 Kind = Literal["revolute", "prismatic"]
 """Factor of a joint in a harmonic form: (1, cos q, sin q) or (1, q, q²)."""
 

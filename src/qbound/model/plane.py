@@ -9,17 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.model.frames import Frames, cross
 from qbound.model.joints import Joint
 from qbound.model.schema import one_line
 from qbound.tolerances import ZERO_AMPLITUDE
-
-Array = NDArray[Any]
 
 COORDINATES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
 """The two coordinates of a plane by that of its normal: (y, z), (x, z), (x, y)."""

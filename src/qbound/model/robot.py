@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
 from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute
@@ -42,7 +43,6 @@ __all__ = [
     "Shape",
 ]
 
-Array = NDArray[Any]
 Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
 """Values of joints that are held, rad or length, by index or by name."""
 

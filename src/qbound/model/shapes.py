@@ -13,13 +13,12 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.geometry.convex import convex_parts, polygon_fault
 from qbound.model.rows import Label, Number, Row, Size, Vector, plain
 from qbound.tolerances import CHORD
-
-Array = NDArray[Any]
 
 Y: tuple[float, float, float] = (0.0, 1.0, 0.0)
 """Normal of the plane of x and z, in which an outline is drawn unless another is named."""

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Array
 from qbound.model.schema import one_line
-
-Array = NDArray[Any]
 
 
 def real_numbers(q: ArrayLike) -> NDArray[np.float64]:

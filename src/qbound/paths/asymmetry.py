@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.boundary.functions import position
 from qbound.extras import require
 from qbound.model.robot import Robot
 from qbound.paths.traversal import traverse
-
-Floats = NDArray[np.float64]
 
 
 def asymmetry(robot: Robot, one: ArrayLike, other: ArrayLike, error: float = 1e-3) -> float:

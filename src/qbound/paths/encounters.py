@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import Evaluator, evaluator
 from qbound.boundary.functions import position
 from qbound.boundary.parts import bounds_bodies
@@ -25,7 +26,6 @@ from qbound.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from qbound.units import joint_units
 from qbound.workspace.planar import NoPlanarWorkspaceError, singular_form
 
-Floats = NDArray[np.float64]
 Form = Callable[[Floats], Floats]
 
 ROWS_OF_A_LEG = 65

@@ -11,8 +11,8 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Traversal, follow, straight
@@ -20,7 +20,6 @@ from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 from qbound.tolerances import TOUCH
 
-Floats = NDArray[np.float64]
 Along = Literal["lines", "arcs"]
 
 

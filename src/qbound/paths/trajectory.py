@@ -12,11 +12,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.printable import printable
-
-Floats = NDArray[np.float64]
 
 METRES: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 """Metres in a robot file's length unit."""

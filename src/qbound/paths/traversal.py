@@ -10,11 +10,10 @@ from itertools import pairwise, permutations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.functions import position
 from qbound.geometry.polylines import Curve, flatten, self_crossings, too_fine
 from qbound.model.robot import Robot
-
-Floats = NDArray[np.float64]
 
 MOST_ROWS = 2**20
 """Rows of a path: a gigabyte while they are written."""

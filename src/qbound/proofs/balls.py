@@ -11,7 +11,8 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from qbound.arrays import Array
 
 if TYPE_CHECKING:
     import flint
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     arb = flint.arb
 else:
     arb = Any  # for annotations alone: python-flint loads where it is called
-
-Array = NDArray[Any]
 
 
 def precision(bits: int) -> AbstractContextManager[None]:

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.boundary.parts import bounds_bodies
@@ -32,7 +32,6 @@ from qbound.proofs.balls import above, arb, ball, below, pi, precision
 from qbound.proofs.dyadic import magnitude
 from qbound.proofs.exact import exact_robot
 
-Floats = NDArray[np.float64]
 Alone = tuple[arb, arb, arb]
 """Coefficients of one joint's (1, cos q, sin q) or (1, q, q²)."""
 

@@ -15,11 +15,14 @@ from functools import cached_property
 from typing import Any
 
 from qbound import check
+from qbound.arrays import Floats
 from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.proofs import safe
-from qbound.proofs.inequality import Arm, Floats
+from qbound.proofs.inequality import (
+    Arm,
+)
 from qbound.proofs.parts import parts_of
 from qbound.proofs.statements import (
     Statement,

@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.proofs.balls import above, below, precision
 from qbound.proofs.dyadic import BITS, BoxBounds
 from qbound.proofs.exact import ExactProblem
@@ -28,9 +28,6 @@ from qbound.proofs.paving import Clock, part_done
 from qbound.proofs.sectors import Sectors, covered, hidden, pieces, sectors_of
 from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
 from qbound.proofs.verdict import Verdict
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 MOST_COLUMNS = 2_000_000
 """Cells at which a paving stops on its own."""

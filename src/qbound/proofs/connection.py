@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.extras import require
 from qbound.forms.angles import nearest_turn
 from qbound.proofs.dyadic import DEEPEST, Cells
@@ -24,8 +25,6 @@ from qbound.proofs.exact import ExactProblem
 from qbound.proofs.paving import Paving, start
 from qbound.proofs.verdict import Verdict
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 
 MOST_CELLS = 200_000

@@ -12,7 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from qbound.proofs.inequality import Arm, Floats, Ints, Kind
+from qbound.arrays import Floats, Ints
+from qbound.proofs.inequality import (
+    Arm,
+    Kind,
+)
 from qbound.proofs.subdivide import Cells
 
 ALONG = 17

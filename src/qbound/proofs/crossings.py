@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Array, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import arb, ball, balls, precision, turns
@@ -27,8 +28,6 @@ from qbound.proofs.dyadic import BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.verdict import Verdict
 
-Array = NDArray[Any]
-Ints = NDArray[np.int64]
 Balls = tuple[arb, arb]
 
 BITS = 212

@@ -21,14 +21,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, arb, ball, balls, precision
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Ends = Sequence[tuple[arb, arb]]
 
 BITS = 100

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.boundary.contacts import SIDES
 from qbound.boundary.functions import position, squared_distance
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
@@ -31,8 +32,6 @@ from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Point, Robot
 from qbound.printable import printable
 from qbound.proofs import parts
 from qbound.proofs.balls import ball
-
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)

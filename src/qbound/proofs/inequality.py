@@ -16,13 +16,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.proofs.subdivide import Cells
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 SPARE = 1e-12
 """Part of an arm's length by which an inequality has to hold here: rounding takes less."""

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.functions import clearance
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
@@ -24,7 +25,6 @@ from qbound.tolerances import NEGLIGIBLE
 
 __all__ = ["Bound", "lipschitz", "natural", "search_all", "second_order"]
 
-Floats = NDArray[np.float64]
 
 Bound = Callable[[HarmonicForm, Floats], Floats]
 """From a form and cells, shape (N, k, n), to a number below the form on each cell, shape (N,)."""

@@ -14,11 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.model.robot import Robot
 from qbound.proofs.blocked import BlockedRange
 from qbound.proofs.certify import Certificate, Subject
 from qbound.proofs.contact import Contacts, contacts, violated
-from qbound.proofs.inequality import Arm, Bools, Floats, Ints
+from qbound.proofs.inequality import (
+    Arm,
+)
 from qbound.proofs.paving import Paving
 from qbound.proofs.safe import margins
 from qbound.proofs.separator import separator

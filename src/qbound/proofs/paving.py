@@ -18,14 +18,13 @@ from math import prod
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Bools, Ints
 from qbound.proofs.balls import arb, ball, below, precision
 from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.exact_bodies import ExactSeparation
 from qbound.proofs.verdict import Verdict
 
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 Run = tuple[int, Ints]
 
 LONGEST_RUN, SHORTEST_RUN = 2048, 256

@@ -13,10 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arrays import Array
 from qbound.boundary.functions import position
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.balls import Array, arb, ball, balls, precision
+from qbound.proofs.balls import (
+    arb,
+    ball,
+    balls,
+    precision,
+)
 from qbound.proofs.exact import BITS, ExactProblem
 from qbound.proofs.proved_region import BITS as AREA_BITS
 from qbound.proofs.proved_region import ProvedComponent, prove_region

@@ -20,8 +20,9 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import arb, ball, precision, turns
@@ -45,7 +46,6 @@ from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 
-Floats = NDArray[np.float64]
 Anchor = tuple[int | None, Balls]
 
 BITS = 128

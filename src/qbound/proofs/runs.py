@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.forms.angles import whole_turns
 from qbound.forms.factors import FACTORS
 from qbound.proofs.balls import arb, ball, balls, turns
 from qbound.proofs.crossings import Balls, line_roots, placed_at, sides
 from qbound.proofs.exact import ExactProblem
-
-Array = NDArray[Any]
 
 NARROWEST = 40
 """Halvings of a run after which it is not proved that its curve goes on."""

@@ -12,7 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.proofs.inequality import Arm, Floats, Ints, Kind, Seen
+from qbound.arrays import Floats, Ints
+from qbound.proofs.inequality import (
+    Arm,
+    Kind,
+    Seen,
+)
 from qbound.proofs.subdivide import Cells, Judged, Search, Tell, silent, subdivide
 
 FIRST_LOOK = 1000

@@ -13,13 +13,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.forms.angles import TURN
 from qbound.proofs.trigonometry import ERROR, cosine_sine
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Interval = tuple[Floats, Floats]
 
 MARGIN = 1e-12

@@ -12,14 +12,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats, Ints
 from qbound.proofs.connection import all_round, joined, touching
 from qbound.proofs.dyadic import Cells
 from qbound.proofs.paving import Paving
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Depths = Callable[[Floats, Floats], Floats]
 """From low and high corners, in parts of the joints' ranges, to how deep each thing to keep is
 violated in the middle: shape (s, things), 0 where it is kept."""

@@ -27,21 +27,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain, pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array, Bools, Floats, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs.balls import above, ball, precision, turns
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.trigonometry import cosine_sine
-
-Array = NDArray[Any]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 WHOLE = 2**36
 """Steps across each range: a cell one step wide is given up."""

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.forms.bending import second_order
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
@@ -27,7 +28,6 @@ from qbound.region.arcs import Arc
 from qbound.region.loops import behind
 from qbound.region.problem import Problem, clearance_problem
 
-Floats = NDArray[np.float64]
 Statement = dict[str, Any]
 Point = list[str]
 

@@ -22,17 +22,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats, Ints
 from qbound.forms.angles import TURN, whole_turns
 from qbound.proofs.exact import ExactProblem
 from qbound.proofs.stars import WHOLE, Stars, Undecided
 from qbound.proofs.verdict import Unproved
 from qbound.region import Component, Region
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Steps = tuple[int, int]
 
 NEAR = 1e-6

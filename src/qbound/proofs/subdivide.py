@@ -16,11 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.geometry import simplices
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 Tell = Callable[[float], None]
 """Is told how far work is, from 0 to 1."""
 

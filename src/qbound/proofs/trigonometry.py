@@ -10,9 +10,8 @@ from __future__ import annotations
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from qbound.arrays import Floats
 
 ERROR = 2.0**-47
 """Bound of the absolute error of `cosine_sine`."""

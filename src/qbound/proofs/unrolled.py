@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.extras import require
 
-Floats = NDArray[np.float64]
 Polygon = list[Floats]
 """An outline, anticlockwise, and its holes, clockwise."""
 

@@ -13,8 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.proofs.contact import Contacts, contacts
-from qbound.proofs.inequality import Arm, Floats
+from qbound.proofs.inequality import (
+    Arm,
+)
 from qbound.proofs.safe import margins
 from qbound.proofs.statements import Statement, corners_of, decimal
 from qbound.proofs.subdivide import Boxes, Simplices

@@ -8,13 +8,12 @@ from itertools import product
 
 import numpy as np
 from msgspec import UNSET
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.robotfile import robot_table
 from qbound.sweeps.cells import Job, versions
 from qbound.sweeps.specification import Specification, Study
 
-Floats = NDArray[np.float64]
 Chunk = tuple[int, ...]
 
 

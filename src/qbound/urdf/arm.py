@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.joints import JOINT_TYPES, Joint
 from qbound.model.robot import Pair, Point, Robot
 from qbound.model.robotcheck import RobotFileError
@@ -27,7 +27,6 @@ from qbound.urdf.srdf import Srdf, read_srdf
 from qbound.urdf.tree import Chain, find_chain, listed
 from qbound.urdf.xml import PACKAGED, Source, called
 
-Floats = NDArray[np.float64]
 Limits = Mapping[str, tuple[float, float]]
 
 EXCESS = 0.02

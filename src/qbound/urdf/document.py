@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.schema import shown
 from qbound.urdf.poses import Pose
 from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Mesh, Solid, Sphere
 from qbound.urdf.xml import Element, Source, read_xml
-
-Floats = NDArray[np.float64]
 
 MOVING = ("revolute", "continuous", "prismatic")
 """Types of joints that an arm of ours may have; "fixed" ones are folded in."""

@@ -14,14 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.model.schema import one_line, shown
 from qbound.urdf.shapes import Mesh, Triangles
 from qbound.urdf.xml import Element, Source
-
-Floats = NDArray[np.float64]
 
 KINDS = ("stl", "obj")
 """Endings of meshes that are read: others have parts, units or axes that could be missed."""

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from qbound.arrays import Floats
 from qbound.urdf.poses import Pose
 from qbound.urdf.xml import Element, Source
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from itertools import count
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.model.frames import axis_rotation
 from qbound.model.robotcheck import RobotFileError
 from qbound.model.rows import unit_vector
@@ -23,8 +23,6 @@ from qbound.tolerances import PARALLEL
 from qbound.urdf.document import OTHERS, Mimic, Urdf, UrdfJoint
 from qbound.urdf.poses import Pose
 from qbound.urdf.xml import called
-
-Floats = NDArray[np.float64]
 
 MOST_JOINTS = 9
 """Joints of an arm at most: a form has three coefficients to the power of their number."""

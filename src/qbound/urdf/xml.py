@@ -14,14 +14,12 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.model.robotcheck import RobotFileError
 from qbound.model.rows import LARGEST
 from qbound.model.schema import one_line, shown
-
-Floats = NDArray[np.float64]
 
 LARGEST_FILE = 20_000_000
 """Bytes of a URDF or SRDF at most."""

@@ -14,16 +14,15 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.region import Component, NoHomeError, Problem
 from qbound.region.arcs import Arc, integrate
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
 from qbound.workspace.layers import Layers, Ranges
 from qbound.workspace.planar import PlanarArm, Posture, postures
-
-Floats = NDArray[np.float64]
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""

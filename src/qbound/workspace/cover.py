@@ -13,10 +13,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.tolerances import NEGLIGIBLE, TOUCH
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 UNSAFE: Final = -1
 """In place of an aspect: configurations that are in none."""

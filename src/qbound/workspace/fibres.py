@@ -9,12 +9,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.forms.angles import TURN
 from qbound.region import Problem, Region, UnresolvedError, solve
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

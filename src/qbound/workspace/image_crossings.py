@@ -16,12 +16,10 @@ import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import NDArray
 
+from qbound.arrays import Complexes, Floats
 from qbound.forms.harmonic import HarmonicForm, basis
 from qbound.tolerances import NEAR_CIRCLE, NEGLIGIBLE
 from qbound.workspace.planar import PlanarArm
-
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 NODES: Final = 32
 """Values of u that determine a resultant; its degree is 8 in cos u and sin u (second joint

@@ -15,8 +15,8 @@ from functools import cache, cached_property, partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.forms.angles import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Problem
@@ -27,7 +27,6 @@ from qbound.workspace.fibres import Fibres
 from qbound.workspace.image_crossings import crossing_distances
 from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, turns_within
 
-Floats = NDArray[np.float64]
 Ranges = tuple[Range, Range]
 Slab = tuple[float, float]
 Measure = Callable[[Cover], Floats]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.geometry.bisection import last_before
 from qbound.region import Component
@@ -18,7 +19,6 @@ from qbound.region.arcs import Arc
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.planar import turns_within
 
-Floats = NDArray[np.float64]
 Loop = tuple[Arc, ...]
 
 

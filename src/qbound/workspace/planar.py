@@ -15,8 +15,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Complexes, Floats
 from qbound.boundary.functions import position
 from qbound.forms import angles
 from qbound.forms.angles import TURN, nearest_turn
@@ -27,8 +28,6 @@ from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
 
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 Range = tuple[float, float] | None
 
 
