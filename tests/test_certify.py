@@ -613,7 +613,7 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
 
 def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsys, monkeypatch):
     """It said "the proof asks for too much work", and no more."""
-    monkeypatch.setattr(check, "MAX_WORK", 1000)
+    monkeypatch.setattr(check.Work, "MOST", 100_000)
     assert cli.main(["certify", "minervabot-v2", "--region"]) == 3
     said = capsys.readouterr().out
     assert "the proof asks for too much work" in said
