@@ -68,7 +68,7 @@ def demand(condition: object, text: str) -> None:
 class Work:
     """Multiplications since the check began; a file that asks for too many is refused."""
 
-    MOST = 40_000_000
+    MOST = 25_000_000
     done = 0
 
     @classmethod
@@ -101,8 +101,8 @@ BITS = 224
 ONE = 1 << BITS
 SLACK = 1 << 64
 
-NEARLY = 1 << BITS - 30
-"""About 1e-9: what angles in a file that were rounded may leave of what should be 0."""
+NEARLY = 1 << BITS - 40
+"""About 1e-12: what angles in a file that were rounded may leave of what should be 0."""
 
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 """Eighty digits: the error is far below a unit."""
@@ -505,11 +505,18 @@ MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
 
 
+LETTER = re.compile("[a-g]|(?:0|[1-9][0-9]{0,5})?[.]")
+
+
 def tokens(tree: Any, where: str) -> Iterator[str]:
-    """Return the letters and leaves of a tree one after the other."""
-    known = type(tree) is str and re.fullmatch("(?:[a-g]|(?:0|[1-9][0-9]{0,5})?[.])+", tree)
-    demand(known, f"{where}: no tree of letters and leaves")
-    return (found.group() for found in re.finditer("[a-g]|[0-9]*[.]", tree))
+    """Yield the letters and leaves of a tree one after the other."""
+    at, end = 0, len(tree) if type(tree) is str else 0
+    while at < end:
+        found = LETTER.match(tree, at)
+        if found is None:
+            raise Refused(f"{where}: no tree of letters and leaves")
+        yield found.group()
+        at = found.end()
 
 
 def next_of(letters: Iterator[str], where: str) -> str:
@@ -665,6 +672,7 @@ def read_spots(arm: "Arm") -> Reader:
 
 def _holds_disc(corners: Sequence[Exact], seen: Sequence[int], at: Exact, radius: Fraction) -> bool:
     """Tell whether a disc lies within a convex part: every edge is that far from its middle."""
+    Work.add(60 * len(corners))
     i, k = seen
     flat = [(p[i], p[k]) for p in corners]
     sense = 1 if doubled_area(flat) > 0 else -1
@@ -700,7 +708,7 @@ class Leaves:
             high = [x + s + TOUCH for x, s in zip(box.high, shift, strict=True)]
             k = 0
             while k < len(self.spans):
-                Work.add(2)
+                Work.add(5)
                 span = self.spans[k]
                 apart = any(map(lt, span.high, low)) or any(map(lt, high, span.low))
                 if self.is_open[k] and not apart:
@@ -733,7 +741,7 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     todo, above = [(Box(tuple(low), tuple(high)), 0)], list[int]()
     while todo:
         cell, depth = todo.pop()
-        Work.add(20)
+        Work.add(100)  # a node takes half a kilobyte
         token = next_of(letters, "proof.tree")
         while len(above) > depth:
             leaves.after[above.pop()] = len(leaves.spans)
@@ -906,7 +914,7 @@ def weights(count: int) -> Reader:
 
 def mean(shares: Sequence[Fraction], corners: Sequence[Exact]) -> Exact:
     """Return a mean of corners."""
-    Work.add(len(shares))
+    Work.add(20 * len(shares))
     columns = zip(*corners, strict=True)
     return tuple(sum(map(mul, shares, column), Fraction(0)) for column in columns)
 
@@ -1154,7 +1162,7 @@ class Robot:
             found += [f"{name}.lower"] * (value < low) + [f"{name}.upper"] * (value > high)
         return found
 
-    @property
+    @cached_property
     def form(self) -> Table:
         """Return the normal form."""
         joints = [joint._asdict() for joint in self.joints]
@@ -1184,10 +1192,13 @@ def _written(value: Any) -> Any:
 
 def exactly(x: Fraction) -> str:
     """Write a decimal with all its digits and without an exponent."""
-    digits = 0
-    while x.denominator != 1:
-        x, digits = x * 10, digits + 1
-    whole = str(abs(x.numerator)).rjust(digits + 1, "0")
+    twos = (x.denominator & -x.denominator).bit_length() - 1
+    fives, power = 0, 1 << twos
+    while power < x.denominator:
+        fives, power = fives + 1, 5 * power
+    digits = max(twos, fives)
+    Work.add(digits)
+    whole = str(abs(x.numerator) * 10**digits // x.denominator).rjust(digits + 1, "0")
     point = len(whole) - digits
     return "-" * (x < 0) + whole[:point] + ("." + whole[point:] if digits else "")
 
@@ -1220,6 +1231,7 @@ def read_robot(written: str, parts: Any) -> Robot:
     table({joint.name: number for joint in joints})(file["home"], "robot.home")
     links = [_body(row, frame_of(row["frame"])) for row in file.get("body", [])]
     others = [_body(row, 0) for row in file.get("obstacle", [])]
+    demand(len(links) + len(others) <= MAX_ROWS, f"robot: more than {MAX_ROWS} bodies")
     bodies = _named("body", _called([*links, *others], len(links), frames))
     boundaries, left_out = _boundaries(file, points, bodies, joints)
     used = [t for boundary in boundaries for t in boundary.things if t.kind != "point"]
@@ -1327,6 +1339,7 @@ def _boundaries(
     if "collisions" in file:
         settled = {frozenset(thing.name for thing in pair) for pair in apart}
         for pair in itertools.combinations(bodies.values(), 2):
+            Work.add(2)
             names = [thing.name for thing in pair]
             if pair[0].frame == pair[1].frame or frozenset(names) in settled:
                 continue
@@ -1631,6 +1644,9 @@ def read_claim(value: Any, robot: Robot) -> Claim:
         corners = [pair for loop in loops for pair in itertools.pairwise(loop)]
     elif kind == "polygon":
         flat = _flat(loops)
+        for loop in flat:
+            once = len({f"{x} {y}" for x, y in loop}) == len(loop)
+            demand(once, "claim.points: a loop passes a configuration twice")
         numbered = items(items(index(len(points)), 3, 3), 1, MAX_CELLS)
         rows = numbered(found["triangles"], "claim.triangles")
         places = [place for loop in flat for place in loop]
@@ -1705,8 +1721,9 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
     content, robot = read(data)
     compared = "not compared with any robot file"
     if pin is not None:
-        same = pin == content["robot"] or read_robot(pin, content["parts"]).form == robot.form
-        demand(same, f"the robot is not that of {shown(file)}")
+        told = read_robot(pin, content["parts"])
+        demand(told.form == robot.form, f"the robot is not that of {shown(file)}")
+        robot = told  # what is said is said in the words of the file that the reader has
         compared = f"compared with {shown(file)}: the same"
     claim = read_claim(content["claim"], robot)
     arm = Arm(robot, claim.margin)
@@ -1791,6 +1808,7 @@ def described(robot: Robot, claim: Claim) -> Iterator[str]:
 
 def _longest(claim: Claim, j: int) -> Fraction:
     """Return the length of the longest range of a joint that the cells take without a gap."""
+    Work.add(50 * len(claim.corners))
     ranges = sorted((min(q[j] for q in cell), max(q[j] for q in cell)) for cell in claim.corners)
     (start, end), longest = ranges[0], Fraction(0)
     for low, high in ranges:

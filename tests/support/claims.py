@@ -237,7 +237,35 @@ def moved(loop: Json, by: int) -> Json:
     return [[str(int(x) + by), str(int(y) + by)] for x, y in loop]
 
 
-BRIGHT = ARM.replace("offset = -1.5", "offset = 1.75")  # the tip at 2 touches it exactly
+TWINS = ARM.replace('name = "floor"', 'name = "other"').replace(
+    "[[boundary]]",
+    """[[point]]
+name = "mast"
+frame = "0"
+at = [0, 0.0, 4.5]
+
+[[boundary]]
+name = "sight"
+type = "pair"
+points = ["mast", "tip"]
+
+[[boundary]]""",
+    1,
+)
+TILTED = """schema = 1
+name = "tilted"
+length_unit = "mm"
+angle_unit = "deg"
+home = { q1 = 0 }
+tool = "tip"
+joint = [{ name = "q1", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [1e-13, 0, 1] }]
+point = [{ name = "tip", frame = "1", at = [1, 0, 0] }]
+body = [{ name = "rod", frame = "1", disc = { at = [1e-10, 0, 1000], radius = 0 } }]
+obstacle = [{ name = "post", disc = { at = [1e-10, 0, 1000], radius = 0 } }]
+collisions = "all"
+clearance = 5e-11
+"""
+"""The rod is on the axis a meter up, where the post is; seen along the base's z it moves by 1e-10."""
 BOOM = planar.planar(
     "",
     "[-0.7, 0.2]",
@@ -266,11 +294,16 @@ MAKERS: dict[str, tuple[str, Callable[[], Json]]] = {
     ),
     "bodies": ("proved", lambda: proved(BODIES, box("-15 -15", "15 15"))),
     "bodies beside the crate": ("proved", lambda: proved(BODIES, box("60 -20", "90 20"))),
-    "bodies, path": ("proved", lambda: proved(BODIES, path("-15 -15, 0 20, 15 -10"))),
+    "bodies, path": ("proved", lambda: proved(BODIES, path("60 -20, 90 20, 95 0"))),
     "bodies, square": (
         "proved",
         lambda: proved(BODIES, polygon([moved(SQUARE, 2)], HALVES) | {"margin": "0.01"}),
     ),
+    "bodies, triangles": (
+        "proved",
+        lambda: proved(BODIES, polygon([[["60", "-20"], ["90", "-20"], ["90", "20"], ["60", "20"]]], HALVES)),
+    ),
+    "two points of one place": ("proved", lambda: proved(TWINS, box("-10 -20", "8 12"))),
     "segments": ("proved", lambda: proved(SEGMENTS, box("60", "120"))),
     "lift": ("proved", lambda: proved(LIFT, box("-0.3 -0.1 -0.2", "0.1 0.2 0.3"))),
     "lift, path": ("proved", lambda: proved(LIFT, path("-0.2 -0.1 0, 0.1 0.2 9"))),
@@ -290,6 +323,17 @@ MAKERS: dict[str, tuple[str, Callable[[], Json]]] = {
         ),
     ),
     "witness in the crate": ("refuted", lambda: refuted(BODIES, box("0 0", "40 9"), at=["38", "4"])),
+    "witness a meter up": ("refuted", lambda: refuted(TILTED, box("0", "180"), at=["180"])),
+    "witness at heights nearly the same": (
+        "refuted",
+        lambda: refuted(
+            BODIES.replace("at = [-0.3, 0.5, 0], radius = 0.1", "at = [0.375, 0, 4e-13], radius = 0")
+            .replace("clearance = 0.01", "clearance = 1e-13")
+            .replace("radius = 0.04", "radius = 0"),
+            box("0 0", "1 90"),
+            at=["0", "90"],
+        ),
+    ),
     "witness of a crossing": ("refuted", lambda: refuted(SEGMENTS, box("0", "90"), at=["35"])),
     "limit": ("refuted", lambda: refuted(ARM, box("0 0", "1 171"), at=["0", "170.5"])),
     "no path": ("proved", lambda: no_path(planar.turning(), between("70", "-100", "moves"))),

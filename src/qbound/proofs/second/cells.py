@@ -164,6 +164,7 @@ def _check_polygon(claim: Claim) -> None:
     for loop in claim.lists:
         loops.append(place[first : first + len(loop)])
         first += len(loop)
+        demand(len({*loops[-1]}) == len(loop), "a loop passes a configuration twice")
     sides = _edges([[place[k] for k in triangle] for triangle in claim.triangles])
     outline = _edges(loops)
     inner, outer = set(sides), set(outline)
