@@ -574,20 +574,8 @@ REFUSED |= {f"a robot with {name}": ("box", *row) for name, row in ROBOT.items()
 REFUSED |= {f"bodies with {name}": ("bodies", *row) for name, row in OF_BODIES.items()}
 
 
-FAULTS = {
-    ("a loop that passes a corner twice", "second"): "the second checker does not ask for it yet",
-}
-"""What a checker does against the page."""
-
-
-def faulty(*case):
-    marks = [pytest.mark.xfail(reason=FAULTS[case])] if case in FAULTS else []
-    return pytest.param(*case, marks=marks)
-
-
-@pytest.mark.parametrize(
-    ("name", "checker"), [faulty(name, checker) for name in REFUSED for checker in CHECKERS]
-)
+@pytest.mark.parametrize("checker", CHECKERS)
+@pytest.mark.parametrize("name", REFUSED)
 def test_what_the_page_does_not_list_is_refused_in_a_sentence(name, checker):
     start, change, message = REFUSED[name]
     data = changed(start, change)

@@ -1,4 +1,4 @@
-"""What a chain of joints does to a place, as waves, and how far it goes over a cell.
+r"""The place of a point beyond a chain of joints as a sum of waves, and its bounds over a cell.
 
 A place r of a frame, seen from a frame before it, is a sum of waves of the joints that turn,
 each with at most one joint that slides as a factor:
@@ -7,8 +7,9 @@ each with at most one joint that slides as a factor:
 
 Waves with the same s and with w and -w are conjugate, so half of them with twice the amplitude and
 the real part are enough. Along a step d the second derivative of a wave without a slide is at most
-(its size) (w . d)^2; with a slide it is at most (its size) (|q_s| (w . d)^2 + 2 |d_s| |w . d|). So
-value + gradient . d - (half of the sum of these) bounds from below, and it is concave in d.
+its size times :math:`(w \cdot d)^2`; with a slide it is at most its size times
+:math:`|q_s| (w \cdot d)^2 + 2 |d_s| |w \cdot d|`. So value + gradient . d - (half of the sum of
+these) bounds from below, and it is concave in d.
 """
 
 from __future__ import annotations
