@@ -11,7 +11,7 @@ Doubles decide where their error bounds allow it; balls decide the rest (`precis
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -105,10 +105,16 @@ class Decomposition:
         rows = zip(self.slabs.tolist(), self.roots.tolist(), strict=True)
         return [Cell(slab, Root(*lower), Root(*upper)) for slab, (lower, upper) in rows]
 
-    def joined(self, line: Ints, low: Floats, high: Floats) -> Bools:
-        """Tell whether what is free on both sides of lines is so on them, between lift values.
+    def joined(self, line: Ints, place: Callable[[int, float], Any]) -> Bools:
+        """Tell whether what is free on both sides of parts of lines is so on them.
 
         A form is zero there only where it vanishes on the whole fibre; bodies may touch on a part.
+
+        Parameters
+        ----------
+        place : callable
+            Of a row and a number from 0 to 1: lift value so far between both ends, a number or a
+            function of the number of bits.
         """
         free = np.ones(len(line), dtype=np.bool_)
         if not self.standing:
@@ -120,8 +126,7 @@ class Decomposition:
                 free[k] = False
                 continue
             pairs = {int(self.plane.contacts.pair[row - count]) for row in rows}
-            t = self._ball(int(line[k]))
-            places = [float(low[k] + part * (high[k] - low[k])) for part in PLACES]
+            t, places = self._ball(int(line[k])), [place(k, part) for part in PLACES]
             free[k] = any(all(apart(self.precise, p, t, v) for p in pairs) for v in places)
         return free
 
@@ -229,6 +234,11 @@ def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise)
     doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
     if (scaled > doubt * max(1.0, plane.scaled_size[row])).any():
         return False
+    return vanishes_on(lines, line, row, precise)
+
+
+def vanishes_on(lines: Lines, line: int, row: int, precise: Precise) -> bool:
+    """Tell in balls whether a row, also of a side condition, vanishes on the fibre over a line."""
     for bits in LEVELS:
         with precision(bits):
             if not all(
@@ -241,10 +251,11 @@ def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise)
 # --- fibres ---------------------------------------------------------------------------------------
 
 
-def apart(precise: Precise, pair: int, t: Any, v: Any) -> bool:
+def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
     """Tell in balls whether a pair of bodies is apart at a configuration: a clause of it shows it.
 
-    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits.
+    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits; `beside` is
+    that of `Precise.sign`.
     """
     contacts, plane = precise.plane.contacts, precise.plane
     rows = which(contacts.pair == pair)
@@ -252,8 +263,8 @@ def apart(precise: Precise, pair: int, t: Any, v: Any) -> bool:
 
     for clause in np.unique(contacts.clause[rows]):
         own = rows[contacts.clause[rows] == clause]
-        if all(precise.sign(first + int(k), t, v) > 0 for k in own) and all(
-            precise.sign(side + SIDES * int(k) + s, t, v) >= 0
+        if all(precise.sign(first + int(k), t, v, beside) > 0 for k in own) and all(
+            precise.sign(side + SIDES * int(k) + s, t, v, beside) >= 0
             for k in own
             if contacts.corners[k]
             for s in range(SIDES)
@@ -564,7 +575,8 @@ class _Fibres:
     def _acting(self, group: int, rows: Sequence[int], lower: bool) -> list[int]:
         """Return those of coinciding rows that part a cell above them, or below, from the rest.
 
-        Of bodies they are contacts of pairs that are in collision on the other side.
+        Of bodies they are contacts of pairs that are in collision on the other side; where there
+        are none, contacts whose form is negative there, if any.
         """
         pieces, contacts = self.pieces, self.plane.contacts
         other, found = self._below(group) if lower else group, list[int]()
@@ -588,6 +600,8 @@ class _Fibres:
             return np.ones(len(gaps), dtype=np.bool_)
         slab = self.gap_slab[gaps]
         t, low, high = self.t[slab], self.bottoms[gaps], self.tops[gaps]
+        if not found:  # bodies only touch: what would come into collision, going on
+            found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
         v = low + (high - low) / 2
         doubt = (plane.eps[:m] + 16 * UNIT) * plane.scaled_size[:m]
         surely, maybe = plane.positive(t, v, doubt)
@@ -788,7 +802,10 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     smooth = np.ptp(values[:2], axis=2).sum(axis=0) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
-    going[going] = found.joined(at[going], lower[going, 1], upper[going, 1])
+    low, high = lower[going, 1], upper[going, 1]
+    going[going] = found.joined(
+        at[going], lambda k, part: float(low[k] + part * (high[k] - low[k]))
+    )
     return np.asarray(going)
 
 

@@ -268,10 +268,12 @@ class Precise:
         c, (one, other) = self.along_lift(row, t, bits), _factors(self.plane.lift_kind, v)
         return c[0] + c[1] * one + c[2] * other
 
-    def sign(self, row: int, t: Any, v: Any) -> int:
+    def sign(self, row: int, t: Any, v: Any, beside: int = 0) -> int:
         """Return the sign of a row at a place; 0 where 1,024 bits do not tell it from zero.
 
-        Base and lift value are numbers, or functions of the number of bits.
+        Base and lift value are numbers, or functions of the number of bits. With `beside`, -1 or
+        +1, it is the sign just before that base value, or just behind: where the row vanishes, that
+        of its first derivative along the base that does not.
         """
         for bits in LEVELS:
             with precision(bits):
@@ -279,7 +281,25 @@ class Precise:
                 found = 0 if place is None else _sign(self.value(row, _at(t, bits), place, bits))
             if found:
                 return found
-        return 0
+        if not beside or place is None:
+            return 0
+        with precision(bits):
+            c, (one, other) = (
+                self.series(row, _at(t, bits), bits),
+                _factors(self.plane.lift_kind, place),
+            )
+            # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
+            signs = [_sign(c[0][k] + c[1][k] * one + c[2][k] * other) * beside**k for k in (1, 2)]
+        return next((sign for sign in signs if sign), 0)
+
+    def holds(self, feature: int, t: Any, v: Any) -> bool:
+        """Tell whether no side condition of a feature is negative at a place, as `sign` has it."""
+        sides = self.plane.sides[feature]
+        for side, constant in enumerate(~sides.reshape(SIDES, 9)[:, 1:].any(axis=1)):
+            number = self.features + SIDES * feature + side
+            if sides[side, 0, 0] < 0 if constant else self.sign(number, t, v) < 0:
+                return False
+        return True
 
     # --- events ---------------------------------------------------------------------------------
 
@@ -424,8 +444,15 @@ class Precise:
                 if _sign(value) == 0:
                     return new
             here = _sign(value)
-            if not here:
-                return box if not _sign(slope) else new
+            if not here:  # the zero itself, perhaps: look on both sides of it
+                off = arb(box.rad()) / 2
+                left, right = arb((middle - off).mid()), arb((middle + off).mid())
+                begins = _sign(self.taylor(event, left, bits, k + 1)[k]) == sign
+                ends = _sign(self.taylor(event, right, bits, k + 1)[k]) == -sign
+                if not (begins or ends):
+                    return box
+                low, high = left if begins else low, right if ends else high
+                continue
             low, high = (middle, high) if here == sign else (low, middle)
             if arb(high - low) < arb(2) ** (8 - bits):
                 return low.union(high)
