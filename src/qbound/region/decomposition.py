@@ -298,6 +298,7 @@ class _Fibres:
     def __init__(self, plane: Plane, lines: Lines, pieces: Pieces, precise: Precise) -> None:
         self.plane, self.lines, self.pieces, self.precise = plane, lines, pieces, precise
         self.circle = plane.lift_range is None
+        self._known: dict[Any, list[list[int]]] = {}
         self.t, self.exact = self._bases()
         self._gather()
         self._order()
@@ -493,12 +494,20 @@ class _Fibres:
         """Return rows of one slab in their true order, those that are one together."""
         base = self.base(int(self.slab[rows[0]]))
         near = dict(zip(rows, values, strict=True))
-        groups = in_order(
-            list(rows),
-            lambda row, bits: self.root(row, base, bits, near[row]),
-            [self._curve(row) for row in rows],
-        )
-        return [own for _, own in groups]
+        # Roots that the base does not move are in one order over all slabs.
+        key = tuple((*self.roots[row, :2].tolist(), round(8 * near[row])) for row in rows)
+        if key not in self._known:
+            places = range(len(rows))
+            groups = in_order(
+                places,
+                lambda k, bits: self.root(rows[k], base, bits, near[rows[k]]),
+                [self._curve(row) for row in rows],
+            )
+            found = [own for _, own in groups]
+            if not all(self.precise.is_still(form) for form, _, _ in key):
+                return [[rows[k] for k in own] for own in found]
+            self._known[key] = found
+        return [[rows[k] for k in own] for own in self._known[key]]
 
     def _curve(self, row: int) -> tuple[int, int, int]:
         """Name the curve that a root follows: features of one curve have one name."""
@@ -591,6 +600,8 @@ class _Fibres:
             k = int(self.piece[row])
             if k < 0 or (closed[contacts.pair[pieces.feature[k]]] and pieces.enters[k] != lower):
                 found.append(row)
+        if not found:  # bodies only touch: what would come into collision, going on
+            found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
         return [row for row in found if not self.double[row]] or found
 
     def _positive(self, gaps: Ints) -> Bools:
@@ -600,8 +611,6 @@ class _Fibres:
             return np.ones(len(gaps), dtype=np.bool_)
         slab = self.gap_slab[gaps]
         t, low, high = self.t[slab], self.bottoms[gaps], self.tops[gaps]
-        if not found:  # bodies only touch: what would come into collision, going on
-            found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
         v = low + (high - low) / 2
         doubt = (plane.eps[:m] + 16 * UNIT) * plane.scaled_size[:m]
         surely, maybe = plane.positive(t, v, doubt)

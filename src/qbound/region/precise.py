@@ -201,11 +201,11 @@ class Precise:
     @classmethod
     def of(cls, problem: Problem, base: int, caution: float = 1.0) -> Precise:
         """Return a problem's plane over a joint with its exact coefficients."""
-        from qbound.region.exact import ExactRows
+        from qbound.region.exact import shared_rows
 
-        forms, ranges, contacts = problem.forms, problem.ranges, problem.contacts
-        plane = Plane(forms, ranges, base, contacts, problem.errors, caution)
-        return cls(plane, ExactRows(problem))
+        rows, contacts = shared_rows(problem)
+        plane = Plane(problem.forms, problem.ranges, base, contacts, problem.errors, caution)
+        return cls(plane, rows)
 
     def __init__(self, plane: Plane, rows: Rows) -> None:
         self.plane, self.rows = plane, rows
@@ -242,6 +242,10 @@ class Precise:
 
     def _turned(self, table: NDArray[Any]) -> NDArray[Any]:
         return table if self.plane.base == 0 else table.T
+
+    def is_still(self, row: int) -> bool:
+        """Tell whether the base surely does not move a row, or an end of the lift's range."""
+        return row < 0 or all(x == 0 for x in self._exact_table(row)[1:].reshape(-1))
 
     def ends(self, joint: str) -> tuple[Ball, Ball]:
         """Return the exact ends of the range of "base" or "lift"; of a circle those of a turn."""
@@ -378,12 +382,15 @@ class Precise:
         Between two zeros of its derivative a function is monotone, so its signs there tell whether
         it has a zero between. One whose sign is not known is a zero of both.
         """
-        over = self.taylor(event, part, bits, ORDERS)
-        top = next((k for k, value in enumerate(over) if _sign(value)), None)
-        if top is None:
-            over = self._centred(event, part, bits)
+        for way in range(3):
+            if way < 2:  # most zeros are simple ones
+                over = self.taylor(event, part, bits, ORDERS if way else 2)
+            else:
+                over = self._centred(event, part, bits)
             top = next((k for k, value in enumerate(over) if _sign(value)), None)
-        if top is None:
+            if top is not None:
+                break
+        else:
             return None
         ends = [part.lower(), part.upper()]
         zeros: list[tuple[int, Ball]] = []
@@ -467,17 +474,23 @@ class Precise:
                 return zero.ball() if callable(zero.ball) else arb(zero.ball)
         key = (id(zero), bits)
         if key not in self._zeros:
-            self._zeros[key] = [zero, self._newton(zero, bits)]
+            known = (self._zeros.get((id(zero), fewer)) for fewer in reversed(LEVELS))
+            start = next((found[1] for found in known if found is not None), zero.ball)
+            self._zeros[key] = [zero, self._newton(zero, start, bits)]
         return self._zeros[key][1]
 
-    def _newton(self, zero: Zero, bits: int) -> Ball:
+    def _newton(self, zero: Zero, start: Ball, bits: int) -> Ball:
+        """Return the zero in a ball about it, to nearly so many bits."""
         from flint import arb
 
         event, k = zero.event, zero.order
         assert event is not None
         with precision(bits + 32):
-            box = arb(zero.ball)
+            box = arb(start)
+            least = arb(2) ** -bits * self.plane.base_unit
             for _ in range(200):
+                if arb(box.rad()) < least:
+                    break
                 slope = (k + 1) * self.taylor(event, box, bits + 32, k + 2)[k + 1]
                 if not _sign(slope):
                     break
