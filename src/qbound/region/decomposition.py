@@ -563,14 +563,34 @@ class _Fibres:
         """
         begin, end = self.start[groups], np.append(self.start, len(self.slab))[groups + 1]
         chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
-        for k in which(end - begin > 1).tolist():
+        several = which(end - begin > 1).tolist()
+        closed = self._closed(groups, begin, end, several, lower)
+        for k in several:
             rows = range(int(begin[k]), int(end[k]))
-            own = self._acting(int(groups[k]), rows, lower) or list(rows)
+            own = self._acting(rows, closed[k], lower) or list(rows)
             ends = [row for row in own if self.roots[row, 0] < 0]
             best = ends or own
             chosen[k] = min(best, key=lambda row: tuple(self.roots[row].tolist()))
             names[k] = tuple(sorted({int(self.roots[row, 0]) for row in best}))
         return chosen, names
+
+    def _closed(
+        self, groups: Ints, begin: Ints, end: Ints, several: list[int], lower: bool
+    ) -> dict[int, set[int]]:
+        """Return of groups of coinciding rows the pairs that are in collision on the other side."""
+        asked = []
+        for k in several:
+            group = int(groups[k])
+            other, pieces = self._below(group) if lower else group, self.piece[begin[k] : end[k]]
+            pairs = self.plane.contacts.pair[self.pieces.feature[pieces[pieces >= 0]]]
+            if other is not None:
+                asked += [(k, other, pair) for pair in set(pairs.tolist())]
+        found: dict[int, set[int]] = {k: set() for k in several}
+        of, gaps, pairs = np.array(asked, dtype=np.int64).reshape(-1, 3).T
+        met = self._met(gaps, pairs)
+        for k, pair in zip(of[met].tolist(), pairs[met].tolist(), strict=True):
+            found[k].add(pair)
+        return found
 
     def _doubles(self) -> Bools:
         """Tell which rows are one of both roots of a form at one place: it only touches there."""
@@ -581,24 +601,17 @@ class _Fibres:
         double[order[1:][same]] = double[order[:-1][same]] = True
         return double
 
-    def _acting(self, group: int, rows: Sequence[int], lower: bool) -> list[int]:
+    def _acting(self, rows: Sequence[int], closed: set[int], lower: bool) -> list[int]:
         """Return those of coinciding rows that part a cell above them, or below, from the rest.
 
         Of bodies they are contacts of pairs that are in collision on the other side; where there
         are none, contacts whose form is negative there, if any.
         """
-        pieces, contacts = self.pieces, self.plane.contacts
-        other, found = self._below(group) if lower else group, list[int]()
-        closed = np.zeros(contacts.pairs, dtype=np.bool_)
-        touching = {int(self.piece[row]) for row in rows if self.piece[row] >= 0}
-        mine = sorted({int(contacts.pair[pieces.feature[k]]) for k in touching})
-        if mine and other is not None:
-            chosen = closed.copy()
-            chosen[mine] = True
-            closed[mine] = self._colliding(np.array([other]), chosen)[0]
+        pieces, contacts, found = self.pieces, self.plane.contacts, list[int]()
         for row in rows:
             k = int(self.piece[row])
-            if k < 0 or (closed[contacts.pair[pieces.feature[k]]] and pieces.enters[k] != lower):
+            pair = -1 if k < 0 else int(contacts.pair[pieces.feature[k]])
+            if k < 0 or (pair in closed and pieces.enters[k] != lower):
                 found.append(row)
         if not found:  # bodies only touch: what would come into collision, going on
             found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
@@ -685,20 +698,21 @@ class _Fibres:
         key = key[np.diff(key, prepend=-1) > 0]
         both = which(np.diff(key // 2) == 0)
         change = np.bincount(key // (2 * pairs), np.where(key % 2, 1.0, -1.0), len(self.start))
-        for name in (key[both] // 2).tolist():
-            group, own = divmod(name, pairs)
-            change[group] += self._turned_at(group, own)
+        group, own = np.divmod(key[both] // 2, pairs)
+        change += np.bincount(group, self._turned_at(group, own), len(change))
         return change.astype(np.int64)
 
-    def _turned_at(self, group: int, pair: int) -> int:
-        """Return 1 if a pair is in collision above a group and not below, -1 if only below."""
-        below, above = self._below(group), group
-        if below is None or (not self.circle and self.roots[self.start[group], 0] == HIGHEST.form):
-            return 0
-        chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
-        chosen[pair] = True
-        found = self._colliding(np.array([below, above]), chosen)[:, 0].astype(int)
-        return int(found[1] - found[0])
+    def _turned_at(self, group: Ints, pair: Ints) -> Ints:
+        """Return 1 where a pair is in collision above a group and not below, -1 if only below."""
+        under = (self._below(g) for g in group.tolist())
+        below = np.array([-1 if k is None else k for k in under], dtype=np.int64)
+        inner = below >= 0
+        if not self.circle:
+            inner &= self.roots[self.start[group], 0] != HIGHEST.form
+        found = np.zeros(len(group), dtype=np.int64)
+        below, group, pair = below[inner], group[inner], pair[inner]
+        found[inner] = self._met(group, pair).astype(int) - self._met(below, pair)
+        return found
 
     def _below(self, group: int) -> int | None:
         """Return the group below one in its slab; round a circle the last is below the first."""
@@ -706,6 +720,17 @@ class _Fibres:
             return group - 1
         last = int(np.searchsorted(self.gap_slab, self.gap_slab[group], side="right")) - 1
         return last if self.circle else None
+
+    def _met(self, gaps: Ints, pairs: Ints) -> Bools:
+        """Tell of gaps, each with one pair, whether that pair is not apart there."""
+        found = np.zeros(len(gaps), dtype=np.bool_)
+        order = np.argsort(pairs, kind="stable")
+        for first, last in zip(*runs(pairs[order]), strict=True):
+            chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
+            at = order[first : last + 1]
+            chosen[pairs[at]] = True
+            found[at] = self._colliding(gaps[at], chosen)[:, 0]
+        return found
 
     def _colliding(self, gaps: Ints, pairs: Bools) -> Bools:
         """Tell which of some pairs are not apart in gaps, shape (gaps, pairs)."""
