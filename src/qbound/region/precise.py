@@ -1,7 +1,7 @@
 """Decisions in balls (Arb), where doubles cannot decide.
 
 Doubles come with a bound of their error. Where two numbers are nearer to each other than their
-errors, they are computed again here: from exact coefficients, at 128, 256, 512 and 1,024 bits.
+errors, they are computed again here: from exact coefficients, at 128 bits, then at 1,024.
 Numbers whose balls still overlap then are one number; all others are different, however near.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Ball = Any
 """An `arb`."""
 
-LEVELS: Final = (128, 256, 512, 1024)
+LEVELS: Final = (128, 1024)
 """Bits that are tried in turn."""
 
 ORDERS: Final = 12
@@ -257,15 +257,21 @@ class Precise:
 
     def along_lift(self, row: int, t: Ball, bits: int) -> list[Ball]:
         """Return a row's three coefficients along the lift over a base value."""
-        one, other = _factors(self.plane.base_kind, t)
-        lines = self.table(row, bits)
-        return [lines[0][k] + lines[1][k] * one + lines[2][k] * other for k in range(3)]
+        return _combined(self.table(row, bits), *_factors(self.plane.base_kind, t))
 
     def series(self, row: int, t: Ball, bits: int) -> list[arb_series]:
         """Return these as power series about a base value."""
-        from flint import arb_series
+        from flint import arb_series, ctx
 
-        return self.along_lift(row, arb_series([t, 1]), bits)
+        if ctx.cap > 2:
+            return [arb_series(x) for x in self.along_lift(row, arb_series([t, 1]), bits)]
+        # Of a value and a slope nothing is a product of series.
+        kind, lines = self.plane.base_kind, self.table(row, bits)
+        one, other = _factors(kind, t)
+        values = _combined(lines, one, other)
+        step = (-other, one) if kind == "revolute" else (1, 2 * t)
+        slopes = _combined([_NOTHING, *lines[1:]], *step)
+        return [arb_series([*pair]) for pair in zip(values, slopes, strict=True)]
 
     def value(self, row: int, t: Ball, v: Ball, bits: int) -> Ball:
         """Return the value of a row at base and lift."""
@@ -577,6 +583,18 @@ class Precise:
                 if _sign(rest):
                     return _sign(rest)
         return 0
+
+
+_NOTHING = (0, 0, 0)
+
+
+def _combined(lines: Sequence[Sequence[Any]], one: Any, other: Any) -> list[Any]:
+    """Return the sums of three lines, with factors 1, `one` and `other`; most numbers are zero."""
+    found = []
+    for a, b, c in zip(*lines, strict=True):
+        value = a if b.is_zero() else a + b * one
+        found.append(value if c.is_zero() else value + c * other)
+    return found
 
 
 def _factors(kind: str, t: Any) -> tuple[Any, Any]:
