@@ -55,6 +55,22 @@ def test_greens_theorem_on_the_arcs_gives_area_and_centroid(seed):
         assert_allclose(np.array([first, second]) / area, component.centroid, atol=1e-8)
 
 
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_an_integral_takes_as_many_nodes_in_any_unit(scale):
+    arcs, asked = arcs_of(find_region(random_robot(21))), []
+
+    def counted(unit):
+        def form(q, dq):
+            asked.append(len(q))
+            return greens(unit * q, unit * dq)
+
+        return form
+
+    own, other = (integrate(arcs, counted(unit)) for unit in (1.0, scale))
+    assert asked[: len(asked) // 2] == asked[len(asked) // 2 :]
+    assert_allclose(other, own * scale ** np.array([2.0, 3.0, 3.0]), rtol=1e-9)
+
+
 def greens(q, dq):
     """Integrands of area and first moments: x dy, x^2 / 2 dy, - y^2 / 2 dx."""
     (x, y), (dx, dy) = q.T, dq.T

@@ -24,19 +24,38 @@ SCENES = Path(__file__).with_name("once_wrong")
 HARD = Path(__file__).with_name("not_decided")
 COMPONENTS = {
     "acute-10728": 1,
+    "corner-at-the-base": 1,
+    "corner-of-a-square": 1,
+    "corridor-1e-14": 1,
+    "corridor-1e-20": 1,
+    "edges-meet": 2,
     "far-slide": 4,
+    "hair-10779": 1,
+    "line-through-the-base": 1,
     "slide-20": 1,
     "slide-20-scaled": 1,
+    "slide-on-edge": 2,
+    "slide-on-line": 4,
     "slides": 2,
     "slit-118": 1,
     "slit-264": 1,
     "slit-80": 2,
+    "sliver-12738": 3,
+    "star": 1,
     "tie-75": 1,
+    "triangle-1e-12": 1,
+    "wedge-at-the-base": 1,
+    "whole-10155": 6,
+    "whole-10832": 5,
+    "whole-12314": 6,
 }
-"""Files once wrong or without an end, and how many components they have.
+"""Files once wrong, undecided or without an end, and how many components they have.
 
 Of `slides` the second lies in a corner behind a post that touches the end of a range.
 """
+
+AS_WRITTEN = {"corridor-1e-14", "corridor-1e-20", "hair-10779", "sliver-12738", "triangle-1e-12"}
+"""Of these the decimals are asked for: doubles would round their hair away."""
 
 PATIENCE = 20.0
 BLOCK = 20
@@ -71,10 +90,10 @@ def within(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGVTALRM, before)
 
 
-def wrong(text: str, *, flooded: bool = False) -> list[str]:
+def wrong(text: str, *, flooded: bool = False, decimals: bool = False) -> list[str]:
     """What the judge finds over either joint, and between both."""
     try:
-        regions = regions_of(text)
+        regions = regions_of(text, decimals=decimals)
     except TimeoutError as error:
         return [str(error)]
     found = agreement([Outline.of(region) for region in regions])
@@ -105,14 +124,15 @@ def test_exact_copies_of_a_scene_have_the_same_region(seed):
 
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_a_region_that_was_once_wrong_is_right(name):
-    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
-    assert not wrong(text, flooded=True)
-    assert [len(region.components) for region in regions_of(text)] == [COMPONENTS[name]] * 2
+    text, decimals = (SCENES / f"{name}.toml").read_text(encoding="utf-8"), name in AS_WRITTEN
+    assert not wrong(text, flooded=True, decimals=decimals)
+    regions = regions_of(text, decimals=decimals)
+    assert [len(region.components) for region in regions] == [COMPONENTS[name]] * 2
 
 
 @pytest.mark.parametrize("path", sorted(HARD.glob("*.toml")), ids=lambda path: path.stem)
 def test_a_scene_on_the_edge_is_right_or_says_that_it_is_not_decided(path):
-    """Walls through the base, corridors a hair wide: none is decided yet, none may be wrong."""
+    """Discs smaller than a root of rounding, a slide between two corners: none may be wrong."""
     text = path.read_text(encoding="utf-8")
     regions = regions_of(text, decimals=True)
     decided = [region for region in regions if not region.unresolved]

@@ -693,4 +693,5 @@ def area_difference(outlines: Sequence[Outline], factors: Sequence[float] | None
     table = np.zeros((len(outlines), longest))
     for row, outline, factor in zip(table, outlines, factors, strict=True):
         row[: outline.components] = np.array(outline.areas) / factor
-    return float(np.ptp(table, axis=0).max() / table.sum(axis=1).max()) if longest else 0.0
+    off = float(np.ptp(table, axis=0).max(initial=0.0))
+    return off / float(table.sum(axis=1).max()) if off else 0.0

@@ -113,6 +113,30 @@ class Evaluator:
             return self._of_forms(q)
         return self._columns(self._of_forms(q), self.bodies.margins(q))
 
+    def at_least(self, q: ArrayLike, least: Floats) -> Bools:
+        """Tell which margins are no less than given ones, (..., joints) to (..., columns).
+
+        Most bodies are told apart by discs, so that this takes much less time than their margins.
+
+        Parameters
+        ----------
+        least : ndarray, shape (columns,)
+
+        Raises
+        ------
+        ValueError
+            As `margins`.
+        """
+        q = self._checked(q)
+        rows, bodies = self.columns
+        if self.bodies is None:
+            return np.asarray(self._of_forms(q) >= least)
+        below = np.nextafter(least[bodies], -np.inf)
+        result = np.empty((*q.shape[:-1], len(self.names)), dtype=np.bool_)
+        result[..., rows] = self._of_forms(q) >= least[rows]
+        result[..., bodies] = self.bodies.separated(q, below)
+        return result
+
     def feasible(self, q: ArrayLike) -> Bools:
         """Tell where no margin is negative, shape (..., joints) to (...); errors as `margins`."""
         q = real_numbers(q)

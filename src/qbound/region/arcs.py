@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -228,22 +228,27 @@ def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) 
     Returns
     -------
     ndarray, shape (...)
-        The sum over all arcs.
+        The sum over all arcs. What counts as a change is measured by all contributions, their
+        signs left out: joint values and integrands may be in any units.
     """
-    return sum((_integral(arc, form) for arc in arcs), start=np.zeros(()))
+    if not arcs:
+        return np.zeros(())
+    rough = [np.abs(form(*arc.nodes(NODES[0]))).sum(axis=0) for arc in arcs]
+    smallest = QUADRATURE * np.sum(rough, axis=0)
+    found = [converged(partial(_over, arc, form), smallest) for arc in arcs]
+    return np.asarray(np.sum(found, axis=0))
 
 
-def _integral(arc: Arc, form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
-    return converged(lambda n: np.asarray(form(*arc.nodes(n))).sum(axis=0))
+def _over(arc: Arc, form: Callable[[Floats, Floats], ArrayLike], n: int) -> Floats:
+    return np.asarray(np.asarray(form(*arc.nodes(n))).sum(axis=0))
 
 
-def converged(sums: Callable[[int], Floats], smallest: float | None = None) -> Floats:
-    """Return sums over n nodes, n doubled until they change by rounding or by `smallest`."""
+def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> Floats:
+    """Return sums over n nodes, n doubled until they change by no more than `smallest`."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)
-        rounding = QUADRATURE * (1 + np.abs(now)) if smallest is None else smallest
-        if (np.abs(now - before) <= rounding).all():
+        if (np.abs(now - before) <= smallest).all():
             break
         before = now
     return now

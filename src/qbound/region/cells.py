@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
-from qbound.region.decomposition import Cell, Decomposition, turned_root
+from qbound.region.decomposition import Cell, Decomposition, turned_root, vanishes_on
 from qbound.region.plane import Plane, ranges, runs, which
-from qbound.region.precise import UndecidedError, in_order
+from qbound.region.precise import NUMBER, UndecidedError, in_order
 from qbound.tolerances import SAME_POINT, TOUCH, UNIT
 
 Floats = NDArray[np.float64]
@@ -29,6 +29,10 @@ Bools = NDArray[np.bool_]
 
 INSET = 1e-4 * np.arange(4)
 """Where cells are looked at beside their lines, in parts of their width."""
+
+
+FOLDS = NUMBER["fold circle"], NUMBER["fold line"]
+"""Events at which both branches of a curve meet."""
 
 
 class Placed(NamedTuple):
@@ -110,6 +114,12 @@ class _Ends(NamedTuple):
     side: Ints
     root: Ints
 
+    def ball(self, found: Decomposition, k: int, near: float, bits: int) -> Any:
+        """Return an end as a ball, on the turn that is near to a value."""
+        form, branch, _ = self.root[k].tolist()
+        base, side = found.critical.ball(int(self.line[k]), bits), 1 if self.side[k] == 0 else -1
+        return turned_root(found.precise, form, branch, base, bits, near, side)
+
 
 class CellComplex:
     """The cells of a decomposition and how they hang together."""
@@ -126,6 +136,7 @@ class CellComplex:
         self.whole: Bools = self.circle & (self.roots[:, 0, 0] < 0)
         self.ends, self._errors = self._ends()
         self.elements: Elements = self._elements()
+        self._join()
 
     @property
     def cells(self) -> list[Cell]:
@@ -225,9 +236,13 @@ class CellComplex:
     # --- lines ----------------------------------------------------------------------------------
 
     def _elements(self) -> Elements:
-        """Cut the lines where cells end, and tell which cells lie on both sides of each part."""
+        """Cut the lines where cells end, and tell which cells lie on both sides of each part.
+
+        Those with cells on both sides are joined, as far as is known here.
+        """
         kept = which(~self.whole)
-        line, low = self._cuts(kept)
+        cuts = self._cut(kept)
+        line, low = cuts.line, cuts.v
         begin, last = runs(line)
         count = np.bincount(line, minlength=self.n_lines)
         self._begin, self._count = np.searchsorted(line, np.arange(self.n_lines)), count
@@ -237,6 +252,8 @@ class CellComplex:
             at = at % self.n_lines if self.wrapped else at
             self._own(owner[1 - s], kept, at, self._place[kept, s], s)
         high, elements = np.append(low[1:], 0.0)[: len(low)], np.ones(len(line), dtype=np.bool_)
+        upper = np.arange(1, len(line) + 1)
+        upper[last] = begin
         if self.circle:  # a line on which nothing ends is one element
             high[last] = low[begin] + TURN
             without = which(count == 0)
@@ -249,14 +266,39 @@ class CellComplex:
             elements[last] = False
         self._fill_whole(owner, line)
         self._number = np.where(elements, elements.cumsum() - 1, -1)
+        self._cuts, self._following = cuts, upper
         line, low, high, owner = line[elements], low[elements], high[elements], owner[:, elements]
         turns = self._turns(line, (low + high) / 2, owner)
-        joined: Bools = np.asarray((owner >= 0).all(axis=0))
-        joined[joined] = self.decomposition.joined(line[joined], low[joined], high[joined])
-        return Elements(line, low, high, owner, turns, joined)
+        return Elements(line, low, high, owner, turns, np.asarray((owner >= 0).all(axis=0)))
 
-    def _cuts(self, kept: Ints) -> tuple[Ints, Floats]:
-        """Return the places at which lines are cut: line and value, by line and upwards.
+    def _join(self) -> None:
+        """Leave those elements joined that are free between the two cells."""
+        found, own = self.elements, which(self.elements.joined)
+        found.joined[own] = self.decomposition.joined(
+            found.line[own], lambda k, part: self.place(int(own[k]), part)
+        )
+
+    def place(self, element: int, part: float) -> Any:
+        """Return a lift value a part of the way up an element, exact: see `Decomposition.joined`.
+
+        It is a double where these tell both ends apart, and else a function of the number of bits.
+        """
+        low, high = float(self.elements.low[element]), float(self.elements.high[element])
+        lower, cuts = int(self._spot[element]), self._cuts
+        if lower >= len(cuts.line):  # a whole circle
+            return low + part * (high - low)
+        upper = int(self._following[lower])
+        if high - low > 1e3 * (cuts.error[lower] + cuts.error[upper]):
+            return low + part * (high - low)
+
+        def between(bits: int) -> Any:
+            one = cuts.ball(self.decomposition, lower, low, bits)
+            return one + part * (cuts.ball(self.decomposition, upper, high, bits) - one)
+
+        return between
+
+    def _cut(self, kept: Ints) -> _Ends:
+        """Return the places at which lines are cut, by line and upwards, one end for each.
 
         And note for each cell at which of them its two ends are, on either line: `_place`.
         """
@@ -273,7 +315,8 @@ class CellComplex:
         place[order] = number[rank]
         self._place: Ints = np.full((len(self.slabs), 2, 2), -1)
         self._place[kept] = place[: len(own.line)].reshape(-1, 2, 2)
-        return sorted_ends.line[first], v[first]
+        cuts: list[Any] = [x[first] for x in sorted_ends._replace(v=v)]
+        return _Ends(*cuts)
 
     def _cell_ends(self, kept: Ints) -> _Ends:
         """Return both ends of cells at their left and at their right line."""
@@ -294,7 +337,10 @@ class CellComplex:
         return np.asarray(math.pi - (math.pi - v) % TURN if self.circle else v)
 
     def _marks(self) -> _Ends:
-        """Return where contacts along a fibre may begin or end: their side conditions vanish."""
+        """Return where contacts along a fibre may begin or end: their side conditions vanish.
+
+        One that vanishes on the whole fibre begins and ends nothing.
+        """
         plane, found = self.plane, self.decomposition
         first = plane.count + len(plane.contacts.forms)
         last = self.n_lines if self.wrapped else -1  # the first line, a turn on
@@ -306,6 +352,11 @@ class CellComplex:
             if line != last
             and row >= plane.count
             and plane.sides[row - plane.count, side, :, 1:].any()
+        ]
+        marked = [
+            (line, number)
+            for line, number in marked
+            if not vanishes_on(found.critical, line, first + number, found.precise)
         ]
         line, number = np.array(marked, dtype=np.int64).reshape(-1, 2).T
         t, radius = self.abscissae[line], found.critical.radius[line]
@@ -417,7 +468,7 @@ class _Ranks:
     """
 
     def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
-        self.found, self.circle = found, circle
+        self.found, self.circle, self.ends = found, circle, ends
         self.line, self.v, self.error, self.side, self.root = ends
 
     def ranked(self) -> tuple[Ints, Floats]:
@@ -468,22 +519,23 @@ class _Ranks:
         """Return ends of one line in their true order, those that are one together."""
         if self._are_one(own):
             return [own]
-        found, line = self.found, int(self.line[own[0]])
         near = dict(zip(own, values, strict=True))
 
         def ball(k: int, bits: int) -> Any:
-            base, side = found.critical.ball(line, bits), 1 if self.side[k] == 0 else -1
-            form, branch, _ = self.root[k].tolist()
-            return turned_root(found.precise, form, branch, base, bits, near[k], side)
+            return self.ends.ball(self.found, k, near[k], bits)
 
         names = [(*self.root[k, :2].tolist(), int(self.side[k])) for k in own]
         return [group for _, group in in_order(own, ball, names)]
 
     def _are_one(self, own: list[int]) -> bool:
-        """Tell whether the line's events themselves say that ends are one."""
+        """Tell whether the line's events themselves say that ends are one.
+
+        Where curves meet, one branch of each does; both branches of one meet where it folds.
+        """
         found, line = self.found, int(self.line[own[0]])
-        curves = {self._curve(int(self.root[k, 0])) for k in own}
-        if len(curves) == 1 and len({int(self.root[k, 1]) for k in own}) == 1:
+        ends = {(self._curve(int(self.root[k, 0])), int(self.root[k, 1])) for k in own}
+        curves = {curve for curve, _ in ends}
+        if len(ends) == 1:
             return True
         if line in found.critical.known:  # balls decided it: leave this to them, too
             return False
@@ -491,14 +543,18 @@ class _Ranks:
         plane = found.plane
         first = plane.count + len(plane.contacts.forms)
         groups: dict[Any, set[Any]] = {}
+        folds: set[Any] = set()
         for k in members:
             key = int(events.key[k])
             together = groups.setdefault(("key", key) if key >= 0 else ("event", k), set())
             rows = events.what[k, 1:].tolist()
+            if events.what[k, 0] in FOLDS:
+                folds.add(self._curve(int(rows[0])))
             if key >= 0:  # a contact goes over from any of these to any other
                 rows += (plane.count + which((plane.contacts.keys == key).any(axis=1))).tolist()
             together |= {self._curve(int(row)) for row in rows if row < first}
-        return any(curves <= group for group in groups.values())
+        both = {curve for curve in curves if {(curve, -1), (curve, 1)} <= ends}
+        return both <= folds and any(curves <= group for group in groups.values())
 
     def _curve(self, form: int) -> tuple[int, int]:
         count, contacts = self.found.plane.count, self.found.plane.contacts

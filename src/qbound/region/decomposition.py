@@ -11,7 +11,7 @@ Doubles decide where their error bounds allow it; balls decide the rest (`precis
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -105,10 +105,16 @@ class Decomposition:
         rows = zip(self.slabs.tolist(), self.roots.tolist(), strict=True)
         return [Cell(slab, Root(*lower), Root(*upper)) for slab, (lower, upper) in rows]
 
-    def joined(self, line: Ints, low: Floats, high: Floats) -> Bools:
-        """Tell whether what is free on both sides of lines is so on them, between lift values.
+    def joined(self, line: Ints, place: Callable[[int, float], Any]) -> Bools:
+        """Tell whether what is free on both sides of parts of lines is so on them.
 
         A form is zero there only where it vanishes on the whole fibre; bodies may touch on a part.
+
+        Parameters
+        ----------
+        place : callable
+            Of a row and a number from 0 to 1: lift value so far between both ends, a number or a
+            function of the number of bits.
         """
         free = np.ones(len(line), dtype=np.bool_)
         if not self.standing:
@@ -120,8 +126,7 @@ class Decomposition:
                 free[k] = False
                 continue
             pairs = {int(self.plane.contacts.pair[row - count]) for row in rows}
-            t = self._ball(int(line[k]))
-            places = [float(low[k] + part * (high[k] - low[k])) for part in PLACES]
+            t, places = self._ball(int(line[k])), [place(k, part) for part in PLACES]
             free[k] = any(all(apart(self.precise, p, t, v) for p in pairs) for v in places)
         return free
 
@@ -229,6 +234,11 @@ def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise)
     doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
     if (scaled > doubt * max(1.0, plane.scaled_size[row])).any():
         return False
+    return vanishes_on(lines, line, row, precise)
+
+
+def vanishes_on(lines: Lines, line: int, row: int, precise: Precise) -> bool:
+    """Tell in balls whether a row, also of a side condition, vanishes on the fibre over a line."""
     for bits in LEVELS:
         with precision(bits):
             if not all(
@@ -241,10 +251,11 @@ def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise)
 # --- fibres ---------------------------------------------------------------------------------------
 
 
-def apart(precise: Precise, pair: int, t: Any, v: Any) -> bool:
+def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
     """Tell in balls whether a pair of bodies is apart at a configuration: a clause of it shows it.
 
-    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits.
+    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits; `beside` is
+    that of `Precise.sign`.
     """
     contacts, plane = precise.plane.contacts, precise.plane
     rows = which(contacts.pair == pair)
@@ -252,8 +263,8 @@ def apart(precise: Precise, pair: int, t: Any, v: Any) -> bool:
 
     for clause in np.unique(contacts.clause[rows]):
         own = rows[contacts.clause[rows] == clause]
-        if all(precise.sign(first + int(k), t, v) > 0 for k in own) and all(
-            precise.sign(side + SIDES * int(k) + s, t, v) >= 0
+        if all(precise.sign(first + int(k), t, v, beside) > 0 for k in own) and all(
+            precise.sign(side + SIDES * int(k) + s, t, v, beside) >= 0
             for k in own
             if contacts.corners[k]
             for s in range(SIDES)
@@ -287,6 +298,7 @@ class _Fibres:
     def __init__(self, plane: Plane, lines: Lines, pieces: Pieces, precise: Precise) -> None:
         self.plane, self.lines, self.pieces, self.precise = plane, lines, pieces, precise
         self.circle = plane.lift_range is None
+        self._known: dict[Any, list[list[int]]] = {}
         self.t, self.exact = self._bases()
         self._gather()
         self._order()
@@ -482,12 +494,20 @@ class _Fibres:
         """Return rows of one slab in their true order, those that are one together."""
         base = self.base(int(self.slab[rows[0]]))
         near = dict(zip(rows, values, strict=True))
-        groups = in_order(
-            list(rows),
-            lambda row, bits: self.root(row, base, bits, near[row]),
-            [self._curve(row) for row in rows],
-        )
-        return [own for _, own in groups]
+        # Roots that the base does not move are in one order over all slabs.
+        key = tuple((*self.roots[row, :2].tolist(), round(8 * near[row])) for row in rows)
+        if key not in self._known:
+            places = range(len(rows))
+            groups = in_order(
+                places,
+                lambda k, bits: self.root(rows[k], base, bits, near[rows[k]]),
+                [self._curve(row) for row in rows],
+            )
+            found = [own for _, own in groups]
+            if not all(self.precise.is_still(form) for form, _, _ in key):
+                return [[rows[k] for k in own] for own in found]
+            self._known[key] = found
+        return [[rows[k] for k in own] for own in self._known[key]]
 
     def _curve(self, row: int) -> tuple[int, int, int]:
         """Name the curve that a root follows: features of one curve have one name."""
@@ -543,14 +563,34 @@ class _Fibres:
         """
         begin, end = self.start[groups], np.append(self.start, len(self.slab))[groups + 1]
         chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
-        for k in which(end - begin > 1).tolist():
+        several = which(end - begin > 1).tolist()
+        closed = self._closed(groups, begin, end, several, lower)
+        for k in several:
             rows = range(int(begin[k]), int(end[k]))
-            own = self._acting(int(groups[k]), rows, lower) or list(rows)
+            own = self._acting(rows, closed[k], lower) or list(rows)
             ends = [row for row in own if self.roots[row, 0] < 0]
             best = ends or own
             chosen[k] = min(best, key=lambda row: tuple(self.roots[row].tolist()))
             names[k] = tuple(sorted({int(self.roots[row, 0]) for row in best}))
         return chosen, names
+
+    def _closed(
+        self, groups: Ints, begin: Ints, end: Ints, several: list[int], lower: bool
+    ) -> dict[int, set[int]]:
+        """Return of groups of coinciding rows the pairs that are in collision on the other side."""
+        asked = []
+        for k in several:
+            group = int(groups[k])
+            other, pieces = self._below(group) if lower else group, self.piece[begin[k] : end[k]]
+            pairs = self.plane.contacts.pair[self.pieces.feature[pieces[pieces >= 0]]]
+            if other is not None:
+                asked += [(k, other, pair) for pair in set(pairs.tolist())]
+        found: dict[int, set[int]] = {k: set() for k in several}
+        of, gaps, pairs = np.array(asked, dtype=np.int64).reshape(-1, 3).T
+        met = self._met(gaps, pairs)
+        for k, pair in zip(of[met].tolist(), pairs[met].tolist(), strict=True):
+            found[k].add(pair)
+        return found
 
     def _doubles(self) -> Bools:
         """Tell which rows are one of both roots of a form at one place: it only touches there."""
@@ -561,24 +601,20 @@ class _Fibres:
         double[order[1:][same]] = double[order[:-1][same]] = True
         return double
 
-    def _acting(self, group: int, rows: Sequence[int], lower: bool) -> list[int]:
+    def _acting(self, rows: Sequence[int], closed: set[int], lower: bool) -> list[int]:
         """Return those of coinciding rows that part a cell above them, or below, from the rest.
 
-        Of bodies they are contacts of pairs that are in collision on the other side.
+        Of bodies they are contacts of pairs that are in collision on the other side; where there
+        are none, contacts whose form is negative there, if any.
         """
-        pieces, contacts = self.pieces, self.plane.contacts
-        other, found = self._below(group) if lower else group, list[int]()
-        closed = np.zeros(contacts.pairs, dtype=np.bool_)
-        touching = {int(self.piece[row]) for row in rows if self.piece[row] >= 0}
-        mine = sorted({int(contacts.pair[pieces.feature[k]]) for k in touching})
-        if mine and other is not None:
-            chosen = closed.copy()
-            chosen[mine] = True
-            closed[mine] = self._colliding(np.array([other]), chosen)[0]
+        pieces, contacts, found = self.pieces, self.plane.contacts, list[int]()
         for row in rows:
             k = int(self.piece[row])
-            if k < 0 or (closed[contacts.pair[pieces.feature[k]]] and pieces.enters[k] != lower):
+            pair = -1 if k < 0 else int(contacts.pair[pieces.feature[k]])
+            if k < 0 or (pair in closed and pieces.enters[k] != lower):
                 found.append(row)
+        if not found:  # bodies only touch: what would come into collision, going on
+            found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
         return [row for row in found if not self.double[row]] or found
 
     def _positive(self, gaps: Ints) -> Bools:
@@ -662,20 +698,21 @@ class _Fibres:
         key = key[np.diff(key, prepend=-1) > 0]
         both = which(np.diff(key // 2) == 0)
         change = np.bincount(key // (2 * pairs), np.where(key % 2, 1.0, -1.0), len(self.start))
-        for name in (key[both] // 2).tolist():
-            group, own = divmod(name, pairs)
-            change[group] += self._turned_at(group, own)
+        group, own = np.divmod(key[both] // 2, pairs)
+        change += np.bincount(group, self._turned_at(group, own), len(change))
         return change.astype(np.int64)
 
-    def _turned_at(self, group: int, pair: int) -> int:
-        """Return 1 if a pair is in collision above a group and not below, -1 if only below."""
-        below, above = self._below(group), group
-        if below is None or (not self.circle and self.roots[self.start[group], 0] == HIGHEST.form):
-            return 0
-        chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
-        chosen[pair] = True
-        found = self._colliding(np.array([below, above]), chosen)[:, 0].astype(int)
-        return int(found[1] - found[0])
+    def _turned_at(self, group: Ints, pair: Ints) -> Ints:
+        """Return 1 where a pair is in collision above a group and not below, -1 if only below."""
+        under = (self._below(g) for g in group.tolist())
+        below = np.array([-1 if k is None else k for k in under], dtype=np.int64)
+        inner = below >= 0
+        if not self.circle:
+            inner &= self.roots[self.start[group], 0] != HIGHEST.form
+        found = np.zeros(len(group), dtype=np.int64)
+        below, group, pair = below[inner], group[inner], pair[inner]
+        found[inner] = self._met(group, pair).astype(int) - self._met(below, pair)
+        return found
 
     def _below(self, group: int) -> int | None:
         """Return the group below one in its slab; round a circle the last is below the first."""
@@ -683,6 +720,17 @@ class _Fibres:
             return group - 1
         last = int(np.searchsorted(self.gap_slab, self.gap_slab[group], side="right")) - 1
         return last if self.circle else None
+
+    def _met(self, gaps: Ints, pairs: Ints) -> Bools:
+        """Tell of gaps, each with one pair, whether that pair is not apart there."""
+        found = np.zeros(len(gaps), dtype=np.bool_)
+        order = np.argsort(pairs, kind="stable")
+        for first, last in zip(*runs(pairs[order]), strict=True):
+            chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
+            at = order[first : last + 1]
+            chosen[pairs[at]] = True
+            found[at] = self._colliding(gaps[at], chosen)[:, 0]
+        return found
 
     def _colliding(self, gaps: Ints, pairs: Bools) -> Bools:
         """Tell which of some pairs are not apart in gaps, shape (gaps, pairs)."""
@@ -788,7 +836,10 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     smooth = np.ptp(values[:2], axis=2).sum(axis=0) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
-    going[going] = found.joined(at[going], lower[going, 1], upper[going, 1])
+    low, high = lower[going, 1], upper[going, 1]
+    going[going] = found.joined(
+        at[going], lambda k, part: float(low[k] + part * (high[k] - low[k]))
+    )
     return np.asarray(going)
 
 

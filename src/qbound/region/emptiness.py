@@ -49,8 +49,9 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
         place = _free_place(_only(problem, names[chosen]), base)
         if place is None:
             break
-        row = _violated(problem, place[None])
-        if not row.any():  # it touches there: so near to contact only the cells of all decide
+        # What was chosen is free there, although doubles may say that it touches.
+        row = _violated(problem, place[None]) & ~chosen
+        if not row.any():  # so near to contact only the cells of all decide
             chosen[:] = True
             break
         rows = np.concatenate([rows, row])

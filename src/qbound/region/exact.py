@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.boundary.contacts import Contacts
 from qbound.boundary.exact_contacts import ExactContacts, Feature
 from qbound.boundary.functions import clearance, pair_vector
 from qbound.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
@@ -141,6 +143,35 @@ class ExactRows:
             except ValueError:
                 return None
         return limits  # type: ignore[no-any-return]  # balls, of exact numbers
+
+
+@lru_cache(maxsize=2)
+def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
+    """Return a problem's exact rows, made once for both bases, and its contacts by their curves.
+
+    Obstacles that stand in line have features of other names with the same form. Doubles propose
+    these; they are of one curve where their rationals are the same up to a positive factor. Then
+    nothing that they have in common need be told apart.
+    """
+    from flint import fmpq
+
+    rows, contacts = ExactRows(problem), problem.contacts
+    curves, first = np.unique(contacts.curves, return_index=True)
+    if not len(first):
+        return rows, contacts
+    tables = contacts.forms[first].reshape(-1, 9)
+    place = np.abs(tables).argmax(axis=1)
+    largest = np.abs(np.take_along_axis(tables, place[:, None], axis=1))
+    near = np.round(tables / np.where(largest > 0, largest, 1.0) * 2.0**30) + 0.0
+    _, alike, count = np.unique(near, axis=0, return_inverse=True, return_counts=True)
+    number, known = np.arange(len(first)), dict[Any, int]()
+    for k in np.flatnonzero(count[alike] > 1).tolist():
+        exact = rows.feature(int(first[k]))[0].reshape(-1)
+        if all(isinstance(x, fmpq | int) for x in exact) and exact[place[k]] != 0:
+            form = tuple(fmpq(x) / abs(exact[place[k]]) for x in exact)
+            number[k] = known.setdefault((int(alike[k]), form), k)
+    merged = curves[number][np.searchsorted(curves, contacts.curves)]
+    return rows, replace(contacts, curves=merged)
 
 
 def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[arb, arb]:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,11 @@ from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.factors import basis, basis_and_slope
 from qbound.region.arcs import FIBRE, Arc, Pieces, ordered
 from qbound.region.cells import CellComplex
+from qbound.region.decomposition import apart
 from qbound.region.halfedges import DOWN, UP, UPPER, HalfEdges
 from qbound.region.plane import Plane, runs, which
 from qbound.region.precise import UndecidedError
-from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, UNIT, WALL
+from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, UNIT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -209,9 +210,8 @@ class Layout:
             label[:, 2] = up
             label[:, 0] = np.where(t == np.array(plane.ends)[up.astype(int)], -1, 0)
         inner = which(label[:, 0] == 0)
-        middle = (found.low[element] + found.high[element]) / 2
         for k in inner.tolist():
-            rows = self._standing(int(line[k]), float(middle[k]), bool(up[k]))
+            rows = self._standing(int(element[k]), bool(up[k]))
             label[k, 0] = rows[0]
             label[k, 3] = self._numbers.setdefault(rows, len(self._numbers))
         # A form falls along the base at theta + arccos; there the component lies before it.
@@ -220,28 +220,36 @@ class Layout:
         label[inner, 2] = 0
         return label
 
-    def _standing(self, line: int, v: float, up: bool) -> tuple[int, ...]:
-        """Return the rows that vanish on a fibre about a lift value and forbid what is beside it.
+    def _standing(self, element: int, up: bool) -> tuple[int, ...]:
+        """Return the rows that vanish on an element of a line and forbid what is beside it.
 
-        The component lies before the line (`up`) or behind it: there the rows are positive.
+        The component lies before the line (`up`) or behind it: there the rows are positive. Where
+        there are any, they are of pairs that are in collision on the other side.
         """
-        plane, t = self.plane, self.cells.abscissae[line]
-        rows = self.cells.decomposition.standing.get(line, ())
-        base = basis_and_slope(plane.base_kind, np.array([t]))[0]
-        lift = basis(plane.lift_kind, np.array(v))
-        touching, found = [], []
-        for row in rows:
-            if row >= plane.count:
-                sides = plane.sides[row - plane.count] / plane.powers
-                if (np.einsum("i,sij,j->s", base[0], sides, lift) < -WALL).any():
-                    continue
-            touching.append(row)
-            slope = base[1] @ plane.table[row] @ lift
-            if slope * plane.base_unit * (-1 if up else 1) > WALL:
-                found.append(row)
+        plane, found = self.plane, self.cells.decomposition
+        line, precise = int(self.cells.elements.line[element]), found.precise
+        count, here, beyond = plane.count, *((-1, 1) if up else (1, -1))
+
+        def t(bits: int) -> Any:
+            return found.critical.ball(line, bits)
+
+        v = self.cells.place(element, 0.5)
+        touching = [
+            row
+            for row in found.standing.get(line, ())
+            if row < count or precise.holds(row - count, t, v)
+        ]
         if not touching:
-            raise UndecidedError(f"which boundary stands at base value {t:.17g}")
-        return tuple(found or touching)  # bodies may touch there and be apart on both sides
+            raise UndecidedError(f"which boundary stands at base value {float(t(64).mid()):.17g}")
+        turning = [
+            row
+            for row in touching
+            if precise.sign(row, t, v, beyond) < 0 < precise.sign(row, t, v, here)
+        ]
+        pairs = {int(plane.contacts.pair[row - count]) for row in turning if row >= count}
+        met = {pair for pair in pairs if not apart(precise, pair, t, v, beyond)}
+        shut = [row for row in turning if row < count or plane.contacts.pair[row - count] in met]
+        return tuple(shut or turning or touching)  # bodies may touch, and be apart on both sides
 
     # --- places ---------------------------------------------------------------------------------
 

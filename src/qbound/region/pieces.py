@@ -404,22 +404,15 @@ class _Contacts:
             return False
         if plane.lift_kind == "prismatic" and plane.affine[row] and branch:
             return False
-        for side in range(SIDES):
-            if not plane.sides[feature, side].reshape(9)[1:].any():
-                if plane.sides[feature, side, 0, 0] < 0:
-                    return False
-                continue
-            number = plane.count + len(plane.contacts.forms) + SIDES * feature + side
 
-            def root(bits: int) -> Any:
-                return precise.root(row, 2 * branch - 1, t, bits)
+        def root(bits: int) -> Any:
+            return precise.root(row, 2 * branch - 1, t, bits)
 
-            with precision(256):
-                if root(256) is None:
-                    return False
-            if precise.sign(number, t, root) < 0:
+        varied = plane.sides[feature].reshape(SIDES, 9)[:, 1:].any()
+        with precision(256):
+            if varied and root(256) is None:
                 return False
-        return True
+        return precise.holds(feature, t, root)
 
     def _near(self, f: Ints, t: Floats) -> Bools:
         """Tell at which starts a side condition of a root may touch zero: two contacts may meet."""

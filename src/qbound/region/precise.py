@@ -1,7 +1,7 @@
 """Decisions in balls (Arb), where doubles cannot decide.
 
 Doubles come with a bound of their error. Where two numbers are nearer to each other than their
-errors, they are computed again here: from exact coefficients, at 128, 256, 512 and 1,024 bits.
+errors, they are computed again here: from exact coefficients, at 128 bits, then at 1,024.
 Numbers whose balls still overlap then are one number; all others are different, however near.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Ball = Any
 """An `arb`."""
 
-LEVELS: Final = (128, 256, 512, 1024)
+LEVELS: Final = (128, 1024)
 """Bits that are tried in turn."""
 
 ORDERS: Final = 12
@@ -201,11 +201,11 @@ class Precise:
     @classmethod
     def of(cls, problem: Problem, base: int, caution: float = 1.0) -> Precise:
         """Return a problem's plane over a joint with its exact coefficients."""
-        from qbound.region.exact import ExactRows
+        from qbound.region.exact import shared_rows
 
-        forms, ranges, contacts = problem.forms, problem.ranges, problem.contacts
-        plane = Plane(forms, ranges, base, contacts, problem.errors, caution)
-        return cls(plane, ExactRows(problem))
+        rows, contacts = shared_rows(problem)
+        plane = Plane(problem.forms, problem.ranges, base, contacts, problem.errors, caution)
+        return cls(plane, rows)
 
     def __init__(self, plane: Plane, rows: Rows) -> None:
         self.plane, self.rows = plane, rows
@@ -243,6 +243,10 @@ class Precise:
     def _turned(self, table: NDArray[Any]) -> NDArray[Any]:
         return table if self.plane.base == 0 else table.T
 
+    def is_still(self, row: int) -> bool:
+        """Tell whether the base surely does not move a row, or an end of the lift's range."""
+        return row < 0 or all(x == 0 for x in self._exact_table(row)[1:].reshape(-1))
+
     def ends(self, joint: str) -> tuple[Ball, Ball]:
         """Return the exact ends of the range of "base" or "lift"; of a circle those of a turn."""
         from flint import arb
@@ -253,25 +257,33 @@ class Precise:
 
     def along_lift(self, row: int, t: Ball, bits: int) -> list[Ball]:
         """Return a row's three coefficients along the lift over a base value."""
-        one, other = _factors(self.plane.base_kind, t)
-        lines = self.table(row, bits)
-        return [lines[0][k] + lines[1][k] * one + lines[2][k] * other for k in range(3)]
+        return _combined(self.table(row, bits), *_factors(self.plane.base_kind, t))
 
     def series(self, row: int, t: Ball, bits: int) -> list[arb_series]:
         """Return these as power series about a base value."""
-        from flint import arb_series
+        from flint import arb_series, ctx
 
-        return self.along_lift(row, arb_series([t, 1]), bits)
+        if ctx.cap > 2:
+            return [arb_series(x) for x in self.along_lift(row, arb_series([t, 1]), bits)]
+        # Of a value and a slope nothing is a product of series.
+        kind, lines = self.plane.base_kind, self.table(row, bits)
+        one, other = _factors(kind, t)
+        values = _combined(lines, one, other)
+        step = (-other, one) if kind == "revolute" else (1, 2 * t)
+        slopes = _combined([_NOTHING, *lines[1:]], *step)
+        return [arb_series([*pair]) for pair in zip(values, slopes, strict=True)]
 
     def value(self, row: int, t: Ball, v: Ball, bits: int) -> Ball:
         """Return the value of a row at base and lift."""
         c, (one, other) = self.along_lift(row, t, bits), _factors(self.plane.lift_kind, v)
         return c[0] + c[1] * one + c[2] * other
 
-    def sign(self, row: int, t: Any, v: Any) -> int:
+    def sign(self, row: int, t: Any, v: Any, beside: int = 0) -> int:
         """Return the sign of a row at a place; 0 where 1,024 bits do not tell it from zero.
 
-        Base and lift value are numbers, or functions of the number of bits.
+        Base and lift value are numbers, or functions of the number of bits. With `beside`, -1 or
+        +1, it is the sign just before that base value, or just behind: where the row vanishes, that
+        of its first derivative along the base that does not.
         """
         for bits in LEVELS:
             with precision(bits):
@@ -279,7 +291,25 @@ class Precise:
                 found = 0 if place is None else _sign(self.value(row, _at(t, bits), place, bits))
             if found:
                 return found
-        return 0
+        if not beside or place is None:
+            return 0
+        with precision(bits):
+            c, (one, other) = (
+                self.series(row, _at(t, bits), bits),
+                _factors(self.plane.lift_kind, place),
+            )
+            # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
+            signs = [_sign(c[0][k] + c[1][k] * one + c[2][k] * other) * beside**k for k in (1, 2)]
+        return next((sign for sign in signs if sign), 0)
+
+    def holds(self, feature: int, t: Any, v: Any) -> bool:
+        """Tell whether no side condition of a feature is negative at a place, as `sign` has it."""
+        sides = self.plane.sides[feature]
+        for side, constant in enumerate(~sides.reshape(SIDES, 9)[:, 1:].any(axis=1)):
+            number = self.features + SIDES * feature + side
+            if sides[side, 0, 0] < 0 if constant else self.sign(number, t, v) < 0:
+                return False
+        return True
 
     # --- events ---------------------------------------------------------------------------------
 
@@ -358,12 +388,15 @@ class Precise:
         Between two zeros of its derivative a function is monotone, so its signs there tell whether
         it has a zero between. One whose sign is not known is a zero of both.
         """
-        over = self.taylor(event, part, bits, ORDERS)
-        top = next((k for k, value in enumerate(over) if _sign(value)), None)
-        if top is None:
-            over = self._centred(event, part, bits)
+        for way in range(3):
+            if way < 2:  # most zeros are simple ones
+                over = self.taylor(event, part, bits, ORDERS if way else 2)
+            else:
+                over = self._centred(event, part, bits)
             top = next((k for k, value in enumerate(over) if _sign(value)), None)
-        if top is None:
+            if top is not None:
+                break
+        else:
             return None
         ends = [part.lower(), part.upper()]
         zeros: list[tuple[int, Ball]] = []
@@ -424,8 +457,15 @@ class Precise:
                 if _sign(value) == 0:
                     return new
             here = _sign(value)
-            if not here:
-                return box if not _sign(slope) else new
+            if not here:  # the zero itself, perhaps: look on both sides of it
+                off = arb(box.rad()) / 2
+                left, right = arb((middle - off).mid()), arb((middle + off).mid())
+                begins = _sign(self.taylor(event, left, bits, k + 1)[k]) == sign
+                ends = _sign(self.taylor(event, right, bits, k + 1)[k]) == -sign
+                if not (begins or ends):
+                    return box
+                low, high = left if begins else low, right if ends else high
+                continue
             low, high = (middle, high) if here == sign else (low, middle)
             if arb(high - low) < arb(2) ** (8 - bits):
                 return low.union(high)
@@ -440,17 +480,23 @@ class Precise:
                 return zero.ball() if callable(zero.ball) else arb(zero.ball)
         key = (id(zero), bits)
         if key not in self._zeros:
-            self._zeros[key] = [zero, self._newton(zero, bits)]
+            known = (self._zeros.get((id(zero), fewer)) for fewer in reversed(LEVELS))
+            start = next((found[1] for found in known if found is not None), zero.ball)
+            self._zeros[key] = [zero, self._newton(zero, start, bits)]
         return self._zeros[key][1]
 
-    def _newton(self, zero: Zero, bits: int) -> Ball:
+    def _newton(self, zero: Zero, start: Ball, bits: int) -> Ball:
+        """Return the zero in a ball about it, to nearly so many bits."""
         from flint import arb
 
         event, k = zero.event, zero.order
         assert event is not None
         with precision(bits + 32):
-            box = arb(zero.ball)
+            box = arb(start)
+            least = arb(2) ** -bits * self.plane.base_unit
             for _ in range(200):
+                if arb(box.rad()) < least:
+                    break
                 slope = (k + 1) * self.taylor(event, box, bits + 32, k + 2)[k + 1]
                 if not _sign(slope):
                     break
@@ -537,6 +583,18 @@ class Precise:
                 if _sign(rest):
                     return _sign(rest)
         return 0
+
+
+_NOTHING = (0, 0, 0)
+
+
+def _combined(lines: Sequence[Sequence[Any]], one: Any, other: Any) -> list[Any]:
+    """Return the sums of three lines, with factors 1, `one` and `other`; most numbers are zero."""
+    found = []
+    for a, b, c in zip(*lines, strict=True):
+        value = a if b.is_zero() else a + b * one
+        found.append(value if c.is_zero() else value + c * other)
+    return found
 
 
 def _factors(kind: str, t: Any) -> tuple[Any, Any]:

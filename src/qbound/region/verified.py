@@ -87,7 +87,7 @@ def _lost(found: Found) -> list[str]:
     low, high = np.array(ends).T
     q = low + (high - low) * SPREAD_OUT
     evaluator = found.problem.evaluator
-    free = (evaluator.margins(q) > CLEAR * evaluator.margin_rounding).all(axis=1)
+    free = evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=1)
     part = numbered(found.problem, found.cells, found.base, dict(found.owner), q[free])
     missed = q[free][part < 0]
     return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
@@ -109,17 +109,22 @@ def _off(found: Found) -> Iterator[str]:
             yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
     limited = np.array([arc.row < 0 for arc in arcs])
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
-    margins, sizes = found.problem.evaluator.margins(q), found.problem.evaluator.sizes
-    off = np.abs(np.take_along_axis(margins, rows[:, None, None], axis=2)[..., 0])
+    evaluator = found.problem.evaluator
+    within = ON_ARC * evaluator.sizes
+    held, more = (evaluator.at_least(q, least) for least in (-within, np.nextafter(within, np.inf)))
+    off = np.take_along_axis(~held | more, rows[:, None, None], axis=2)[..., 0]
     if limited.any():
-        off[limited] = _to_limits(found, q[limited])
-    allowed = ON_ARC * np.where(limited, 1.0, sizes[rows])
-    for k, place in np.argwhere(off > allowed[:, None]).tolist():
+        off[limited] = _to_limits(found, q[limited]) > ON_ARC
+    for k, place in np.argwhere(off).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k, place])
-        yield f"an arc of {arcs[k].boundary} is {off[k, place]:.2g} off it at ({at})"
-    for k, place, column_number in np.argwhere(margins < -ON_ARC * sizes).tolist():
+        if limited[k]:
+            by = float(_to_limits(found, q[k, place]))
+        else:
+            by = abs(float(evaluator.margins(q[k, place])[rows[k]]))
+        yield f"an arc of {arcs[k].boundary} is {by:.2g} off it at ({at})"
+    for k, place, column_number in np.argwhere(~held).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k, place])
-        name = found.problem.evaluator.names[column_number]
+        name = evaluator.names[column_number]
         yield f"an arc of {arcs[k].boundary} runs where {name} is violated, at ({at})"
 
 
@@ -154,10 +159,11 @@ class _Cells:
         t = start + INSIDE * (end - start)
         low, high = cells.interval(every, t[:, None])[..., 0]
         middle = low + INSIDE * (high - low)
-        margins = self._margins(t, middle)
-        found = []
-        for k in which(~(margins > self.doubt).all(axis=1)).tolist():
-            if (margins[k] < -self.doubt).any() or not self._is_free(k, t[k], start[k], end[k]):
+        found, q = list[str](), self._ordered(t, middle)
+        vague = which(~self.evaluator.at_least(q, self.doubt).all(axis=1))
+        kept = self.evaluator.at_least(q[vague], -self.doubt)
+        for k, held in zip(vague.tolist(), kept, strict=True):
+            if not (held.all() and self._is_free(k, t[k], start[k], end[k])):
                 found.append(f"a cell about {self._place(t[k], middle[k])} is not free")
         for side, value, sense in ((0, low, -1.0), (1, high, 1.0)):
             rows = which(cells.roots[:, side, 0] >= 0)
@@ -190,9 +196,8 @@ class _Cells:
                     found.append(f"nothing bounds a cell at {self._place(t[k], v[k])}")
         return found
 
-    def _margins(self, t: Floats, v: Floats) -> Floats:
-        q = ordered(np.stack([t, v], axis=1), self.plane.base)
-        return np.asarray(self.evaluator.margins(q))
+    def _ordered(self, t: Floats, v: Floats) -> Floats:
+        return ordered(np.stack([t, v], axis=1), self.plane.base)
 
     def _place(self, t: float, v: float) -> str:
         one, other = (t, v) if self.plane.base == 0 else (v, t)
@@ -208,8 +213,8 @@ class _Cells:
             if not len(left):
                 break
             base = t[left] + step * self.plane.base_unit * along[left]
-            margins = self._margins(base, v[left] + step * self.plane.lift_unit * up)
-            violated = margins < -self.doubt
+            q = self._ordered(base, v[left] + step * self.plane.lift_unit * up)
+            violated = ~self.evaluator.at_least(q, -self.doubt)
             for k, own in zip(left.tolist(), violated, strict=True):
                 shut[k] = any(own[self.column[self.names[row]]] for row in rows[k])
         return shut
