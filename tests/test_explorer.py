@@ -12,7 +12,6 @@ from importlib import resources
 
 import numpy as np
 import pytest
-import quickjs
 import shapely
 from numpy.testing import assert_allclose
 
@@ -31,34 +30,27 @@ from qbound.region import paper_rule, violated
 from qbound.workspace.planar import planar_arm, postures
 from support import scenes
 from support.arms import ORIGINS, ROBOTS, SIDE, SPATIAL, joint, robot_table
+from support.javascript import Script
 
 TEMPLATES = resources.files("qbound") / "explorer" / "web"
 POSES = 1000
 
 
-class Script:
-    """The page's arithmetic in a JavaScript engine, called with JSON."""
+class Arithmetic(Script):
+    """The page's arithmetic, and a robot."""
 
     def __init__(self, data):
+        super().__init__("".join((TEMPLATES / name).read_text("utf-8") for name in ARITHMETIC))
         self.data = data
-        self.context = quickjs.Context()
-        self.context.eval("".join((TEMPLATES / name).read_text("utf-8") for name in ARITHMETIC))
-        self.context.eval(f"const robot = {json.dumps(data)};")
-        self.context.eval("const map = toolMap(robot, robot.q); const arm = armOf(map);")
-
-    def __call__(self, expression, **values):
-        names = ", ".join(values)
-        json_values = ", ".join(json.dumps(value) for value in values.values())
-        return json.loads(
-            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
-        )
+        self.read(f"const robot = {json.dumps(data)};")
+        self.read("const map = toolMap(robot, robot.q); const arm = armOf(map);")
 
 
 @cache
 def case(name):
     robot, held = (ROBOTS | SPATIAL)[name]()
     region = find_region(robot, held)
-    return robot, held, region, Script(explorer_data(region))
+    return robot, held, region, Arithmetic(explorer_data(region))
 
 
 def poses(data, n=POSES, seed=5):
@@ -92,7 +84,7 @@ def among_obstacles(seed):
     """A scene of capsules, polygons and discs, every fourth of the same two kinds of joints."""
     robot = scenes.random_scene(seed, 3)
     region = find_region(robot)
-    return robot, region, Script(explorer_data(region))
+    return robot, region, Arithmetic(explorer_data(region))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -123,7 +115,7 @@ def test_margins_of_bodies_are_the_librarys_and_the_nearest_places_show_them(see
 def test_fibres_of_a_scene_are_free_where_the_library_says(seed):
     _, region, script = among_obstacles(seed)
     pairs = poses(script.data, 50)[:, script.data["free"]]
-    script.context.eval("const problem = sliceProblem(robot, robot.q);")
+    script.read("const problem = sliceProblem(robot, robot.q);")
     found = script(
         """all.map(([first, second]) => fibre(problem, first)
             .some(({ low, high }) => low.at < second && second < high.at))""",
@@ -137,7 +129,7 @@ def test_fibres_of_a_scene_are_free_where_the_library_says(seed):
 
 def test_a_free_interval_ends_where_two_bodies_touch():
     robot, _, script = among_obstacles(0)
-    script.context.eval("const asked = sliceProblem(robot, robot.q);")
+    script.read("const asked = sliceProblem(robot, robot.q);")
     compiled, count = evaluator(robot), 0
     for first in np.linspace(-3, 3, 9):
         for interval in script("fibre(asked, first)", first=first):
@@ -382,7 +374,7 @@ def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     corners = [vertex.q for vertex in closed_form.vertices(robot)]
     assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
-    script = Script(data)
+    script = Arithmetic(data)
     q = poses(data)
     safe = script("all.map((q) => isSafe(margins(robot, q)))", all=q.tolist())
     assert np.array_equal(safe, paper_rule.feasible(robot, q))

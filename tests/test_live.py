@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-import quickjs
 import shapely
 
 from qbound import find_region
 from qbound.boundary.evaluator import evaluator
 from qbound.explorer.page import ARITHMETIC, engine_script, shorter_script
 from qbound.model.robotfile import parse_robot
+from support.javascript import Script
 
 ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "src" / "qbound" / "explorer" / "web"
@@ -23,42 +22,20 @@ PLAY = ROOT / "book" / "_static" / "play"
 OWN = ("live_geometry", "live_fibres", "live_scene", "live")
 MOST_BYTES = 60_000  # of the page's own script
 NEAR = 1e-9  # m: nearer to contact, rounding decides
-PARAMETERS = """globalThis.URLSearchParams = class {
-  constructor(text = "") {
-    this.all = text.split("&").filter(Boolean).map((word) => {
-      const i = word.indexOf("=");
-      return [word.slice(0, i), decodeURIComponent(word.slice(i + 1).replaceAll("+", " "))];
-    });
-  }
-  get(name) { return this.all.find(([key]) => key === name)?.[1] ?? null; }
-  getAll(name) { return this.all.filter(([key]) => key === name).map(([, value]) => value); }
-  set(name, value) { this.append(name, value); }
-  append(name, value) { this.all.push([name, String(value)]); }
-  toString() {
-    const word = (text) => encodeURIComponent(text).replaceAll("%20", "+");
-    return this.all.map(([key, value]) => `${key}=${word(value)}`).join("&");
-  }
-};"""  # what a browser has, and this engine has not
 
 
 @cache
 def context():
-    found = quickjs.Context()
-    found.eval(PARAMETERS)
-    found.eval("const qboundFigures = {}, qboundEngine = {};")
-    for name in OWN:
-        found.eval((PLAY / f"{name}.js").read_text("utf-8"))
-    found.eval(
+    return Script(
+        "const qboundFigures = {}, qboundEngine = {};",
+        *((PLAY / f"{name}.js").read_text("utf-8") for name in OWN),
         "const geometry = qboundLiveGeometry, fibres = qboundLiveFibres, made = qboundLiveScene,"
-        " figure = qboundFigures.live;"
+        " figure = qboundFigures.live;",
     )
-    return found
 
 
 def js(expression, **values):
-    given = ", ".join(json.dumps(value) for value in values.values())
-    call = f"JSON.stringify((({', '.join(values)}) => {expression})({given}))"
-    return json.loads(context().eval(call))
+    return context()(expression, **values)
 
 
 def obstacle(rng, i):
@@ -383,11 +360,9 @@ def test_the_page_has_at_most_60_kilobytes_of_its_own_script():
 
 
 def test_an_engine_without_explorers_has_everything_else():
-    context = quickjs.Context()
-    context.eval("globalThis.window = globalThis;")
-    context.eval(engine_script(explorer=False))
-    names = set(json.loads(context.eval("JSON.stringify(Object.keys(qboundEngine))")))
+    script = Script("globalThis.window = globalThis;", engine_script(explorer=False))
+    names = set(script("Object.keys(qboundEngine)"))
     assert {"picture", "draggable", "onKeys", "framesOf"} <= names
-    assert context.eval("qboundEngine.mount === null")
+    assert script("qboundEngine.mount === null")
     assert len(engine_script(explorer=False)) < 0.7 * len(engine_script())
     assert all((WEB / name).exists() for name in ARITHMETIC)

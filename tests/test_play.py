@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import re
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from qbound.explorer.page import engine_script
 from support.browser import broken_rules, drag, settle, wait_until
+from support.javascript import Script
 from support.scripts import importable
 from support.trial_book import BOOK, build_book
 
@@ -143,14 +143,11 @@ def test_a_kind_may_be_told_more_by_python(monkeypatch, tmp_path):
 
 
 def test_the_engine_is_a_script_of_one_name():
-    import quickjs
-
-    context = quickjs.Context()
-    context.eval("globalThis.window = { matchMedia: () => ({}) };")
-    before = set(json.loads(context.eval("JSON.stringify(Object.keys(globalThis))")))
-    context.eval(engine_script())
-    assert set(json.loads(context.eval("JSON.stringify(Object.keys(globalThis))"))) == before
-    names = json.loads(context.eval("JSON.stringify(Object.keys(window))"))
+    script = Script("globalThis.window = { matchMedia: () => ({}) };")
+    before = script("Object.keys(globalThis)")
+    script.read(engine_script())
+    assert script("Object.keys(globalThis)") == before
+    names = script("Object.keys(window)")
     assert sorted(names) == ["matchMedia", "qboundEngine", "qboundFigures"]
 
 

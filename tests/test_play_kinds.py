@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import quickjs
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form
 from qbound.boundary.functions import position
 from qbound.geometry import polygon
 from qbound.paths.traversal import traverse
+from support.javascript import JavaScriptError
 from support.play import ROOT, kind
 
 RNG = np.random.default_rng(12)
@@ -83,7 +83,7 @@ def test_a_fraction_of_the_way_lies_on_the_leg_between_its_stops():
 def test_without_a_polygon_there_is_nothing_to_walk_round():
     figure = kind("traversals", robot="pp-portal")
     if figure("robot.polygon") is None:
-        with pytest.raises(quickjs.JSException, match="need a region with a polygon"):
+        with pytest.raises(JavaScriptError, match="need a region with a polygon"):
             figure("kind.waysOf(robot, 0.95)")
 
 
