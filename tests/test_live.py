@@ -12,14 +12,14 @@ import shapely
 
 from qbound import find_region
 from qbound.boundary.evaluator import evaluator
-from qbound.explorer.page import ARITHMETIC, engine_script, shorter_script
+from qbound.explorer.page import ENGINE, engine_script, shorter_script, web_text
 from qbound.model.robotfile import parse_robot
 from support.javascript import Script
+from support.play import NO_PAGE
 
 ROOT = Path(__file__).resolve().parents[1]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
 PLAY = ROOT / "book" / "_static" / "play"
-OWN = ("live_geometry", "live_fibres", "live_scene", "live")
+OWN = ("live_space", "live_scene", "live")
 MOST_BYTES = 60_000  # of the page's own script
 NEAR = 1e-9  # m: nearer to contact, rounding decides
 
@@ -27,10 +27,10 @@ NEAR = 1e-9  # m: nearer to contact, rounding decides
 @cache
 def context():
     return Script(
-        "const qboundFigures = {}, qboundEngine = {};",
+        NO_PAGE,
+        *map(web_text, ENGINE),
         *((PLAY / f"{name}.js").read_text("utf-8") for name in OWN),
-        "const geometry = qboundLiveGeometry, fibres = qboundLiveFibres, made = qboundLiveScene,"
-        " figure = qboundFigures.live;",
+        "const space = qboundLiveSpace, made = qboundLiveScene, figure = qboundFigures.live;",
     )
 
 
@@ -60,7 +60,7 @@ def scene(seed):
         "radii": rng.uniform(0.01, 0.15, 2).tolist(),
     }
     obstacles = [obstacle(rng, i) for i in range(rng.integers(1, 10))]
-    shapes = js("obstacles.map(geometry.placed)", obstacles=obstacles)
+    shapes = js("obstacles.map(space.placed)", obstacles=obstacles)
     return arm, obstacles, shapes, rng.uniform(-np.pi, np.pi, (300, 2))
 
 
@@ -87,9 +87,9 @@ def holds(intervals, value):
 @pytest.mark.parametrize("seed", range(30))
 def test_forbidden_angles_are_those_at_which_a_link_overlaps_an_obstacle(seed):
     arm, _, shapes, q = scene(seed)
-    windows = js("shapes.map((s) => fibres.forbiddenBy(arm, s, 1).windows)", arm=arm, shapes=shapes)
+    windows = js("shapes.map((s) => space.upperArm(arm, s))", arm=arm, shapes=shapes)
     fibres = js(
-        "q.map(([first]) => shapes.map((s) => fibres.forearm(arm, s, first)))",
+        "q.map(([first]) => shapes.map((s) => space.forearm(arm, s, first)))",
         arm=arm,
         shapes=shapes,
         q=q.tolist(),
@@ -113,7 +113,7 @@ def test_gaps_are_shapelys_and_the_nearest_places_lie_so_far_apart(seed):
     arm, _, shapes, q = scene(seed)
     q = q[:60]
     found = js(
-        "q.map((pair) => geometry.encounters(arm, shapes, pair))",
+        "q.map((pair) => space.encounters(arm, shapes, pair))",
         arm=arm,
         shapes=shapes,
         q=q.tolist(),
@@ -143,8 +143,8 @@ def test_a_pose_that_collides_leaves_through_the_contact_that_is_named(seed):
 
 def pieces(arm, obstacles, home=(0, 0), columns=360):
     return js(
-        "(({ areas, home }) => ({ areas, home }))(fibres.components(fibres.freeSpace(columns)"
-        ".columnsOf(arm, obstacles.map(geometry.placed)), home))",
+        "(({ areas, home }) => ({ areas, home }))(space.regions(space.freeSpace(columns)"
+        ".columnsOf(arm, obstacles.map(space.placed)), home))",
         arm=arm,
         obstacles=obstacles,
         home=home,
@@ -213,9 +213,9 @@ def test_walls_of_the_upper_arm_cut_the_square_and_home_comes_first():
 def test_outlines_have_the_area_of_their_pieces():
     arm, obstacles, _, _ = scene(2)
     outlines, areas = js(
-        "((found) => [fibres.outlines(found.columns, found.of, found.areas.length,"
+        "((found) => [space.outlines(found.columns, found.of, found.areas.length,"
         " { x0: 300, dx: 90, y0: 300, dy: -90 }), found.areas])"
-        "(fibres.components(fibres.freeSpace(700).columnsOf(arm, obstacles.map(geometry.placed)),"
+        "(space.regions(space.freeSpace(700).columnsOf(arm, obstacles.map(space.placed)),"
         " [0, 0]))",
         arm=arm,
         obstacles=obstacles,
@@ -248,8 +248,8 @@ def test_a_link_restores_the_scene(seed):
     first = js("made.sceneOf(made.textOf(scene))", scene=told(seed))
     assert js("made.sceneOf(made.textOf(scene))", scene=first) == first
     assert [one["name"] for one in first["obstacles"]] == list(NAMES[: len(first["obstacles"])])
-    given = js("obstacles.map(geometry.placed)", obstacles=told(seed)["obstacles"])
-    found = js("obstacles.map(geometry.placed)", obstacles=first["obstacles"])
+    given = js("obstacles.map(space.placed)", obstacles=told(seed)["obstacles"])
+    found = js("obstacles.map(space.placed)", obstacles=first["obstacles"])
     for one, other in zip(given, found, strict=True):
         assert np.allclose(one["points"], other["points"], atol=3e-4)
 
@@ -302,7 +302,7 @@ def test_the_robot_file_is_the_scene(seed):
         (part,) = robot.body(name).parts
         assert np.allclose(part.corners, [[0, 0, 0], [given["lengths"][k], 0, 0]])
         assert part.radius == given["thicknesses"][k] / 2
-    shapes = js("obstacles.map(geometry.placed)", obstacles=given["obstacles"])
+    shapes = js("obstacles.map(space.placed)", obstacles=given["obstacles"])
     for shape, body in zip(shapes, robot.obstacles, strict=True):
         if len(shape["points"]) == 1:
             (part,) = body.parts
@@ -322,8 +322,8 @@ def test_poses_of_the_page_have_the_librarys_margins(seed):
     robot = parse_robot(tomllib.loads(js("made.robotFile(scene)", scene=given)))
     q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (1000, 2))
     found = js(
-        "q.map((pair) => geometry.encounters(made.armOf(scene),"
-        " scene.obstacles.map(geometry.placed), pair).map((one) => one.gap))",
+        "q.map((pair) => space.encounters(made.armOf(scene),"
+        " scene.obstacles.map(space.placed), pair).map((one) => one.gap))",
         scene=given,
         q=q.tolist(),
     )
@@ -346,9 +346,9 @@ def test_the_tool_reaches_where_it_is_dragged_bent_as_before():
     ):
         place = far * np.array([np.cos(way), np.sin(way)])
         found = js(
-            "figure.poseAt(arm, pair, place)", arm=arm, pair=pair.tolist(), place=place.tolist()
+            "space.poseAt(arm, pair, place)", arm=arm, pair=pair.tolist(), place=place.tolist()
         )
-        tip = js("geometry.jointPlaces(arm, q)[2]", arm=arm, q=found)
+        tip = js("space.jointPlaces(arm, q)[2]", arm=arm, q=found)
         assert np.hypot(*tip) == pytest.approx(np.clip(far, 0.2, 1.8))
         assert np.cross([*tip, 0], [*place, 0])[2] == pytest.approx(0, abs=1e-9)
         assert np.sign(np.sin(found[1])) in (0, np.sign(np.sin(pair[1])))
@@ -365,4 +365,3 @@ def test_an_engine_without_explorers_has_everything_else():
     assert {"picture", "draggable", "onKeys", "framesOf"} <= names
     assert script("qboundEngine.mount === null")
     assert len(engine_script(explorer=False)) < 0.7 * len(engine_script())
-    assert all((WEB / name).exists() for name in ARITHMETIC)

@@ -12,7 +12,6 @@ from numpy.testing import assert_allclose
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from qbound import clearance
-from qbound.forms.circle import circle_arc, circle_roots
 from qbound.geometry import polygon
 from qbound.measures import bodies, scaling
 from qbound.region import paper_rule
@@ -35,19 +34,6 @@ def case(name, robot="minervabot-v2", rule="paper"):
 
 
 # --- Theorem 2 ------------------------------------------------------------------------------------
-
-EDGES = [(3, 4, c) for c in (-6, -5, 2, 5, 6)] + [(0, 0, c) for c in (-1, 0, 1)] + [(-1, 0, 0)]
-
-
-def test_the_arc_is_the_librarys():
-    _, kind = case("circle")
-    abc = np.vstack([RNG.uniform(-15, 15, (2000, 3)), EDGES])
-    found = kind("all.map((x) => kind.theorem(...x))", all=abc.tolist())
-    roots, arc = circle_roots(*abc.T), circle_arc(*abc.T)
-    assert [one["count"] for one in found] == roots.count.tolist()
-    assert [one["empty"] for one in found] == arc.empty.tolist()
-    assert_allclose([one["theta"] for one in found], arc.centre, atol=1e-14)
-    assert_allclose([one["alpha"] for one in found], arc.half_width, atol=1e-12)
 
 
 @pytest.mark.parametrize("reading", ["arctan", "atan2"])
@@ -76,7 +62,7 @@ def test_the_printed_interval_is_equation_31(reading):
 def test_the_interval_that_opens_is_a_component_of_the_robot():
     robot, kind = case("circle")
     (window,) = (w for w in paper_rule.windows(robot) if (w.boundary, w.component) == ("B2", 1))
-    theorem = kind("kind.theorem(...kind.OPENS)")
+    theorem = kind("circleArc(...kind.OPENS)")
     upper = theorem["theta"] + theorem["alpha"]
     assert upper == pytest.approx(window.upper, abs=1e-12)
 
@@ -191,7 +177,7 @@ def test_gaps_and_overlaps_of_bodies_are_those_of_shapely(name):
     q = RNG.uniform(-np.pi, np.pi, (400, 2))
     found = kind("all.map((q) => kind.bodyPairs(robot, q))", all=q.tolist())
     areas = kind(
-        "all.map((q) => kind.bodyPairs(robot, q).map((p) => kind.area(p.shared)))", all=q.tolist()
+        "all.map((q) => kind.bodyPairs(robot, q).map((p) => area(p.shared)))", all=q.tolist()
     )
     theirs = bodies.gaps(robot, q)
     for i, pose in enumerate(q):

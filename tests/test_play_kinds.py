@@ -69,7 +69,7 @@ def test_the_drawn_path_is_the_tools(name):
 def test_a_fraction_of_the_way_lies_on_the_leg_between_its_stops():
     figure = kind("traversals", "paper")
     (way,) = (w for w in figure("kind.waysOf(robot, 0.95)") if w["name"] == "all")
-    places = figure("kind.stopsAt(robot, stops)", stops=way["stops"])
+    places = figure("stopsAt(robot, stops)", stops=way["stops"])
     assert places[0] == 0
     assert places[-1] == pytest.approx(1)
     for leg, (a, b) in enumerate(pairwise(places)):

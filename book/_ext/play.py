@@ -43,7 +43,7 @@ WITHOUT_PARTS = {"explorer"}
 WITHOUT_EXPLORER = {"live"}
 """Kinds that show no robot of the package and mount no explorer."""
 
-SCRIPTS_BEFORE = {"live": ("live_geometry", "live_fibres", "live_scene")}
+SCRIPTS_BEFORE = {"live": ("live_space", "live_scene")}
 """What stands before a kind's own script, in order."""
 
 LOGGER = logging.getLogger(__name__)

@@ -51,14 +51,6 @@ interface Window {
 
 /* --- circle ----------------------------------------------------------------------------------- */
 
-interface TheoremTwo {
-  d: number;
-  theta: number;
-  alpha: number;
-  count: number; // of roots; -1: every angle is one
-  empty: boolean; // no angle satisfies the inequality
-}
-
 interface CirclePicture extends Picture {
   above: SVGPathElement;
   line: SVGPathElement;
@@ -169,14 +161,6 @@ interface Trace {
   plane: SVGPathElement;
 }
 
-interface Player {
-  calm: () => boolean;
-  runs: () => boolean;
-  stop: () => void;
-  go: (done: number) => void;
-  play: (seconds: number, places: number[], loops?: boolean) => void;
-}
-
 /* --- regions ---------------------------------------------------------------------------------- */
 
 interface Rule {
@@ -272,17 +256,12 @@ interface LiveForbidden {
   critical: number[]; // q1 at which the number of those intervals changes
 }
 
-interface LiveColumn {
-  q: number;
-  free: number[]; // pairs of ends
-}
-
 interface LiveSpace {
-  columnsOf(arm: LiveArm, shapes: LiveShape[]): LiveColumn[];
+  columnsOf(arm: LiveArm, shapes: LiveShape[]): Column[];
 }
 
 interface LiveRegions {
-  columns: LiveColumn[];
+  columns: Column[];
   home: boolean; // whether home is free; its component is the first
   areas: number[];
   of: number[][]; // of each interval of each column its component; -1: too small
@@ -293,20 +272,6 @@ interface LiveScale {
   dx: number;
   y0: number;
   dy: number;
-}
-
-interface LiveLine {
-  kept: number[];
-  add(x: number, y: number): void;
-  end(): void;
-}
-
-interface LiveStrip {
-  number: number;
-  lower: LiveLine;
-  upper: LiveLine;
-  cutLow: boolean;
-  cutHigh: boolean;
 }
 
 interface LiveOutline {

@@ -13,11 +13,10 @@ import pytest
 from lizarraga2025 import closed_form
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ARITHMETIC, engine_script, engine_style
+from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
 from support.javascript import Script
 
 ROOT = Path(__file__).resolve().parents[2]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
 PLAY = ROOT / "book" / "_static" / "play"
 PAPER = "minervabot-v2"
 WIDTHS = {"wide screen": 900, "phone": 340}
@@ -32,10 +31,7 @@ body {{ background: light-dark(#fff, #12181b); margin: 8px }}
 KEEP = (
     "const mount = qboundEngine.mount; qboundEngine.mount = (...a) => (window.arm = mount(...a));"
 )
-ENGINE = """const window = globalThis, qboundFigures = {}, qboundEngine = { alongPath, alongSecond,
-  armOf, basis, determinant, evaluate, framesOf, margins, mirroredPose, pieceLengths, placeIn,
-  pointPlaces, possible, project, restrict, rootsWithin, scaledPolygon, toolAt, toolMap, viewAxes,
-  withPair };"""
+NO_PAGE = "const window = globalThis, mount = null;"
 
 
 @cache
@@ -90,8 +86,8 @@ class Kind(Script):
 
     def __init__(self, name: str, rule: str = "clearance", robot: str = PAPER) -> None:
         super().__init__(
-            *((WEB / f"{script}").read_text("utf-8") for script in (*ARITHMETIC, "arm.js")),
-            ENGINE,
+            NO_PAGE,
+            *map(web_text, ENGINE),
             *((PLAY / f"{script}.js").read_text("utf-8") for script in ("parts", name)),
             f"const robot = {data(rule, robot)}, kind = qboundFigures.{name};",
         )

@@ -2,7 +2,8 @@
 /* Configuration space, live: an arm among obstacles, as a link keeps it and as a robot file says it.
    Lengths are in metres, angles in radians; links and files have degrees. */
 const qboundLiveScene = (() => {
-  const { encounters, isSimple, placed } = qboundLiveGeometry;
+  const { between, wrapped } = qboundEngine;
+  const { encounters, isSimple, placed } = qboundLiveSpace;
   const DEGREE = Math.PI / 180;
   const LINKS = ["upper arm", "forearm"];
 
@@ -91,17 +92,16 @@ const qboundLiveScene = (() => {
     return `${name} ${k}`;
   }
 
-  /** @type {(value: number, [low, high]: number[]) => number} */
+  /** @type {(value: number, range: number[]) => number} */
   function within(value, [low, high]) {
-    return Math.min(high, Math.max(low, value));
+    return between(value, low, high);
   }
 
   /** An obstacle with its numbers in range; null where it is none (edges that cross).
    * @type {(obstacle: LiveObstacle) => LiveObstacle | null} */
   function checked(obstacle) {
-    const turned = obstacle.angle - 2 * Math.PI * Math.round(obstacle.angle / (2 * Math.PI));
     const [x, y] = [within(obstacle.x, RANGES.place), within(obstacle.y, RANGES.place)];
-    const found = { ...obstacle, x, y, angle: turned };
+    const found = { ...obstacle, x, y, angle: wrapped(obstacle.angle) };
     if (found.kind === "disc") found.radius = within(found.radius, RANGES.size);
     if (found.kind === "box") {
       found.width = within(found.width, RANGES.size);
@@ -161,8 +161,8 @@ const qboundLiveScene = (() => {
     const scene = {
       lengths: arm.slice(0, 2).map((value) => within(value, RANGES.length)),
       thicknesses: arm.slice(2).map((value) => within(value, RANGES.thickness)),
-      home: home.map((value) => angle(value)),
-      q: q.map((value) => angle(value)),
+      home: home.map((value) => wrapped(value * DEGREE)),
+      q: q.map((value) => wrapped(value * DEGREE)),
       obstacles: [],
     };
     for (const word of words.getAll("o").slice(0, MOST_OBSTACLES)) {
@@ -170,11 +170,6 @@ const qboundLiveScene = (() => {
       if (found) scene.obstacles.push(found);
     }
     return scene;
-  }
-
-  /** @type {(degrees: number) => number} */
-  function angle(degrees) {
-    return (degrees - 360 * Math.round(degrees / 360)) * DEGREE;
   }
 
   /** @type {(text: string | null, count: number) => number[] | null} */
@@ -192,7 +187,12 @@ const qboundLiveScene = (() => {
     const values = numbersOf(numbers, count);
     if (!values) return null;
     const [x, y, degrees, ...sizes] = values;
-    const base = { name: freeName(scene, name.join(" "), -1), x, y, angle: angle(degrees) };
+    const base = {
+      name: freeName(scene, name.join(" "), -1),
+      x,
+      y,
+      angle: wrapped(degrees * DEGREE),
+    };
     if (kind === "disc" && sizes.length === 1) return checked({ kind, ...base, radius: sizes[0] });
     if (kind === "box" && sizes.length === 2)
       return checked({ kind, ...base, width: sizes[0], height: sizes[1] });
@@ -276,6 +276,5 @@ const qboundLiveScene = (() => {
     robotFile,
     sceneOf,
     textOf,
-    within,
   };
 })();

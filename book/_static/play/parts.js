@@ -1,7 +1,8 @@
 "use strict";
 /* What the figures that one moves in a chapter share: values to set, words that say what holds. */
 {
-  const { addArm, element, layer, make, newPrefix, number, pathText, placeArm } = qboundEngine;
+  const { addArm, between, element, isInside, layer, make, newPrefix, number } = qboundEngine;
+  const { pathText, placeArm } = qboundEngine;
 
   /** A value with its name, a slider and a field.
    * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
@@ -18,7 +19,7 @@
         const value = Number(input.value);
         if (input.value === "" || !Number.isFinite(value)) return;
         typed = input === field;
-        change(Math.min(high, Math.max(low, value)));
+        change(between(value, low, high));
         typed = false;
       });
     }
@@ -194,22 +195,18 @@
    * @type {(robot: Robot, pair: Pair) => number | null} */
   function regionAt(robot, pair) {
     const all = turns(robot).map((by) => pair.map((value, k) => value + by[k]));
-    const i = robot.components.findIndex(({ loops }) => all.some((at) => isInside(loops, at)));
+    /** @type {(component: Component, at: Pair) => boolean} */
+    const holds = ({ loops }, at) =>
+      loops.filter((loop) =>
+        isInside(
+          loop.flatMap((arc) => arc.points),
+          at,
+        ),
+      ).length %
+        2 ===
+      1;
+    const i = robot.components.findIndex((one) => all.some((at) => holds(one, at)));
     return i < 0 ? null : i + 1;
-  }
-
-  /** Whether a ray from a point crosses the outlines an odd number of times.
-   * @type {(loops: Component["loops"], point: Pair) => boolean} */
-  function isInside(loops, [x, y]) {
-    let odd = false;
-    for (const loop of loops) {
-      const points = loop.flatMap((arc) => arc.points);
-      for (const [i, [bx, by]] of points.entries()) {
-        const [ax, ay] = points.at(i - 1) ?? [bx, by];
-        if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) odd = !odd;
-      }
-    }
-    return odd;
   }
 
   /** Whether two poses are one and the same: pictures that are drawn anew move no arm.

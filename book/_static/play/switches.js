@@ -77,11 +77,10 @@
       whether it ends in roots (Theorem 2).
    * @type {(matrix: Matrix, first: number) => WallArc} */
   function arcAt(matrix, first) {
-    const { alongSecond, basis } = qboundEngine;
+    const { alongSecond, basis, circleArc } = qboundEngine;
     const [constant, a, b] = alongSecond(matrix, basis("revolute", first));
-    const ratio = -constant / Math.hypot(a, b);
-    const alpha = Math.acos(Math.min(1, Math.max(-1, ratio)));
-    return { middle: Math.atan2(b, a), alpha, cuts: Math.abs(ratio) <= 1 };
+    const { theta, alpha, count } = circleArc(a, b, -constant);
+    return { middle: theta, alpha, cuts: count > 0 };
   }
 
   /** @type {(bound: Component2 & { k: number }) => string} */
@@ -98,7 +97,7 @@
     );
     const curved = walls.flatMap(({ boundary, component, matrix }) => {
       const { middle, alpha } = arcAt(matrix, q[0]);
-      const away = q[1] - middle - TURN * Math.round((q[1] - middle) / TURN);
+      const away = qboundEngine.wrapped(q[1] - middle);
       if (Math.abs(away) <= alpha) return [];
       return [nameOf({ boundary, component, k: away > 0 ? 1 : 2 })];
     });

@@ -312,7 +312,7 @@ const explorer = {
   moveTool,
   play,
   stop: stopPlaying,
-  isPlaying,
+  isPlaying: walker.runs,
   walkStops,
   setScale,
   refresh,

@@ -11,9 +11,14 @@ const SVG = "http://www.w3.org/2000/svg";
  * @returns {SVGElementTagNameMap[K]} */
 function make(name, attributes, text = "") {
   const element = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  set(element, attributes);
   element.textContent = text;
   return element;
+}
+
+/** @type {(element: Element, attributes: Record<string, string | number>) => void} */
+function set(element, attributes) {
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
 }
 
 /** The height of a line of text: it differs from font to font.
@@ -55,6 +60,16 @@ function picture(svg, ranges, margin, equal) {
     at: ([x, y]) => [left + a * (x - x0), top + b * (y1 - y)],
     from: ([x, y]) => [x0 + (x - left) / a, y1 - (y - top) / b],
   };
+}
+
+/** An empty picture of the plane, with equal scales: it shows what lies in its margin, too.
+ * @type {(svg: SVGSVGElement, ranges: number[][], bottom?: number) => Picture} */
+function wholePicture(svg, ranges, bottom = 8) {
+  const fitted = picture(svg, ranges, { left: 8, right: 8, top: 8, bottom }, true);
+  const box = { left: 0, top: 0, right: fitted.width, bottom: fitted.height };
+  const drawn = { ...fitted, box };
+  clear(drawn);
+  return drawn;
 }
 
 /** Where pictures stand one below the other, two of them and a line of words fit the screen.

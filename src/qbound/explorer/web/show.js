@@ -119,7 +119,7 @@ function showStatus(found) {
   byId("status").classList.toggle("violated", !isSafe(found));
   if (shows("pose")) {
     byId("posture").textContent = postureText();
-    partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+    partOf("flip", HTMLButtonElement).disabled = flipped() === null;
   }
   window.clearTimeout(timers.say);
   timers.say = window.setTimeout(() => say(verdict, reason), 600);
