@@ -20,9 +20,9 @@
     return Array.from({ length: count }, (_, i) => {
       const [far, way] = [0.75 + (1.1 * i) / count, 2.4 * i];
       const place = { name: "", x: far * Math.cos(way), y: far * Math.sin(way), angle: i };
-      if (i % 3 === 0) return { kind: "disc", ...place, radius: 0.1 };
-      if (i % 3 === 1) return { kind: "box", ...place, width: 0.3, height: 0.2 };
-      return { kind: "polygon", ...place, corners: CORNERS };
+      if (i % 3 === 0) return { kind: "disc", ...place, sizes: [0.1], corners: [] };
+      if (i % 3 === 1) return { kind: "box", ...place, sizes: [0.3, 0.2], corners: [] };
+      return { kind: "polygon", ...place, sizes: [], corners: CORNERS };
     });
   }
 

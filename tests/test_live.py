@@ -43,14 +43,15 @@ def obstacle(rng, i):
     far, way = rng.uniform(0.5, 2), rng.uniform(-np.pi, np.pi)
     found = {"name": f"{i}", "x": far * np.cos(way), "y": far * np.sin(way), "angle": 0}
     kind = ("disc", "box", "polygon")[i % 3]
+    found |= {"kind": kind, "sizes": [], "corners": []}
     if kind == "disc":
-        return found | {"kind": kind, "radius": rng.uniform(0.02, 0.4)}
+        return found | {"sizes": [rng.uniform(0.02, 0.4)]}
     found["angle"] = rng.uniform(-3, 3)
     if kind == "box":
-        return found | {"kind": kind, "width": rng.uniform(0.05, 0.8), "height": 0.3}
+        return found | {"sizes": [rng.uniform(0.05, 0.8), 0.3]}
     at = 2 * np.pi * (np.arange(7) + rng.uniform(0, 0.8, 7)) / 7
     corners = rng.uniform(0.05, 0.4, (7, 1)) * np.column_stack([np.cos(at), np.sin(at)])
-    return found | {"kind": kind, "corners": corners.tolist()}
+    return found | {"corners": corners.tolist()}
 
 
 def scene(seed):
@@ -191,7 +192,7 @@ def test_pieces_are_the_components_of_the_librarys_exact_region(seed):
 
 def test_nothing_in_the_way_is_one_piece_and_a_buried_base_none():
     arm = {"lengths": [1, 0.8], "radii": [0.05, 0.05]}
-    disc = {"kind": "disc", "name": "", "x": 0, "y": 0, "angle": 0, "radius": 0.1}
+    disc = {"kind": "disc", "x": 0, "y": 0, "angle": 0, "sizes": [0.1]}
     assert pieces(arm, [])["areas"] == pytest.approx([4 * np.pi**2])
     assert pieces(arm, [disc]) == {"areas": [], "home": False}
     assert len(pieces(arm, [disc | {"x": 3}])["areas"]) == 1
@@ -200,7 +201,7 @@ def test_nothing_in_the_way_is_one_piece_and_a_buried_base_none():
 def test_walls_of_the_upper_arm_cut_the_square_and_home_comes_first():
     """Two discs that only the upper arm meets, on either side: two pieces of known areas."""
     arm = {"lengths": [1, 0.2], "radii": [0.05, 0.05]}
-    disc = {"kind": "disc", "name": "", "y": 0, "angle": 0, "radius": 0.15}
+    disc = {"kind": "disc", "y": 0, "angle": 0, "sizes": [0.15]}
     both = [disc | {"x": 0.5}, disc | {"x": 0, "y": 0.5}]
     half = np.arcsin(0.2 / 0.5)
     small, large = ((np.pi / 2 - 2 * half), (3 * np.pi / 2 - 2 * half))
@@ -264,6 +265,7 @@ def test_a_link_restores_the_scene(seed):
         ("arm=1,1,0.1,0.1&home=0,Infinity", None),
         ("arm=9,1,0.1,0&home=0,720", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=disc 1,1,0,-5 x&o=disc 1,1,0 x&o=ball 1,1,0,1 x", 1),
+        ("arm=1,1,0.1,0.1&home=0,0&o=constructor 1,1,0,1 x&o=toString 1,1,0 x", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=polygon 0,0,0,-1,-1,1,1,1,-1,-1,1 x", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=polygon 0,0,0,-1,-1,1,1 x&o=box 1,1,0,,1 x&o= x", 0),
     ],

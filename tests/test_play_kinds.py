@@ -74,10 +74,10 @@ def test_a_fraction_of_the_way_lies_on_the_leg_between_its_stops():
     assert places[-1] == pytest.approx(1)
     for leg, (a, b) in enumerate(pairwise(places)):
         middle = (a + b) / 2
-        assert figure("kind.legAt(robot, s, t)", s=way["stops"], t=middle) == leg
+        assert figure("kind.legOf(robot, s, t)", s=way["stops"], t=middle) == leg
         at = figure("alongPath(robot, s, t)", s=way["stops"], t=middle)
         assert_allclose(at, np.mean(way["stops"][leg : leg + 2], axis=0), atol=1e-9)
-    assert figure("kind.legAt(robot, s, 1)", s=way["stops"]) == len(way["stops"]) - 2
+    assert figure("kind.legOf(robot, s, 1)", s=way["stops"]) == len(way["stops"]) - 2
 
 
 def test_without_a_polygon_there_is_nothing_to_walk_round():

@@ -26,45 +26,6 @@ interface StatusLine {
 
 type Press = [string, () => void]; // a button's words, and what it does
 
-interface Parts {
-  isSame(one: Pair, other: Pair): boolean;
-  turns(robot: Robot): Pair[];
-  regionAt(robot: Robot, pair: Pair): number | null;
-  valueRow(value: ValueRow, change: (value: number) => void): SetRow;
-  tick(text: string, checked: boolean, change: (checked: boolean) => void): HTMLLabelElement;
-  buttons(...all: [string, () => void][]): HTMLParagraphElement;
-  statusLine(longest: string): StatusLine;
-  canvas(label: string): { figure: HTMLElement; svg: SVGSVGElement };
-  whenWidthChanges(watched: HTMLElement, draw: () => void): void;
-  degrees(angle: number, digits?: number): string;
-  AROUND: Picture["box"];
-  jointAxes(drawn: Picture, step: number): void;
-  armParts(robot: Robot, drawn: Picture): PlanePicture;
-  moveArm(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>): void;
-  moveTo(element: SVGElement, point: Point): void;
-}
-
-declare const qboundParts: Parts;
-interface Window {
-  qboundParts: Parts;
-}
-
-/* --- circle ----------------------------------------------------------------------------------- */
-
-interface CirclePicture extends Picture {
-  above: SVGPathElement;
-  line: SVGPathElement;
-  arc: SVGPathElement;
-  proof: SVGPathElement;
-  theorem: SVGPathElement;
-  arrow: SVGPathElement;
-  names: SVGTextElement[];
-  roots: SVGCircleElement[];
-  vector: Handle;
-  cut: Handle;
-  point: Handle;
-}
-
 /* --- switches --------------------------------------------------------------------------------- */
 
 type Reading = "arctan" | "atan2" | "plus";
@@ -119,32 +80,12 @@ interface Lowest {
   q: Pair;
 }
 
-interface ScalePictures {
-  joints: Picture;
-  inside: SVGPathElement;
-  lines: SVGPathElement[];
-  arrows: SVGPathElement[];
-  numbers: SVGTextElement[];
-  dot: SVGCircleElement;
-  plane: PlanePicture;
-  depth: SVGPathElement;
-}
-
 /* --- bodies ----------------------------------------------------------------------------------- */
 
 interface BodyPair {
   frames: number[];
   gap: number;
   shared: Point[];
-}
-
-interface BodyPictures {
-  joints: Picture;
-  dot: Handle;
-  plane: PlanePicture;
-  overlap: SVGPathElement;
-  elbow: Handle;
-  tool: Handle;
 }
 
 /* --- traversals ------------------------------------------------------------------------------- */
@@ -191,30 +132,15 @@ interface Judged {
 
 /* --- live ------------------------------------------------------------------------------------- */
 
-interface LivePlaced {
+interface LiveObstacle {
+  kind: "disc" | "box" | "polygon";
   name: string;
   x: number;
   y: number;
   angle: number;
+  sizes: number[]; // radius, or width and height
+  corners: Point[]; // of a polygon, about x, y, before it is turned
 }
-
-interface LiveDisc extends LivePlaced {
-  kind: "disc";
-  radius: number;
-}
-
-interface LiveBox extends LivePlaced {
-  kind: "box";
-  width: number;
-  height: number;
-}
-
-interface LivePolygon extends LivePlaced {
-  kind: "polygon";
-  corners: Point[]; // about x, y, before it is turned
-}
-
-type LiveObstacle = LiveDisc | LiveBox | LivePolygon;
 
 interface LiveScene {
   lengths: number[];
@@ -277,22 +203,4 @@ interface LiveScale {
 interface LiveOutline {
   fill: string;
   edge: string;
-}
-
-interface LivePictures {
-  square: Picture;
-  whole: Picture;
-  regions: SVGGElement;
-  shadow: SVGPathElement;
-  names: SVGGElement;
-  home: SVGPathElement;
-  dot: Handle;
-  obstacles: SVGGElement;
-  ghost: SVGPathElement;
-  links: SVGLineElement[];
-  spine: SVGPathElement;
-  gap: SVGPathElement;
-  elbow: Handle;
-  tool: Handle;
-  hands: SVGGElement;
 }

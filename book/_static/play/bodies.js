@@ -90,7 +90,7 @@
       canvas("The arm and the outlines of its bodies."),
     ];
     const status = statusLine("");
-    /** @type {BodyPictures} */
+    /** @type {ReturnType<typeof newPictures>} */
     let drawn;
 
     const rows = robot.free.map((j, k) =>
@@ -149,7 +149,7 @@
       update();
     }
 
-    function draw() {
+    function newPictures() {
       const ranges = robot.views.map(({ low, high }) => [low, high]);
       const square = picture(joints.svg, ranges, AROUND, true);
       clear(square);
@@ -166,7 +166,11 @@
         plane.svg,
         make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
       );
-      drawn = { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
+      return { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
+    }
+
+    function draw() {
+      drawn = newPictures();
       update();
     }
 

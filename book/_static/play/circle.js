@@ -49,7 +49,7 @@
     const state = { a: 0, b: 0, c: 0, q: 0, quadrant: false, struck: false };
     const { figure, svg } = canvas("The unit circle, cut by the line a x + b y = c.");
     const status = statusLine(LONGEST);
-    /** @type {CirclePicture} */
+    /** @type {ReturnType<typeof newPicture>} */
     let drawn;
 
     /** @type {(change: Partial<typeof state>) => void} */
@@ -100,7 +100,7 @@
     );
 
     /* Pictures */
-    function draw() {
+    function newPicture() {
       const margin = { left: 4, right: 4, top: 4, bottom: 4 };
       const fitted = picture(
         svg,
@@ -148,7 +148,11 @@
         make("rect", { class: "handle", x: -6, y: -6, width: 12, height: 12 }),
       );
       const point = handle(svg, make("circle", { class: "handle dot", r: 8 }));
-      drawn = { ...fitted, ...parts, vector, cut, point };
+      return { ...fitted, ...parts, vector, cut, point };
+    }
+
+    function draw() {
+      drawn = newPicture();
       update();
     }
 
@@ -265,7 +269,7 @@
 
   /** @type {(cells: HTMLElement[][]) => HTMLElement} */
   function intervalTable(cells) {
-    const { element, make } = qboundEngine;
+    const { element, legendKey } = qboundEngine;
     const names = [
       ["arc wide", "a cos q + b sin q ≥ c"],
       ["proof", "proof, eq. (39)"],
@@ -275,14 +279,7 @@
       element("th", { scope: "col", className: i ? "number" : "" }, text),
     );
     const body = names.map(([name, text], i) => {
-      const key = make("svg", {
-        width: 22,
-        height: 10,
-        viewBox: "0 0 22 10",
-        "aria-hidden": "true",
-      });
-      key.append(make("path", { class: name, d: "M0 5H22" }));
-      const title = element("th", { scope: "row" }, key, text);
+      const title = element("th", { scope: "row" }, legendKey(name, "M0 5H22", 10), text);
       return element("tr", {}, title, ...cells[i]);
     });
     const table = element("table", { className: "intervals" });

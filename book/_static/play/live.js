@@ -1,7 +1,7 @@
 "use strict";
 /* Configuration space, live: an arm among obstacles, and the region of its free poses beside it. */
 {
-  const { DEGREE, LINKS, RANGES, armOf, checked, freeName } = qboundLiveScene;
+  const { DEGREE, LINKS, RANGES, SIZES, armOf, checked, freeName } = qboundLiveScene;
   const { TURN, leastBy, set, sum, wrapped } = qboundEngine;
   const VIEW = 2.1; // metres to each side of the base
   const FINEST = 1200; // columns, however wide the picture
@@ -13,6 +13,19 @@
     "Delete removes it, Control and Z undoes.";
   const JOINT_HELP =
     "Arrow keys turn the joints by one degree, with Shift by ten. H goes to the home pose.";
+
+  /** @template T
+   * @param {T[]} all
+   * @param {number} index
+   * @param {T} value */
+  function replaced(all, index, value) {
+    return all.map((old, i) => (i === index ? value : old));
+  }
+
+  /** @type {(values: number[], factor: number) => number[]} */
+  function larger(values, factor) {
+    return values.map((value) => value * factor);
+  }
 
   /** What there is to say of where link and obstacle touch.
    * @type {(link: number, contact: LiveContact) => string} */
@@ -64,7 +77,7 @@
     /** @type {LiveRegions} */
     let regions;
     let space = qboundLiveSpace.freeSpace(360);
-    /** @type {LivePictures} */
+    /** @type {ReturnType<typeof newPictures>} */
     let drawn;
     /** @type {LiveObstacle[]} */
     let pictured = []; // what the elements of the obstacles show
@@ -105,8 +118,7 @@
     function changeChosen(next, name) {
       const found = checked(next);
       if (chosen === null || !found) return;
-      const obstacles = scene.obstacles.map((old, i) => (i === chosen ? found : old));
-      change({ obstacles }, `${name} ${chosen}`);
+      change({ obstacles: replaced(scene.obstacles, chosen, found) }, `${name} ${chosen}`);
     }
 
     /** @type {(index: number | null) => void} */
@@ -213,7 +225,7 @@
     const degreeRow = { low: -180, high: 180, step: 0.5, digits: 2, unit: "°" };
     const poseRows = [0, 1].map((k) =>
       valueRow({ ...degreeRow, name: `q${"₁₂"[k]}`, spoken: `q${k + 1} in degrees` }, (value) =>
-        move(scene.q.map((old, i) => (i === k ? value * DEGREE : old))),
+        move(replaced(scene.q, k, value * DEGREE)),
       ),
     );
     /** @type {(key: "lengths" | "thicknesses", k: number, name: string, range: number[]) => SetRow} */
@@ -228,8 +240,7 @@
           digits: 3,
           unit: "m",
         },
-        (value) =>
-          change({ [key]: scene[key].map((old, i) => (i === k ? value : old)) }, `${key} ${k}`),
+        (value) => change({ [key]: replaced(scene[key], k, value) }, `${key} ${k}`),
       );
     const armRows = LINKS.map((_, k) => ({
       length: armRow("lengths", k, "length", RANGES.length),
@@ -266,70 +277,59 @@
       fillers.push((now) => {
         name.value = now.name;
       });
+      const { place, size, angle } = RANGES;
       field(
         "x",
         "x in metres",
-        RANGES.place,
-        "m",
-        (now) => now.x,
-        (now, x) => ({ ...now, x }),
+        place,
+        ({ x }) => x,
+        (x) => ({ x }),
       );
       field(
         "y",
         "y in metres",
-        RANGES.place,
-        "m",
-        (now) => now.y,
-        (now, y) => ({ ...now, y }),
+        place,
+        ({ y }) => y,
+        (y) => ({ y }),
       );
-      if (one.kind === "disc")
+      for (const [k, name] of SIZES[one.kind].entries())
         field(
-          "radius",
-          "radius in metres",
-          RANGES.size,
-          "m",
-          (now) => (now.kind === "disc" ? now.radius : 0),
-          (now, radius) => (now.kind === "disc" ? { ...now, radius } : now),
+          name,
+          `${name} in metres`,
+          size,
+          ({ sizes }) => sizes[k],
+          (value, { sizes }) => ({ sizes: replaced(sizes, k, value) }),
         );
-      else
+      if (one.kind !== "disc")
         field(
           "turned",
           "turned by, in degrees",
-          RANGES.angle,
-          "°",
+          angle,
           (now) => now.angle / DEGREE,
-          (now, angle) => ({ ...now, angle: angle * DEGREE }),
+          (value) => ({ angle: value * DEGREE }),
         );
-      if (one.kind === "box")
-        for (const side of /** @type {const} */ (["width", "height"]))
-          field(
-            side,
-            `${side} in metres`,
-            RANGES.size,
-            "m",
-            (now) => (now.kind === "box" ? now[side] : 0),
-            (now, value) => (now.kind === "box" ? { ...now, [side]: value } : now),
-          );
       if (one.kind === "polygon") buildCorners(one);
       fields.append(buttons([`Delete this ${one.kind}`, remove]));
     }
 
-    /** @type {(name: string, spoken: string, range: number[], unit: string, get: (one: LiveObstacle) => number, set: (one: LiveObstacle, value: number) => LiveObstacle) => void} */
-    function field(name, spoken, [low, high], unit, get, set) {
-      const step = unit === "m" ? 0.01 : 1;
-      const row = valueRow(
-        { name, spoken, low, high, step, digits: unit === "m" ? 3 : 1, unit },
-        (value) => {
-          const now = nowChosen();
-          if (now) changeChosen(set(now, value), `field ${name}`);
-        },
-      );
+    /** A field of the chosen obstacle: how to get its value, and what another one changes.
+     * @type {(name: string, spoken: string, range: number[], get: (now: LiveObstacle) => number, set: (value: number, now: LiveObstacle) => Partial<LiveObstacle>) => void} */
+    function field(name, spoken, range, get, set) {
+      const [low, high] = range;
+      const look =
+        range === RANGES.angle
+          ? { step: 1, digits: 1, unit: "°" }
+          : { step: 0.01, digits: 3, unit: "m" };
+      const row = valueRow({ name, spoken, low, high, ...look }, (value) => {
+        const now = nowChosen();
+        if (now) changeChosen({ ...now, ...set(value, now) }, `field ${name}`);
+      });
       fields.append(row.row);
       fillers.push((now) => row.set(get(now)));
     }
 
     /** One corner of the chosen polygon at a time, about the polygon's own place.
-     * @type {(polygon: LivePolygon) => void} */
+     * @type {(polygon: LiveObstacle) => void} */
     function buildCorners({ corners }) {
       const which = element("select", { ariaLabel: "Corner" });
       which.append(
@@ -352,20 +352,14 @@
           `corner ${"xy"[k]}`,
           `${"xy"[k]} of the corner, in metres from the polygon's place`,
           RANGES.corner,
-          "m",
-          (now) => (now.kind === "polygon" ? (now.corners[corner]?.[k] ?? 0) : 0),
-          (now, value) =>
-            withCorner(now, corner, (old) => old.map((v, i) => (i === k ? value : v))),
+          (now) => now.corners[corner]?.[k] ?? 0,
+          (value, { corners: all }) => ({
+            corners: replaced(all, corner, replaced(all[corner], k, value)),
+          }),
         );
       fields.append(
         buttons(["Add a corner after it", () => addCorner()], ["Remove it", () => dropCorner()]),
       );
-    }
-
-    /** @type {(now: LiveObstacle, index: number, to: (old: Point) => Point) => LiveObstacle} */
-    function withCorner(now, index, to) {
-      if (now.kind !== "polygon") return now;
-      return { ...now, corners: now.corners.map((old, i) => (i === index ? to(old) : old)) };
     }
 
     function addCorner() {
@@ -441,7 +435,7 @@
 
     /* --- pictures ------------------------------------------------------------------------------- */
 
-    function build() {
+    function newPictures() {
       const square = picture(
         joints.svg,
         [
@@ -479,7 +473,7 @@
         make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
       );
       const hands = layer(whole, "hands", false);
-      drawn = {
+      return {
         square,
         whole,
         ...layers,
@@ -494,7 +488,12 @@
         tool,
         hands,
       };
-      const pixels = (square.box.right - square.box.left) * (window.devicePixelRatio || 1);
+    }
+
+    function build() {
+      drawn = newPictures();
+      const { left, right } = drawn.square.box;
+      const pixels = (right - left) * (window.devicePixelRatio || 1);
       pictured = [];
       space = qboundLiveSpace.freeSpace(Math.min(FINEST, Math.ceil(pixels)));
       hasNewScene = true;
@@ -684,9 +683,8 @@
         drawn.hands.append(make("path", { class: "turn-line", d: pathText([from, to]) }));
         hand("turn", to);
       }
-      if (one.kind === "disc") hand("size", drawn.whole.at([one.x + one.radius, one.y]));
-      if (one.kind === "box")
-        hand("size", drawn.whole.at(onObstacle(one, [one.width / 2, one.height / 2])));
+      if (one.kind === "disc") hand("size", drawn.whole.at([one.x + one.sizes[0], one.y]));
+      if (one.kind === "box") hand("size", drawn.whole.at(onObstacle(one, larger(one.sizes, 0.5))));
       if (one.kind !== "disc")
         for (const [i, place] of shapes[chosen].points.entries()) {
           const [x, y] = drawn.whole.at(place);
@@ -839,13 +837,10 @@
         changeChosen({ ...one, angle: Math.atan2(y - one.y, x - one.x) }, name);
       else if (part !== "size") {
         corner = Number(part.split(" ")[1]);
-        changeChosen(
-          withCorner(one, corner, () => [a, b]),
-          name,
-        );
-      } else if (one.kind === "disc") changeChosen({ ...one, radius: Math.hypot(a, b) }, name);
+        changeChosen({ ...one, corners: replaced(one.corners, corner, [a, b]) }, name);
+      } else if (one.kind === "disc") changeChosen({ ...one, sizes: [Math.hypot(a, b)] }, name);
       else if (one.kind === "box")
-        changeChosen({ ...one, width: 2 * Math.abs(a), height: 2 * Math.abs(b) }, name);
+        changeChosen({ ...one, sizes: [2 * Math.abs(a), 2 * Math.abs(b)] }, name);
     }
 
     /** @type {(pixel: Point, held: Element | null) => void} */
@@ -875,11 +870,9 @@
     /** @type {(factor: number) => void} */
     function grow(factor) {
       const one = nowChosen();
-      if (one?.kind === "disc") changeChosen({ ...one, radius: one.radius * factor }, "grow");
-      if (one?.kind === "box")
-        changeChosen({ ...one, width: one.width * factor, height: one.height * factor }, "grow");
-      if (one?.kind === "polygon")
-        changeChosen({ ...one, corners: one.corners.map((c) => c.map((v) => v * factor)) }, "grow");
+      if (!one) return;
+      const corners = one.corners.map((at) => larger(at, factor));
+      changeChosen({ ...one, sizes: larger(one.sizes, factor), corners }, "grow");
     }
 
     plane.svg.addEventListener("pointerdown", take);

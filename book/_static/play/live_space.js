@@ -26,22 +26,22 @@ const qboundLiveSpace = (() => {
   /** A shape in the plane: its corners (a disc has one), a radius, and a disc around it all.
    * @type {(obstacle: LiveObstacle) => LiveShape} */
   function placed(obstacle) {
-    const { x, y, angle } = obstacle;
+    const { kind, x, y, angle, sizes } = obstacle;
     const [cos, sin] = turnedBy(angle);
     const points = localCorners(obstacle).map(([a, b]) => [
       x + a * cos - b * sin,
       y + a * sin + b * cos,
     ]);
-    const radius = obstacle.kind === "disc" ? obstacle.radius : 0;
+    const radius = kind === "disc" ? sizes[0] : 0;
     const size = Math.max(...points.map(([a, b]) => Math.hypot(a - x, b - y))) + radius;
     return { points, radius, x, y, size };
   }
 
   /** @type {(obstacle: LiveObstacle) => Point[]} */
-  function localCorners(obstacle) {
-    if (obstacle.kind === "disc") return [[0, 0]];
-    if (obstacle.kind === "polygon") return obstacle.corners;
-    const [a, b] = [obstacle.width / 2, obstacle.height / 2];
+  function localCorners({ kind, sizes, corners }) {
+    if (kind === "disc") return [[0, 0]];
+    if (kind === "polygon") return corners;
+    const [a, b] = sizes.map((value) => value / 2);
     return [
       [-a, -b],
       [a, -b],

@@ -1,8 +1,8 @@
 "use strict";
 /* What the figures that one moves in a chapter share: values to set, words that say what holds. */
-{
-  const { addArm, between, element, isInside, layer, make, newPrefix, number } = qboundEngine;
-  const { pathText, placeArm } = qboundEngine;
+const qboundParts = (() => {
+  const { addArm, between, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
+  const { number, placeArm } = qboundEngine;
 
   /** A value with its name, a slider and a field.
    * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
@@ -124,26 +124,8 @@
     for (const k of [0, 1]) {
       const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
       for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
-        const value = (tickAt * Math.PI) / 180;
-        const [x, y] = drawn.at(k === 0 ? [value, low[1]] : [low[0], value]);
-        const line =
-          k === 0
-            ? [
-                [x, top],
-                [x, bottom],
-              ]
-            : [
-                [left, y],
-                [right, y],
-              ];
-        const at =
-          k === 0
-            ? { x, y: bottom + 15, "text-anchor": "middle" }
-            : { x: left - 6, y: y + 4, "text-anchor": "end" };
-        group.append(
-          make("path", { class: "grid", d: pathText(line) }),
-          make("text", at, `${tickAt}°`.replace("-", "−")),
-        );
+        const text = `${tickAt}°`.replace("-", "−");
+        group.append(...gridLine(drawn, k, (tickAt * Math.PI) / 180, text, bottom + 15));
       }
     }
     group.append(
@@ -215,7 +197,7 @@
     return one.every((value, k) => Math.abs(value - other[k]) < 1e-9);
   }
 
-  window.qboundParts = {
+  return {
     isSame,
     turns,
     regionAt,
@@ -232,4 +214,4 @@
     moveArm,
     moveTo,
   };
-}
+})();

@@ -88,7 +88,7 @@
       canvas("The arm at the lowest point that the tool reaches on the polygon's edges."),
     ];
     const status = statusLine(LONGEST);
-    /** @type {ScalePictures} */
+    /** @type {ReturnType<typeof drawJoints> & ReturnType<typeof drawPlane>} */
     let drawn;
 
     const row = valueRow(

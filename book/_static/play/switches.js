@@ -182,10 +182,8 @@
 
   /** @type {(name: string, text: string) => HTMLLIElement[]} */
   function lineKey(name, text) {
-    const { element, make } = qboundEngine;
-    const key = make("svg", { width: 22, height: 10, viewBox: "0 0 22 10", "aria-hidden": "true" });
-    key.append(make("path", { class: `bound ${name}`, d: "M0 5H22" }));
-    return [element("li", {}, key, text)];
+    const { element, legendKey } = qboundEngine;
+    return [element("li", {}, legendKey(`bound ${name}`, "M0 5H22", 10), text)];
   }
 
   /** @type {FigureKind} */

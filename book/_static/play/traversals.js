@@ -29,9 +29,8 @@
 
   /** The piece of a path on which a fraction of its length lies.
    * @type {(robot: Robot, stops: Pair[], done: number) => number} */
-  function legAt(robot, stops, done) {
-    const [, ...ends] = qboundEngine.stopsAt(robot, stops);
-    return ends.findIndex((end, i) => done <= end + 1e-12 || i === ends.length - 1);
+  function legOf(robot, stops, done) {
+    return qboundEngine.legAt(qboundEngine.pieceLengths(robot, stops), done - 1e-12).leg;
   }
 
   /** The tool's places along a path of straight pieces, up to a fraction of its length.
@@ -79,7 +78,7 @@
   /** @type {(arm: Explorer, trace: Trace, done: number) => void} */
   function drawDone(arm, { way, joints, plane }, done) {
     const { alongPath, pathText } = qboundEngine;
-    const leg = done > 0 ? legAt(arm.robot, way.stops, done) : -1;
+    const leg = done > 0 ? legOf(arm.robot, way.stops, done) : -1;
     const passed = way.stops.slice(0, leg + 1);
     const path = [...passed, alongPath(arm.robot, way.stops, done)];
     joints.setAttribute("d", done > 0 ? pathText(path.map(arm.joints.at)) : "");
@@ -92,7 +91,7 @@
   /** @type {(arm: Explorer, way: Way, done: number) => string} */
   function stageText(arm, way, done) {
     const { determinant, number, toolAt } = qboundEngine;
-    const leg = legAt(arm.robot, way.stops, done);
+    const leg = legOf(arm.robot, way.stops, done);
     const last = way.labels.length - 1;
     const on =
       done >= 1
@@ -257,5 +256,5 @@
     choose(way.name);
   }
 
-  qboundFigures.traversals = Object.assign(show, { waysOf, legAt, toolPath });
+  qboundFigures.traversals = Object.assign(show, { waysOf, legOf, toolPath });
 }

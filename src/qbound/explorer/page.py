@@ -38,7 +38,7 @@ PICTURES: Final = ("drawing.js", "hands.js", "player.js", "joint_space.js", "arm
 ENGINE: Final = (*ARITHMETIC, *PICTURES, "engine.js")
 """What every figure of a page shares."""
 
-EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
+EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "frame.js", "controls.js")
 """What each explorer has for itself: its state, and what shows it."""
 
 SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")

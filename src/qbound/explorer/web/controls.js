@@ -260,25 +260,17 @@ function copyLink() {
 
 /* --- a page of its own ------------------------------------------------------------------------- */
 
-/** The address holds the view. In a frame the page tells its height, and is told whether its
-    surroundings are dark. One that stands in its frame's `srcdoc` (a notebook's output) has no
-    address, and no room elsewhere. */
+/** The address holds the view. A page that stands in its frame's `srcdoc` (a notebook's output) has
+    no address, and no room elsewhere. */
 function ownPage() {
   window.addEventListener("hashchange", () => {
     restore();
     buildShow();
     rebuild();
   });
-  const page = document.documentElement;
   const hasAddress = window.location.protocol !== "about:";
   byId("share").hidden = !hasAddress;
-  if (window.parent === window || !hasAddress) return;
-  page.classList.add("embedded");
-  const tell = () => window.parent.postMessage({ explorerHeight: page.offsetHeight }, "*");
-  new ResizeObserver(tell).observe(document.body);
-  window.addEventListener("message", ({ data }) => {
-    if (["light", "dark"].includes(data?.theme)) page.style.colorScheme = data.theme;
-  });
+  if (hasAddress) answerFrame();
 }
 
 if (options.page) {

@@ -107,6 +107,23 @@ function clear(drawn) {
   drawn.svg.append(clip);
 }
 
+/** A line of the grid and its label, of the axis below (k = 0) or of the one on the left.
+ * @type {(drawn: Picture, k: number, value: number, text: string, below: number, width?: number) => SVGElement[]} */
+function gridLine(drawn, k, value, text, below, width = 0) {
+  const { left, top, right, bottom } = drawn.box;
+  const [x, y] = drawn.at([value, value]);
+  const middle = Math.min(x, drawn.width - 2 - width / 2); // the last stays in the picture
+  return k === 0
+    ? [
+        make("line", { class: "grid", x1: x, x2: x, y1: top, y2: bottom }),
+        make("text", { x: middle, y: below, "text-anchor": "middle" }, text),
+      ]
+    : [
+        make("line", { class: "grid", x1: left, x2: right, y1: y, y2: y }),
+        make("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, text),
+      ];
+}
+
 /** Random poses: round dots where safe (grey where cut off from home), crosses where not.
  * @type {(group: SVGGElement, sample: SamplePose[], place: (one: SamplePose) => Point) => void} */
 function drawMarks(group, sample, place) {
@@ -149,12 +166,6 @@ function thin(names, width) {
   }
 }
 
-/** @type {(value: number, digits: number) => string} */
-function number(value, digits) {
-  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
-  return text.replace("-", "−");
-}
-
 /** @type {Record<string, string>} */
 const LEGEND_SHAPES = {
   singular: "M0 7H22",
@@ -166,13 +177,20 @@ const LEGEND_SHAPES = {
   crosses: "M9 5l4 4m0 -4l-4 4",
 };
 
+/** What a legend shows beside a text.
+ * @type {(name: string, d: string, height?: number) => SVGSVGElement} */
+function legendKey(name, d, height = 14) {
+  const viewBox = `0 0 22 ${height}`;
+  const key = make("svg", { width: 22, height, viewBox, "aria-hidden": "true" });
+  for (const part of name === "workspace twice" ? [0, 1] : [0])
+    key.append(make("path", { class: name, d, "data-part": part }));
+  return key;
+}
+
 /** One line of a legend, or none.
  * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
 function legend(name, text, shows) {
   if (!shows) return [];
-  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
-  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
-  for (const part of name === "workspace twice" ? [0, 1] : [0])
-    key.append(make("path", { class: name, d, "data-part": part }));
+  const key = legendKey(name, LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z");
   return [element("li", {}, key, text)];
 }

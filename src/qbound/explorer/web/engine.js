@@ -3,6 +3,7 @@
 const engine = {
   mount,
   // vectors.js
+  number,
   TURN,
   between,
   wrapped,
@@ -67,9 +68,12 @@ const engine = {
   randomPairs,
   wayTo,
   pieceLengths,
+  legAt,
   stopsAt,
   alongPath,
   // drawing.js
+  gridLine,
+  legendKey,
   make,
   set,
   picture,
@@ -78,7 +82,6 @@ const engine = {
   layer,
   clear,
   handle,
-  number,
   // hands.js
   pixelOf,
   draggable,

@@ -84,17 +84,21 @@ function stopsAt(robot, stops) {
   return stops.map((_, i) => sum(lengths.slice(0, i)) / sum(lengths));
 }
 
+/** On which of so long pieces a fraction of their whole length lies, and the share of that piece.
+ * @type {(lengths: number[], fraction: number) => { leg: number, share: number }} */
+function legAt(lengths, fraction) {
+  let rest = between(fraction, 0, 1) * sum(lengths);
+  let leg = 0;
+  while (leg < lengths.length - 1 && rest > lengths[leg]) {
+    rest -= lengths[leg];
+    leg += 1;
+  }
+  return { leg, share: lengths[leg] > 0 ? Math.min(1, rest / lengths[leg]) : 1 };
+}
+
 /** The place on a path of straight pieces after a fraction of its length.
  * @type {(robot: Robot, stops: Pair[], fraction: number) => Pair} */
 function alongPath(robot, stops, fraction) {
-  const lengths = pieceLengths(robot, stops);
-  let rest = between(fraction, 0, 1) * sum(lengths);
-  for (let i = 0; i < lengths.length; i += 1) {
-    if (rest <= lengths[i] || i === lengths.length - 1) {
-      const share = lengths[i] === 0 ? 1 : Math.min(1, rest / lengths[i]);
-      return stops[i].map((value, k) => value + share * (stops[i + 1][k] - value));
-    }
-    rest -= lengths[i];
-  }
-  return stops[0];
+  const { leg, share } = legAt(pieceLengths(robot, stops), fraction);
+  return stops.length > 1 ? partWay(stops[leg], stops[leg + 1], share) : stops[0];
 }

@@ -31,6 +31,13 @@ function leastBy(all, size) {
   return all[sizes.indexOf(Math.min(...sizes))] ?? null;
 }
 
+/** A number as pages write it, with a minus sign and without a minus zero.
+ * @type {(value: number, digits: number) => string} */
+function number(value, digits) {
+  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
+  return text.replace("-", "−");
+}
+
 /* --- in space --------------------------------------------------------------------------------- */
 
 const IDENTITY = [
