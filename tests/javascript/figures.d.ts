@@ -3,21 +3,6 @@
 
 /* --- parts.js --------------------------------------------------------------------------------- */
 
-interface ValueRow {
-  name: string; // beside the slider
-  spoken: string; // for those who do not see it, with its unit
-  low: number;
-  high: number;
-  step: number; // of the slider; the field takes any number
-  digits: number; // that the field shows
-  unit: string;
-}
-
-interface SetRow {
-  row: HTMLElement;
-  set: (value: number) => void;
-}
-
 interface StatusLine {
   seen: HTMLElement;
   spoken: HTMLElement;

@@ -78,8 +78,8 @@
       qboundEngine;
     const { isSafe, margins, picture, planeBox, project, tightest, viewAxes, wholePicture } =
       qboundEngine;
-    const { withPair, wrapped } = qboundEngine;
-    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine, valueRow } =
+    const { valueRow, withPair, wrapped } = qboundEngine;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine } =
       qboundParts;
     const robot = given;
     const unit = robot.length_unit;

@@ -43,9 +43,8 @@
   /** @type {FigureKind} */
   function show(root) {
     const { between, circleArc, clear, draggable, element, handle, layer, make } = qboundEngine;
-    const { pathText, picture, placeAt, wrapped } = qboundEngine;
-    const { buttons, canvas, degrees, moveTo, statusLine, tick, valueRow, whenWidthChanges } =
-      qboundParts;
+    const { pathText, picture, placeAt, valueRow, wrapped } = qboundEngine;
+    const { buttons, canvas, degrees, moveTo, statusLine, tick, whenWidthChanges } = qboundParts;
     const state = { a: 0, b: 0, c: 0, q: 0, quadrant: false, struck: false };
     const { figure, svg } = canvas("The unit circle, cut by the line a x + b y = c.");
     const status = statusLine(LONGEST);

@@ -54,9 +54,9 @@
   function show(root) {
     const { clear, draggable, element, handle, layer, make, number, onKeys, pathText } =
       qboundEngine;
-    const { CIRCLE, picture, pixelOf, wholePicture } = qboundEngine;
-    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine } = qboundParts;
-    const { valueRow, whenWidthChanges } = qboundParts;
+    const { CIRCLE, picture, pixelOf, valueRow, wholePicture } = qboundEngine;
+    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine, whenWidthChanges } =
+      qboundParts;
 
     /** @type {LiveScene} */
     let scene = qboundLiveScene.START;

@@ -1,41 +1,8 @@
 "use strict";
 /* What the figures that one moves in a chapter share: values to set, words that say what holds. */
 const qboundParts = (() => {
-  const { addArm, between, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
+  const { addArm, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
   const { number, placeArm } = qboundEngine;
-
-  /** A value with its name, a slider and a field.
-   * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
-  function valueRow({ name, spoken, low, high, step, digits, unit }, change) {
-    const limits = { min: String(low), max: String(high) };
-    const slide = element("input", { type: "range", ...limits, step: String(step) });
-    const field = element("input", { type: "number", ...limits, step: "any" });
-    slide.ariaLabel = spoken;
-    field.ariaLabel = `${spoken}, as a number`;
-    let shown = "";
-    let typed = false; // what a reader types stays as it is typed
-    for (const input of [slide, field]) {
-      input.addEventListener("input", () => {
-        const value = Number(input.value);
-        if (input.value === "" || !Number.isFinite(value)) return;
-        typed = input === field;
-        change(between(value, low, high));
-        typed = false;
-      });
-    }
-    field.addEventListener("blur", () => {
-      field.value = shown;
-    });
-    const box = element("span", { className: "unit" }, field, unit);
-    return {
-      row: element("div", { className: "slider" }, element("span", {}, name), slide, box),
-      set(value) {
-        shown = String(Number(value.toFixed(digits)));
-        slide.value = String(value);
-        if (!typed) field.value = shown;
-      },
-    };
-  }
 
   /** A box to tick.
    * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
@@ -201,7 +168,6 @@ const qboundParts = (() => {
     isSame,
     turns,
     regionAt,
-    valueRow,
     tick,
     buttons,
     statusLine,

@@ -69,11 +69,10 @@
   /** @type {FigureKind} */
   function show(root, options, { robot: given }) {
     if (!given?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
-    const { clear, element, layer, make, number, pathText, picture } = qboundEngine;
+    const { clear, element, layer, make, number, pathText, picture, valueRow } = qboundEngine;
     const { placeAt, pointPlaces, project, scaledPolygon, viewAxes, wholePicture, withPair } =
       qboundEngine;
-    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine, valueRow } =
-      qboundParts;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine } = qboundParts;
     const robot = given;
     const { polygon } = given;
     const { vertices, centroid, largest } = polygon;

@@ -33,12 +33,13 @@
       const seen = placeIn(frames[far.frame], far.at).map((value, k) => value - place[k]);
       return placeIn(back, seen).map((value, k) => value - near.at[k]);
     };
-    const [ahead, across, behind] = [0, TURN / 4, TURN / 2].map(vector);
-    return ahead.flatMap((value, k) => {
-      const c = -(value + behind[k]) / 2;
-      const [a, b] = [value + c, across[k] + c];
+    const at = [0, TURN / 3, -TURN / 3];
+    const seen = at.map(vector);
+    return [0, 1, 2].flatMap((k) => {
+      const values = seen.map((one) => one[k]);
+      const [constant, a, b] = qboundEngine.throughThree("revolute", at, values);
       const moves = Math.hypot(a, b) > 1e-9;
-      return moves ? [{ boundary: pair.name, component: k + 1, joint, a, b, c }] : [];
+      return moves ? [{ boundary: pair.name, component: k + 1, joint, a, b, c: -constant }] : [];
     });
   }
 

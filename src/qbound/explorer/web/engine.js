@@ -21,6 +21,7 @@ const engine = {
   // roots.js
   basis,
   basisSlope,
+  throughThree,
   circleArc,
   circleRoots,
   rootsWithin,
@@ -96,6 +97,7 @@ const engine = {
   placeAt,
   // parts.js
   newPrefix,
+  valueRow,
   element,
 };
 window.qboundEngine = engine;

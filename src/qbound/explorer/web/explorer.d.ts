@@ -318,6 +318,24 @@ interface Lit {
   named: Set<number>; // those, and the points of the closest boundary
 }
 
+interface ValueRow {
+  name: string; // beside the slider
+  spoken: string; // for those who do not see it, with its unit
+  low: number;
+  high: number;
+  step: number; // of the slider; the field takes any number
+  digits: number; // that the field shows
+  unit: string;
+  places?: number[]; // that the slider counts
+}
+
+interface SetRow {
+  row: HTMLElement;
+  slide: HTMLInputElement;
+  field: HTMLInputElement;
+  set: (value: number) => void;
+}
+
 interface Player {
   calm: () => boolean; // whether the reader wants no motion
   runs: () => boolean;
