@@ -38,7 +38,7 @@ HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"
 
 WITHOUT_PARTS = {"explorer"}
-"""Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
+"""Kinds that draw without ``parts.js``: buttons, a line that says what holds."""
 
 WITHOUT_EXPLORER = {"live"}
 """Kinds that show no robot of the package and mount no explorer."""

@@ -3,7 +3,7 @@
 {
   const TOUCHING = 1e-9; // of a length: two bodies nearer than this touch
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The outlines of all bodies in the plane of motion.
    * @type {(robot: Robot, q: Pose) => Point[][]} */

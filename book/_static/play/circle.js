@@ -9,7 +9,7 @@
   const LONGEST =
     "Two roots: −100.00° and 100.00°; allowed are the 200.00° between them. Eq. (31) allows 600.00°, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The interval of eq. (31), k = 0: `quadrant` reads its arctangent as atan2, `struck` leaves out
       the -2 pi of its second line. None where the formula has no value.

@@ -1,5 +1,5 @@
 "use strict";
-/* What the figures that one moves in a chapter share: values to set, words that say what holds. */
+/* What the figures that one moves in a chapter share: boxes to tick, words that say what holds. */
 const qboundParts = (() => {
   const { addArm, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
   const { number, placeArm } = qboundEngine;
