@@ -1,7 +1,7 @@
 "use strict";
 /* What the page "Configuration space, live" computes for one step of a drag: two links and ten
-   obstacles, a thousand columns; medians of processor time, by Node. It follows the page's scripts:
-   cat book/_static/play/live_geometry.js book/_static/play/live_fibres.js benchmarks/live.js | node */
+   obstacles, a thousand columns; medians of processor time, by Node. It follows the engine and
+   book/_static/play/live_space.js; README.md has the command. */
 {
   const { process } = /** @type {any} */ (globalThis);
   const COLUMNS = 1000;
@@ -20,9 +20,9 @@
     return Array.from({ length: count }, (_, i) => {
       const [far, way] = [0.75 + (1.1 * i) / count, 2.4 * i];
       const place = { name: "", x: far * Math.cos(way), y: far * Math.sin(way), angle: i };
-      if (i % 3 === 0) return { kind: "disc", ...place, radius: 0.1 };
-      if (i % 3 === 1) return { kind: "box", ...place, width: 0.3, height: 0.2 };
-      return { kind: "polygon", ...place, corners: CORNERS };
+      if (i % 3 === 0) return { kind: "disc", ...place, sizes: [0.1], corners: [] };
+      if (i % 3 === 1) return { kind: "box", ...place, sizes: [0.3, 0.2], corners: [] };
+      return { kind: "polygon", ...place, sizes: [], corners: CORNERS };
     });
   }
 
@@ -30,8 +30,8 @@
    * @type {(space: LiveSpace, arm: LiveArm, shapes: LiveShape[]) => void} */
   function update(space, arm, shapes) {
     const columns = space.columnsOf(arm, shapes);
-    const regions = qboundLiveFibres.components(columns, [0, 0]);
-    qboundLiveFibres.outlines(columns, regions.of, regions.areas.length, SCALE);
+    const regions = qboundLiveSpace.regions(columns, [0, 0]);
+    qboundLiveSpace.outlines(columns, regions.of, regions.areas.length, SCALE);
   }
 
   /** Milliseconds of processor time of a step: the median of many.
@@ -51,18 +51,18 @@
   for (const count of [3, 10, 30]) {
     const arm = { lengths: [1, 0.8], radii: [0.06, 0.05] };
     const all = obstacles(count);
-    let shapes = all.map(qboundLiveGeometry.placed);
-    const space = qboundLiveFibres.freeSpace(COLUMNS);
+    let shapes = all.map(qboundLiveSpace.placed);
+    const space = qboundLiveSpace.freeSpace(COLUMNS);
     update(space, arm, shapes);
     const dragged = (/** @type {number} */ k) => {
-      const moved = qboundLiveGeometry.placed({ ...all[1], x: all[1].x + 0.001 * (k % 300) });
+      const moved = qboundLiveSpace.placed({ ...all[1], x: all[1].x + 0.001 * (k % 300) });
       shapes = shapes.map((shape, i) => (i === 1 ? moved : shape));
       update(space, arm, shapes);
     };
     const longer = (/** @type {number} */ k) =>
       update(space, { ...arm, lengths: [1, 0.8 - 0.001 * (k % 300)] }, shapes);
     const turned = (/** @type {number} */ k) =>
-      qboundLiveGeometry.encounters(arm, shapes, [0.01 * k, 0.02 * k]);
+      qboundLiveSpace.encounters(arm, shapes, [0.01 * k, 0.02 * k]);
     const costs = [cost(dragged, 300), cost(longer, 100), cost(turned, 300)];
     console.log(`| ${[count, ...costs].join(" | ")} |`);
   }

@@ -2,63 +2,40 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-import quickjs
 import shapely
 
 from qbound import find_region
 from qbound.boundary.evaluator import evaluator
-from qbound.explorer.page import ARITHMETIC, engine_script, shorter_script
+from qbound.explorer.page import ENGINE, engine_script, shorter_script, web_text
 from qbound.model.robotfile import parse_robot
+from support.javascript import Script
+from support.play import NO_PAGE
 
 ROOT = Path(__file__).resolve().parents[1]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
 PLAY = ROOT / "book" / "_static" / "play"
-OWN = ("live_geometry", "live_fibres", "live_scene", "live")
+OWN = ("live_space", "live_scene", "live")
 MOST_BYTES = 60_000  # of the page's own script
 NEAR = 1e-9  # m: nearer to contact, rounding decides
-PARAMETERS = """globalThis.URLSearchParams = class {
-  constructor(text = "") {
-    this.all = text.split("&").filter(Boolean).map((word) => {
-      const i = word.indexOf("=");
-      return [word.slice(0, i), decodeURIComponent(word.slice(i + 1).replaceAll("+", " "))];
-    });
-  }
-  get(name) { return this.all.find(([key]) => key === name)?.[1] ?? null; }
-  getAll(name) { return this.all.filter(([key]) => key === name).map(([, value]) => value); }
-  set(name, value) { this.append(name, value); }
-  append(name, value) { this.all.push([name, String(value)]); }
-  toString() {
-    const word = (text) => encodeURIComponent(text).replaceAll("%20", "+");
-    return this.all.map(([key, value]) => `${key}=${word(value)}`).join("&");
-  }
-};"""  # what a browser has, and this engine has not
 
 
 @cache
 def context():
-    found = quickjs.Context()
-    found.eval(PARAMETERS)
-    found.eval("const qboundFigures = {}, qboundEngine = {};")
-    for name in OWN:
-        found.eval((PLAY / f"{name}.js").read_text("utf-8"))
-    found.eval(
-        "const geometry = qboundLiveGeometry, fibres = qboundLiveFibres, made = qboundLiveScene,"
-        " figure = qboundFigures.live;"
+    return Script(
+        NO_PAGE,
+        *map(web_text, ENGINE),
+        *((PLAY / f"{name}.js").read_text("utf-8") for name in OWN),
+        "const space = qboundLiveSpace, made = qboundLiveScene, figure = qboundFigures.live;",
     )
-    return found
 
 
 def js(expression, **values):
-    given = ", ".join(json.dumps(value) for value in values.values())
-    call = f"JSON.stringify((({', '.join(values)}) => {expression})({given}))"
-    return json.loads(context().eval(call))
+    return context()(expression, **values)
 
 
 def obstacle(rng, i):
@@ -66,14 +43,15 @@ def obstacle(rng, i):
     far, way = rng.uniform(0.5, 2), rng.uniform(-np.pi, np.pi)
     found = {"name": f"{i}", "x": far * np.cos(way), "y": far * np.sin(way), "angle": 0}
     kind = ("disc", "box", "polygon")[i % 3]
+    found |= {"kind": kind, "sizes": [], "corners": []}
     if kind == "disc":
-        return found | {"kind": kind, "radius": rng.uniform(0.02, 0.4)}
+        return found | {"sizes": [rng.uniform(0.02, 0.4)]}
     found["angle"] = rng.uniform(-3, 3)
     if kind == "box":
-        return found | {"kind": kind, "width": rng.uniform(0.05, 0.8), "height": 0.3}
+        return found | {"sizes": [rng.uniform(0.05, 0.8), 0.3]}
     at = 2 * np.pi * (np.arange(7) + rng.uniform(0, 0.8, 7)) / 7
     corners = rng.uniform(0.05, 0.4, (7, 1)) * np.column_stack([np.cos(at), np.sin(at)])
-    return found | {"kind": kind, "corners": corners.tolist()}
+    return found | {"corners": corners.tolist()}
 
 
 def scene(seed):
@@ -83,7 +61,7 @@ def scene(seed):
         "radii": rng.uniform(0.01, 0.15, 2).tolist(),
     }
     obstacles = [obstacle(rng, i) for i in range(rng.integers(1, 10))]
-    shapes = js("obstacles.map(geometry.placed)", obstacles=obstacles)
+    shapes = js("obstacles.map(space.placed)", obstacles=obstacles)
     return arm, obstacles, shapes, rng.uniform(-np.pi, np.pi, (300, 2))
 
 
@@ -110,9 +88,9 @@ def holds(intervals, value):
 @pytest.mark.parametrize("seed", range(30))
 def test_forbidden_angles_are_those_at_which_a_link_overlaps_an_obstacle(seed):
     arm, _, shapes, q = scene(seed)
-    windows = js("shapes.map((s) => fibres.forbiddenBy(arm, s, 1).windows)", arm=arm, shapes=shapes)
+    windows = js("shapes.map((s) => space.upperArm(arm, s))", arm=arm, shapes=shapes)
     fibres = js(
-        "q.map(([first]) => shapes.map((s) => fibres.forearm(arm, s, first)))",
+        "q.map(([first]) => shapes.map((s) => space.forearm(arm, s, first)))",
         arm=arm,
         shapes=shapes,
         q=q.tolist(),
@@ -136,7 +114,7 @@ def test_gaps_are_shapelys_and_the_nearest_places_lie_so_far_apart(seed):
     arm, _, shapes, q = scene(seed)
     q = q[:60]
     found = js(
-        "q.map((pair) => geometry.encounters(arm, shapes, pair))",
+        "q.map((pair) => space.encounters(arm, shapes, pair))",
         arm=arm,
         shapes=shapes,
         q=q.tolist(),
@@ -166,8 +144,8 @@ def test_a_pose_that_collides_leaves_through_the_contact_that_is_named(seed):
 
 def pieces(arm, obstacles, home=(0, 0), columns=360):
     return js(
-        "(({ areas, home }) => ({ areas, home }))(fibres.components(fibres.freeSpace(columns)"
-        ".columnsOf(arm, obstacles.map(geometry.placed)), home))",
+        "(({ areas, home }) => ({ areas, home }))(space.regions(space.freeSpace(columns)"
+        ".columnsOf(arm, obstacles.map(space.placed)), home))",
         arm=arm,
         obstacles=obstacles,
         home=home,
@@ -214,7 +192,7 @@ def test_pieces_are_the_components_of_the_librarys_exact_region(seed):
 
 def test_nothing_in_the_way_is_one_piece_and_a_buried_base_none():
     arm = {"lengths": [1, 0.8], "radii": [0.05, 0.05]}
-    disc = {"kind": "disc", "name": "", "x": 0, "y": 0, "angle": 0, "radius": 0.1}
+    disc = {"kind": "disc", "x": 0, "y": 0, "angle": 0, "sizes": [0.1]}
     assert pieces(arm, [])["areas"] == pytest.approx([4 * np.pi**2])
     assert pieces(arm, [disc]) == {"areas": [], "home": False}
     assert len(pieces(arm, [disc | {"x": 3}])["areas"]) == 1
@@ -223,7 +201,7 @@ def test_nothing_in_the_way_is_one_piece_and_a_buried_base_none():
 def test_walls_of_the_upper_arm_cut_the_square_and_home_comes_first():
     """Two discs that only the upper arm meets, on either side: two pieces of known areas."""
     arm = {"lengths": [1, 0.2], "radii": [0.05, 0.05]}
-    disc = {"kind": "disc", "name": "", "y": 0, "angle": 0, "radius": 0.15}
+    disc = {"kind": "disc", "y": 0, "angle": 0, "sizes": [0.15]}
     both = [disc | {"x": 0.5}, disc | {"x": 0, "y": 0.5}]
     half = np.arcsin(0.2 / 0.5)
     small, large = ((np.pi / 2 - 2 * half), (3 * np.pi / 2 - 2 * half))
@@ -236,9 +214,9 @@ def test_walls_of_the_upper_arm_cut_the_square_and_home_comes_first():
 def test_outlines_have_the_area_of_their_pieces():
     arm, obstacles, _, _ = scene(2)
     outlines, areas = js(
-        "((found) => [fibres.outlines(found.columns, found.of, found.areas.length,"
+        "((found) => [space.outlines(found.columns, found.of, found.areas.length,"
         " { x0: 300, dx: 90, y0: 300, dy: -90 }), found.areas])"
-        "(fibres.components(fibres.freeSpace(700).columnsOf(arm, obstacles.map(geometry.placed)),"
+        "(space.regions(space.freeSpace(700).columnsOf(arm, obstacles.map(space.placed)),"
         " [0, 0]))",
         arm=arm,
         obstacles=obstacles,
@@ -271,8 +249,8 @@ def test_a_link_restores_the_scene(seed):
     first = js("made.sceneOf(made.textOf(scene))", scene=told(seed))
     assert js("made.sceneOf(made.textOf(scene))", scene=first) == first
     assert [one["name"] for one in first["obstacles"]] == list(NAMES[: len(first["obstacles"])])
-    given = js("obstacles.map(geometry.placed)", obstacles=told(seed)["obstacles"])
-    found = js("obstacles.map(geometry.placed)", obstacles=first["obstacles"])
+    given = js("obstacles.map(space.placed)", obstacles=told(seed)["obstacles"])
+    found = js("obstacles.map(space.placed)", obstacles=first["obstacles"])
     for one, other in zip(given, found, strict=True):
         assert np.allclose(one["points"], other["points"], atol=3e-4)
 
@@ -287,6 +265,7 @@ def test_a_link_restores_the_scene(seed):
         ("arm=1,1,0.1,0.1&home=0,Infinity", None),
         ("arm=9,1,0.1,0&home=0,720", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=disc 1,1,0,-5 x&o=disc 1,1,0 x&o=ball 1,1,0,1 x", 1),
+        ("arm=1,1,0.1,0.1&home=0,0&o=constructor 1,1,0,1 x&o=toString 1,1,0 x", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=polygon 0,0,0,-1,-1,1,1,1,-1,-1,1 x", 0),
         ("arm=1,1,0.1,0.1&home=0,0&o=polygon 0,0,0,-1,-1,1,1 x&o=box 1,1,0,,1 x&o= x", 0),
     ],
@@ -325,7 +304,7 @@ def test_the_robot_file_is_the_scene(seed):
         (part,) = robot.body(name).parts
         assert np.allclose(part.corners, [[0, 0, 0], [given["lengths"][k], 0, 0]])
         assert part.radius == given["thicknesses"][k] / 2
-    shapes = js("obstacles.map(geometry.placed)", obstacles=given["obstacles"])
+    shapes = js("obstacles.map(space.placed)", obstacles=given["obstacles"])
     for shape, body in zip(shapes, robot.obstacles, strict=True):
         if len(shape["points"]) == 1:
             (part,) = body.parts
@@ -345,8 +324,8 @@ def test_poses_of_the_page_have_the_librarys_margins(seed):
     robot = parse_robot(tomllib.loads(js("made.robotFile(scene)", scene=given)))
     q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (1000, 2))
     found = js(
-        "q.map((pair) => geometry.encounters(made.armOf(scene),"
-        " scene.obstacles.map(geometry.placed), pair).map((one) => one.gap))",
+        "q.map((pair) => space.encounters(made.armOf(scene),"
+        " scene.obstacles.map(space.placed), pair).map((one) => one.gap))",
         scene=given,
         q=q.tolist(),
     )
@@ -369,9 +348,9 @@ def test_the_tool_reaches_where_it_is_dragged_bent_as_before():
     ):
         place = far * np.array([np.cos(way), np.sin(way)])
         found = js(
-            "figure.poseAt(arm, pair, place)", arm=arm, pair=pair.tolist(), place=place.tolist()
+            "space.poseAt(arm, pair, place)", arm=arm, pair=pair.tolist(), place=place.tolist()
         )
-        tip = js("geometry.jointPlaces(arm, q)[2]", arm=arm, q=found)
+        tip = js("space.jointPlaces(arm, q)[2]", arm=arm, q=found)
         assert np.hypot(*tip) == pytest.approx(np.clip(far, 0.2, 1.8))
         assert np.cross([*tip, 0], [*place, 0])[2] == pytest.approx(0, abs=1e-9)
         assert np.sign(np.sin(found[1])) in (0, np.sign(np.sin(pair[1])))
@@ -383,11 +362,8 @@ def test_the_page_has_at_most_60_kilobytes_of_its_own_script():
 
 
 def test_an_engine_without_explorers_has_everything_else():
-    context = quickjs.Context()
-    context.eval("globalThis.window = globalThis;")
-    context.eval(engine_script(explorer=False))
-    names = set(json.loads(context.eval("JSON.stringify(Object.keys(qboundEngine))")))
+    script = Script("globalThis.window = globalThis;", engine_script(explorer=False))
+    names = set(script("Object.keys(qboundEngine)"))
     assert {"picture", "draggable", "onKeys", "framesOf"} <= names
-    assert context.eval("qboundEngine.mount === null")
+    assert script("qboundEngine.mount === null")
     assert len(engine_script(explorer=False)) < 0.7 * len(engine_script())
-    assert all((WEB / name).exists() for name in ARITHMETIC)

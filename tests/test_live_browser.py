@@ -12,7 +12,7 @@ from qbound.explorer.page import engine_script, engine_style, shorter_script
 from support.browser import broken_rules, drag, eventually, rules_in, settle
 
 PLAY = Path(__file__).resolve().parents[1] / "book" / "_static" / "play"
-SCRIPTS = ("parts", "live_geometry", "live_fibres", "live_scene", "live", "play")
+SCRIPTS = ("parts", "live_space", "live_scene", "live", "play")
 WIDTHS = {"wide screen": 1100, "phone": 360}
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Live</title>
 <meta name="viewport" content="width=device-width">

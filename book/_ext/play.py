@@ -38,12 +38,12 @@ HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"
 
 WITHOUT_PARTS = {"explorer"}
-"""Kinds that draw without ``parts.js``: rows of values, a line that says what holds."""
+"""Kinds that draw without ``parts.js``: buttons, a line that says what holds."""
 
 WITHOUT_EXPLORER = {"live"}
 """Kinds that show no robot of the package and mount no explorer."""
 
-SCRIPTS_BEFORE = {"live": ("live_geometry", "live_fibres", "live_scene")}
+SCRIPTS_BEFORE = {"live": ("live_space", "live_scene")}
 """What stands before a kind's own script, in order."""
 
 LOGGER = logging.getLogger(__name__)

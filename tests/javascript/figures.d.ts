@@ -3,21 +3,6 @@
 
 /* --- parts.js --------------------------------------------------------------------------------- */
 
-interface ValueRow {
-  name: string; // beside the slider
-  spoken: string; // for those who do not see it, with its unit
-  low: number;
-  high: number;
-  step: number; // of the slider; the field takes any number
-  digits: number; // that the field shows
-  unit: string;
-}
-
-interface SetRow {
-  row: HTMLElement;
-  set: (value: number) => void;
-}
-
 interface StatusLine {
   seen: HTMLElement;
   spoken: HTMLElement;
@@ -25,53 +10,6 @@ interface StatusLine {
 }
 
 type Press = [string, () => void]; // a button's words, and what it does
-
-interface Parts {
-  isSame(one: Pair, other: Pair): boolean;
-  turns(robot: Robot): Pair[];
-  regionAt(robot: Robot, pair: Pair): number | null;
-  valueRow(value: ValueRow, change: (value: number) => void): SetRow;
-  tick(text: string, checked: boolean, change: (checked: boolean) => void): HTMLLabelElement;
-  buttons(...all: [string, () => void][]): HTMLParagraphElement;
-  statusLine(longest: string): StatusLine;
-  canvas(label: string): { figure: HTMLElement; svg: SVGSVGElement };
-  whenWidthChanges(watched: HTMLElement, draw: () => void): void;
-  degrees(angle: number, digits?: number): string;
-  AROUND: Picture["box"];
-  jointAxes(drawn: Picture, step: number): void;
-  armParts(robot: Robot, drawn: Picture): PlanePicture;
-  moveArm(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>): void;
-  moveTo(element: SVGElement, point: Point): void;
-}
-
-declare const qboundParts: Parts;
-interface Window {
-  qboundParts: Parts;
-}
-
-/* --- circle ----------------------------------------------------------------------------------- */
-
-interface TheoremTwo {
-  d: number;
-  theta: number;
-  alpha: number;
-  count: number; // of roots; -1: every angle is one
-  empty: boolean; // no angle satisfies the inequality
-}
-
-interface CirclePicture extends Picture {
-  above: SVGPathElement;
-  line: SVGPathElement;
-  arc: SVGPathElement;
-  proof: SVGPathElement;
-  theorem: SVGPathElement;
-  arrow: SVGPathElement;
-  names: SVGTextElement[];
-  roots: SVGCircleElement[];
-  vector: Handle;
-  cut: Handle;
-  point: Handle;
-}
 
 /* --- switches --------------------------------------------------------------------------------- */
 
@@ -127,32 +65,12 @@ interface Lowest {
   q: Pair;
 }
 
-interface ScalePictures {
-  joints: Picture;
-  inside: SVGPathElement;
-  lines: SVGPathElement[];
-  arrows: SVGPathElement[];
-  numbers: SVGTextElement[];
-  dot: SVGCircleElement;
-  plane: PlanePicture;
-  depth: SVGPathElement;
-}
-
 /* --- bodies ----------------------------------------------------------------------------------- */
 
 interface BodyPair {
   frames: number[];
   gap: number;
   shared: Point[];
-}
-
-interface BodyPictures {
-  joints: Picture;
-  dot: Handle;
-  plane: PlanePicture;
-  overlap: SVGPathElement;
-  elbow: Handle;
-  tool: Handle;
 }
 
 /* --- traversals ------------------------------------------------------------------------------- */
@@ -167,14 +85,6 @@ interface Trace {
   way: Way;
   joints: SVGPathElement; // as far as it is done
   plane: SVGPathElement;
-}
-
-interface Player {
-  calm: () => boolean;
-  runs: () => boolean;
-  stop: () => void;
-  go: (done: number) => void;
-  play: (seconds: number, places: number[], loops?: boolean) => void;
 }
 
 /* --- regions ---------------------------------------------------------------------------------- */
@@ -207,30 +117,15 @@ interface Judged {
 
 /* --- live ------------------------------------------------------------------------------------- */
 
-interface LivePlaced {
+interface LiveObstacle {
+  kind: "disc" | "box" | "polygon";
   name: string;
   x: number;
   y: number;
   angle: number;
+  sizes: number[]; // radius, or width and height
+  corners: Point[]; // of a polygon, about x, y, before it is turned
 }
-
-interface LiveDisc extends LivePlaced {
-  kind: "disc";
-  radius: number;
-}
-
-interface LiveBox extends LivePlaced {
-  kind: "box";
-  width: number;
-  height: number;
-}
-
-interface LivePolygon extends LivePlaced {
-  kind: "polygon";
-  corners: Point[]; // about x, y, before it is turned
-}
-
-type LiveObstacle = LiveDisc | LiveBox | LivePolygon;
 
 interface LiveScene {
   lengths: number[];
@@ -272,17 +167,12 @@ interface LiveForbidden {
   critical: number[]; // q1 at which the number of those intervals changes
 }
 
-interface LiveColumn {
-  q: number;
-  free: number[]; // pairs of ends
-}
-
 interface LiveSpace {
-  columnsOf(arm: LiveArm, shapes: LiveShape[]): LiveColumn[];
+  columnsOf(arm: LiveArm, shapes: LiveShape[]): Column[];
 }
 
 interface LiveRegions {
-  columns: LiveColumn[];
+  columns: Column[];
   home: boolean; // whether home is free; its component is the first
   areas: number[];
   of: number[][]; // of each interval of each column its component; -1: too small
@@ -295,39 +185,7 @@ interface LiveScale {
   dy: number;
 }
 
-interface LiveLine {
-  kept: number[];
-  add(x: number, y: number): void;
-  end(): void;
-}
-
-interface LiveStrip {
-  number: number;
-  lower: LiveLine;
-  upper: LiveLine;
-  cutLow: boolean;
-  cutHigh: boolean;
-}
-
 interface LiveOutline {
   fill: string;
   edge: string;
-}
-
-interface LivePictures {
-  square: Picture;
-  whole: Picture;
-  regions: SVGGElement;
-  shadow: SVGPathElement;
-  names: SVGGElement;
-  home: SVGPathElement;
-  dot: Handle;
-  obstacles: SVGGElement;
-  ghost: SVGPathElement;
-  links: SVGLineElement[];
-  spine: SVGPathElement;
-  gap: SVGPathElement;
-  elbow: Handle;
-  tool: Handle;
-  hands: SVGGElement;
 }

@@ -1,4 +1,4 @@
-"""A figure that a reader moves: a page with it alone, and its arithmetic in a JavaScript engine."""
+"""A figure that a reader moves: a page with it alone, and its arithmetic in Node."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import quickjs
 
 from lizarraga2025 import closed_form
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ARITHMETIC, engine_script, engine_style
+from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
+from support.javascript import Script
 
 ROOT = Path(__file__).resolve().parents[2]
-WEB = ROOT / "src" / "qbound" / "explorer" / "web"
 PLAY = ROOT / "book" / "_static" / "play"
 PAPER = "minervabot-v2"
 WIDTHS = {"wide screen": 900, "phone": 340}
@@ -32,10 +31,7 @@ body {{ background: light-dark(#fff, #12181b); margin: 8px }}
 KEEP = (
     "const mount = qboundEngine.mount; qboundEngine.mount = (...a) => (window.arm = mount(...a));"
 )
-ENGINE = """const window = globalThis, qboundFigures = {}, qboundEngine = { alongPath, alongSecond,
-  armOf, basis, determinant, evaluate, framesOf, margins, mirroredPose, pieceLengths, placeIn,
-  pointPlaces, possible, project, restrict, rootsWithin, scaledPolygon, toolAt, toolMap, viewAxes,
-  withPair };"""
+NO_PAGE = "const window = globalThis, mount = null;"
 
 
 @cache
@@ -82,28 +78,20 @@ def open_play(open_quietly: Callable[..., Any], tmp_path: Path) -> Callable[...,
     return open_one
 
 
-# --- in an engine ---------------------------------------------------------------------------------
+# --- in Node --------------------------------------------------------------------------------------
 
 
-class Kind:
-    """The arithmetic of one kind of figure, called with JSON."""
+class Kind(Script):
+    """The arithmetic of one kind of figure, and the robot that it shows."""
 
     def __init__(self, name: str, rule: str = "clearance", robot: str = PAPER) -> None:
-        self.region = region(rule, robot)
-        self.context = quickjs.Context()
-        for script in (*ARITHMETIC, "arm.js"):
-            self.context.eval((WEB / script).read_text("utf-8"))
-        self.context.eval(ENGINE)
-        for script in ("parts", name):
-            self.context.eval((PLAY / f"{script}.js").read_text("utf-8"))
-        self.context.eval(f"const robot = {data(rule, robot)}, kind = qboundFigures.{name};")
-
-    def __call__(self, expression: str, **values: Any) -> Any:
-        names = ", ".join(values)
-        json_values = ", ".join(json.dumps(value) for value in values.values())
-        return json.loads(
-            self.context.eval(f"JSON.stringify((({names}) => {expression})({json_values}))")
+        super().__init__(
+            NO_PAGE,
+            *map(web_text, ENGINE),
+            *((PLAY / f"{script}.js").read_text("utf-8") for script in ("parts", name)),
+            f"const robot = {data(rule, robot)}, kind = qboundFigures.{name};",
         )
+        self.region = region(rule, robot)
 
 
 kind = cache(Kind)

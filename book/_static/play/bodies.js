@@ -3,7 +3,7 @@
 {
   const TOUCHING = 1e-9; // of a length: two bodies nearer than this touch
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The outlines of all bodies in the plane of motion.
    * @type {(robot: Robot, q: Pose) => Point[][]} */
@@ -17,69 +17,21 @@
 
   /** @type {(corners: Point[]) => Point[]} */
   function anticlockwise(corners) {
-    return area(corners) < 0 ? [...corners].reverse() : corners;
-  }
-
-  /** @type {(corners: Point[]) => number} */
-  function area(corners) {
-    return corners.reduce((total, [x, y], i) => {
-      const [nextX, nextY] = corners[(i + 1) % corners.length];
-      return total + (x * nextY - nextX * y) / 2;
-    }, 0);
-  }
-
-  /** How far a point lies on the outer side of the line from a to b.
-   * @type {(a: Point, b: Point, p: Point) => number} */
-  function beyond(a, b, p) {
-    const [x, y] = [b[0] - a[0], b[1] - a[1]];
-    return ((p[0] - a[0]) * y - (p[1] - a[1]) * x) / Math.hypot(x, y);
+    return qboundEngine.area(corners) < 0 ? [...corners].reverse() : corners;
   }
 
   /** What two convex outlines share (Sutherland and Hodgman); no corners where nothing.
    * @type {(one: Point[], other: Point[]) => Point[]} */
   function shared(one, other) {
-    return other.reduce((corners, a, i) => {
-      const b = other[(i + 1) % other.length];
-      return corners.flatMap((p, j) => {
-        const r = corners[(j + 1) % corners.length];
-        const [from, to] = [beyond(a, b, p), beyond(a, b, r)];
-        const share = from / (from - to);
-        const cut = [p[0] + share * (r[0] - p[0]), p[1] + share * (r[1] - p[1])];
-        return [...(from <= 0 ? [p] : []), ...(from <= 0 !== to <= 0 ? [cut] : [])];
-      });
+    const { cross, crossing, minus, sides } = qboundEngine;
+    return sides(other).reduce((corners, [a, b]) => {
+      /** @type {Side} */
+      const side = (p) => cross(minus(p, a), minus(b, a)); // positive outside
+      return sides(corners).flatMap(([p, r]) => [
+        ...(side(p) <= 0 ? [p] : []),
+        ...crossing(p, r, side),
+      ]);
     }, one);
-  }
-
-  /** How far two convex outlines are apart; where they overlap, minus the shortest way out
-      (separating axes, as qbound.measures.bodies.gap).
-   * @type {(one: Point[], other: Point[]) => number} */
-  function gap(one, other) {
-    const depth = Math.max(pastEdges(one, other), pastEdges(other, one));
-    if (depth <= 0) return depth;
-    return Math.min(nearestCorner(one, other), nearestCorner(other, one));
-  }
-
-  /** @type {(one: Point[], other: Point[]) => number} */
-  function pastEdges(one, other) {
-    const sides = one.map((a, i) =>
-      Math.min(...other.map((p) => beyond(a, one[(i + 1) % one.length], p))),
-    );
-    return Math.max(...sides);
-  }
-
-  /** @type {(one: Point[], other: Point[]) => number} */
-  function nearestCorner(one, other) {
-    return Math.min(
-      ...one.flatMap(([ax, ay], i) => {
-        const [bx, by] = one[(i + 1) % one.length];
-        const [x, y] = [bx - ax, by - ay];
-        return other.map(([px, py]) => {
-          const t = ((px - ax) * x + (py - ay) * y) / (x * x + y * y);
-          const share = Math.min(1, Math.max(0, t));
-          return Math.hypot(ax + share * x - px, ay + share * y - py);
-        });
-      }),
-    );
   }
 
   /** Every pair of bodies: its frames, its gap and what it shares.
@@ -89,7 +41,7 @@
     return placed.flatMap((one, i) =>
       placed.slice(i + 1).map((other, k) => ({
         frames: [robot.bodies[i].frame, robot.bodies[i + 1 + k].frame],
-        gap: gap(one, other),
+        gap: qboundEngine.encounter(one, other).distance,
         shared: shared(one, other),
       })),
     );
@@ -99,23 +51,21 @@
       the tool.
    * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
   function turnedToward(robot, q, [joint, next], target) {
-    const { framesOf, pointPlaces, project, viewAxes } = qboundEngine;
+    const { angle, framesOf, minus, pointPlaces, project, viewAxes, wrapped } = qboundEngine;
     /** The angle about the joint from what it carries to the target.
      * @type {(pose: Pose) => number} */
-    const angle = (pose) => {
+    const turn = (pose) => {
       const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
       const tool = pointPlaces(robot, pose)[robot.tool];
-      const [x, y] = project(axes, frames[joint + 1].place);
-      const [u, v] = project(axes, next === undefined ? tool : frames[next + 1].place);
-      const [a, b] = [u - x, v - y];
-      const [c, d] = [target[0] - x, target[1] - y];
-      return Math.atan2(a * d - b * c, a * c + b * d);
+      const at = project(axes, frames[joint + 1].place);
+      const carried = project(axes, next === undefined ? tool : frames[next + 1].place);
+      return wrapped(angle(minus(target, at)) - angle(minus(carried, at)));
     };
     /** @type {(change: number) => Pose} */
     const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
-    const rest = angle(q);
+    const rest = turn(q);
     const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
-    return Math.abs(angle(one)) <= Math.abs(angle(other)) ? one : other;
+    return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
   }
 
   /* --- the figure ------------------------------------------------------------------------------- */
@@ -126,9 +76,10 @@
       throw new Error("This figure needs a robot with bodies.");
     const { clear, draggable, element, framesOf, handle, layer, make, number, pathText } =
       qboundEngine;
-    const { isSafe, margins, picture, planeBox, project, tightest, viewAxes, withPair } =
+    const { isSafe, margins, picture, planeBox, project, tightest, viewAxes, wholePicture } =
       qboundEngine;
-    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine, valueRow } =
+    const { valueRow, withPair, wrapped } = qboundEngine;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine } =
       qboundParts;
     const robot = given;
     const unit = robot.length_unit;
@@ -139,7 +90,7 @@
       canvas("The arm and the outlines of its bodies."),
     ];
     const status = statusLine("");
-    /** @type {BodyPictures} */
+    /** @type {ReturnType<typeof newPictures>} */
     let drawn;
 
     const rows = robot.free.map((j, k) =>
@@ -194,28 +145,18 @@
 
     /** @type {(q: Pose) => void} */
     function set(q) {
-      state.q = q.map((value) => value - 2 * Math.PI * Math.round(value / (2 * Math.PI)));
+      state.q = q.map((value) => wrapped(value));
       update();
     }
 
-    function draw() {
+    function newPictures() {
       const ranges = robot.views.map(({ low, high }) => [low, high]);
       const square = picture(joints.svg, ranges, AROUND, true);
       clear(square);
       jointAxes(square, 90);
       drawRegions(square);
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
-      const fitted = picture(
-        plane.svg,
-        planeBox(robot),
-        { left: 8, right: 8, top: 8, bottom: 8 },
-        true,
-      );
-      const whole = {
-        ...fitted,
-        box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
-      };
-      clear(whole);
+      const whole = wholePicture(plane.svg, planeBox(robot));
       const [, ground] = whole.at([0, 0]);
       plane.svg.append(make("path", { class: "wall", d: `M0 ${ground}H${whole.width}` }));
       const arm = armParts(robot, whole);
@@ -225,7 +166,11 @@
         plane.svg,
         make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
       );
-      drawn = { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
+      return { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
+    }
+
+    function draw() {
+      drawn = newPictures();
       update();
     }
 
@@ -314,8 +259,6 @@
 
   qboundFigures.bodies = Object.assign(show, {
     outlines,
-    area,
-    gap,
     shared,
     bodyPairs,
     turnedToward,

@@ -2,8 +2,6 @@
 /* Theorem 2: where a cos q + b sin q reaches c on the circle, and what eq. (31) says of it. */
 {
   const TURN = 2 * Math.PI;
-  const TANGENT = 4 * 2 ** -52; // qbound.tolerances, as the next one
-  const NO_AMPLITUDE = 2 ** -40;
   const OPENS = [-1.5, 12.41, -7.5]; // the first component of B2, in cm
   const ARROW = 16; // length of the vector (a, b) that is drawn as long as the radius
   const MOST = 20; // largest size of a coefficient that the sliders reach
@@ -11,26 +9,13 @@
   const LONGEST =
     "Two roots: −100.00° and 100.00°; allowed are the 200.00° between them. Eq. (31) allows 600.00°, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
-
-  /** The arc where a cos q + b sin q >= c, as qbound.circle_arc and qbound.circle_roots find it.
-   * @type {(a: number, b: number, c: number) => TheoremTwo} */
-  function theorem(a, b, c) {
-    const d = Math.hypot(a, b);
-    const ratio = d > NO_AMPLITUDE * Math.abs(c) ? c / d : Math.sign(c) / NO_AMPLITUDE;
-    const touches = Math.abs(Math.abs(ratio) - 1) <= TANGENT;
-    const cosine = touches ? Math.sign(ratio) : Math.min(1, Math.max(-1, ratio));
-    const everywhere = a === 0 && b === 0 && c === 0;
-    const count = everywhere ? -1 : touches ? 1 : Math.abs(ratio) < 1 ? 2 : 0;
-    const alpha = everywhere ? Math.PI : Math.acos(cosine);
-    return { d, theta: Math.atan2(b, a), alpha, count, empty: count === 0 && c > 0 };
-  }
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The interval of eq. (31), k = 0: `quadrant` reads its arctangent as atan2, `struck` leaves out
       the -2 pi of its second line. None where the formula has no value.
    * @type {(a: number, b: number, c: number, quadrant: boolean, struck: boolean) => Pair | null} */
   function printed(a, b, c, quadrant, struck) {
-    const { alpha, count } = theorem(a, b, c);
+    const { alpha, count } = qboundEngine.circleArc(a, b, c);
     if (count < 1 || (a === 0 && !quadrant)) return null;
     const theta = quadrant ? Math.atan2(b, a) : Math.atan(b / a);
     return [theta - alpha - (struck ? 0 : TURN), theta + alpha];
@@ -57,13 +42,13 @@
 
   /** @type {FigureKind} */
   function show(root) {
-    const { clear, draggable, element, handle, layer, make, pathText, picture } = qboundEngine;
-    const { buttons, canvas, degrees, moveTo, statusLine, tick, valueRow, whenWidthChanges } =
-      qboundParts;
+    const { between, circleArc, clear, draggable, element, handle, layer, make } = qboundEngine;
+    const { pathText, picture, placeAt, valueRow, wrapped } = qboundEngine;
+    const { buttons, canvas, degrees, moveTo, statusLine, tick, whenWidthChanges } = qboundParts;
     const state = { a: 0, b: 0, c: 0, q: 0, quadrant: false, struck: false };
     const { figure, svg } = canvas("The unit circle, cut by the line a x + b y = c.");
     const status = statusLine(LONGEST);
-    /** @type {CirclePicture} */
+    /** @type {ReturnType<typeof newPicture>} */
     let drawn;
 
     /** @type {(change: Partial<typeof state>) => void} */
@@ -114,7 +99,7 @@
     );
 
     /* Pictures */
-    function draw() {
+    function newPicture() {
       const margin = { left: 4, right: 4, top: 4, bottom: 4 };
       const fitted = picture(
         svg,
@@ -162,17 +147,21 @@
         make("rect", { class: "handle", x: -6, y: -6, width: 12, height: 12 }),
       );
       const point = handle(svg, make("circle", { class: "handle dot", r: 8 }));
-      drawn = { ...fitted, ...parts, vector, cut, point };
+      return { ...fitted, ...parts, vector, cut, point };
+    }
+
+    function draw() {
+      drawn = newPicture();
       update();
     }
 
     function update() {
       if (!drawn) return;
       const { a, b, c, q, quadrant, struck } = state;
-      const found = theorem(a, b, c);
+      const found = circleArc(a, b, c);
       const { d, theta, alpha, count, empty } = found;
       const [ux, uy] = [Math.cos(theta), Math.sin(theta)];
-      const height = d > 0 ? Math.min(1.7, Math.max(-1.7, c / d)) : c > 0 ? 1.7 : -1.7;
+      const height = d > 0 ? between(c / d, -1.7, 1.7) : c > 0 ? 1.7 : -1.7;
       /** The point at so many radii along (a, b) and across.
        * @type {(along: number, across: number) => Point} */
       const at = (along, across) => drawn.at([along * ux - across * uy, along * uy + across * ux]);
@@ -191,14 +180,14 @@
       const ends = [theta - alpha, theta + alpha];
       for (const [i, root] of drawn.roots.entries()) {
         root.toggleAttribute("hidden", count < 1);
-        place(root, drawn.at([Math.cos(ends[i]), Math.sin(ends[i])]), "c");
+        placeAt(root, drawn.at([Math.cos(ends[i]), Math.sin(ends[i])]), "c");
         drawn.names[i].toggleAttribute("hidden", count < 2);
-        place(drawn.names[i], drawn.at([0.78 * Math.cos(ends[i]), 0.78 * Math.sin(ends[i])]));
+        placeAt(drawn.names[i], drawn.at([0.78 * Math.cos(ends[i]), 0.78 * Math.sin(ends[i])]));
       }
-      place(drawn.names[2], at((0.55 * d) / ARROW, 0.24)); // beside the arrow: around its tip are arcs
+      placeAt(drawn.names[2], at((0.55 * d) / ARROW, 0.24)); // beside the arrow: around its tip are arcs
       const lean = 90 - (theta * 180) / Math.PI; // of the line, so that its name is not upside down
       const [lineX, lineY] = at(height - (uy < 0 ? -0.12 : 0.2), uy < 0 ? -0.1 : 0.1);
-      place(drawn.names[3], [lineX, lineY]);
+      placeAt(drawn.names[3], [lineX, lineY]);
       const turned = lean - 180 * Math.round(lean / 180);
       drawn.names[3].setAttribute("transform", `rotate(${turned} ${lineX} ${lineY})`);
       const inside = a * Math.cos(q) + b * Math.sin(q) >= c;
@@ -210,7 +199,7 @@
       rows.a.set(a);
       rows.b.set(b);
       rows.c.set(c);
-      rows.q.set((Math.atan2(Math.sin(q), Math.cos(q)) * 180) / Math.PI);
+      rows.q.set((wrapped(q) * 180) / Math.PI);
       const own = empty ? null : all ? [-Math.PI, Math.PI] : ends;
       for (const [i, one] of [own, proof, interval].entries()) fill(cells[i], one);
       status.say(`${rootsText(found, c)} ${printedText(found, interval)}`, !inside);
@@ -230,13 +219,13 @@
       const d = Math.hypot(a, b);
       if (held === drawn.vector.room) {
         const cut = (/** @type {number} */ value) =>
-          Math.round(100 * Math.min(MOST, Math.max(-MOST, value))) / 100;
+          Math.round(100 * between(value, -MOST, MOST)) / 100;
         set({ a: cut(ARROW * x), b: cut(ARROW * y) });
       } else if (held === drawn.cut.room) {
         if (d === 0) return;
         const c = Math.round(100 * (a * x + b * y)) / 100;
         const near = Math.abs(Math.abs(c) - d) < 0.03 * d; // the tangent cannot be hit by hand
-        set({ c: near ? Math.sign(c) * d : Math.min(MOST, Math.max(-MOST, c)) });
+        set({ c: near ? Math.sign(c) * d : between(c, -MOST, MOST) });
       } else {
         set({ q: Math.atan2(y, x) });
       }
@@ -244,7 +233,7 @@
     opening();
     whenWidthChanges(figure, draw);
 
-    /** @type {(found: TheoremTwo, c: number) => string} */
+    /** @type {(found: CircleArc, c: number) => string} */
     function rootsText({ d, theta, alpha, count, empty }, c) {
       if (count === -1) return "a = b = c = 0: every angle is a root.";
       if (d === 0)
@@ -261,7 +250,7 @@
       return `Two roots: ${low} and ${degrees(theta + alpha, 2)}; allowed are the ${degrees(2 * alpha, 2)} between them.`;
     }
 
-    /** @type {(found: TheoremTwo, interval: Pair | null) => string} */
+    /** @type {(found: CircleArc, interval: Pair | null) => string} */
     function printedText({ theta, alpha, count }, interval) {
       if (count < 1) return "Eq. (31) has no value here.";
       if (!interval) return "For a = 0 the quotient b/a of eq. (31) does not exist.";
@@ -279,7 +268,7 @@
 
   /** @type {(cells: HTMLElement[][]) => HTMLElement} */
   function intervalTable(cells) {
-    const { element, make } = qboundEngine;
+    const { element, legendKey } = qboundEngine;
     const names = [
       ["arc wide", "a cos q + b sin q ≥ c"],
       ["proof", "proof, eq. (39)"],
@@ -289,14 +278,7 @@
       element("th", { scope: "col", className: i ? "number" : "" }, text),
     );
     const body = names.map(([name, text], i) => {
-      const key = make("svg", {
-        width: 22,
-        height: 10,
-        viewBox: "0 0 22 10",
-        "aria-hidden": "true",
-      });
-      key.append(make("path", { class: name, d: "M0 5H22" }));
-      const title = element("th", { scope: "row" }, key, text);
+      const title = element("th", { scope: "row" }, legendKey(name, "M0 5H22", 10), text);
       return element("tr", {}, title, ...cells[i]);
     });
     const table = element("table", { className: "intervals" });
@@ -304,11 +286,5 @@
     return table;
   }
 
-  /** @type {(shape: SVGElement, point: Point, prefix?: string) => void} */
-  function place(shape, [x, y], prefix = "") {
-    shape.setAttribute(`${prefix}x`, x.toFixed(2));
-    shape.setAttribute(`${prefix}y`, y.toFixed(2));
-  }
-
-  qboundFigures.circle = Object.assign(show, { theorem, printed, OPENS });
+  qboundFigures.circle = Object.assign(show, { printed, OPENS });
 }

@@ -1,8 +1,8 @@
 "use strict";
 /* Configuration space, live: an arm among obstacles, and the region of its free poses beside it. */
 {
-  const { DEGREE, LINKS, RANGES, armOf, checked, freeName, within } = qboundLiveScene;
-  const TURN = 2 * Math.PI;
+  const { DEGREE, LINKS, RANGES, SIZES, armOf, checked, freeName } = qboundLiveScene;
+  const { TURN, leastBy, set, sum, wrapped } = qboundEngine;
   const VIEW = 2.1; // metres to each side of the base
   const FINEST = 1200; // columns, however wide the picture
   const TINTS = 4; // colours of the pieces that are cut off from home
@@ -13,6 +13,19 @@
     "Delete removes it, Control and Z undoes.";
   const JOINT_HELP =
     "Arrow keys turn the joints by one degree, with Shift by ten. H goes to the home pose.";
+
+  /** @template T
+   * @param {T[]} all
+   * @param {number} index
+   * @param {T} value */
+  function replaced(all, index, value) {
+    return all.map((old, i) => (i === index ? value : old));
+  }
+
+  /** @type {(values: number[], factor: number) => number[]} */
+  function larger(values, factor) {
+    return values.map((value) => value * factor);
+  }
 
   /** What there is to say of where link and obstacle touch.
    * @type {(link: number, contact: LiveContact) => string} */
@@ -26,38 +39,24 @@
       no turn of it does.
    * @type {(arm: LiveArm, shape: LiveShape, link: number, pair: Pair) => LiveContact | null} */
   function exitContact(arm, shape, link, pair) {
-    const { forearm, forbiddenBy } = qboundLiveFibres;
-    const ends = link === 1 ? forearm(arm, shape, pair[0]) : forbiddenBy(arm, shape, 1).windows;
+    const { forearm, upperArm } = qboundLiveSpace;
+    const ends = link === 1 ? forearm(arm, shape, pair[0]) : upperArm(arm, shape);
     const real = ends.filter((value) => Math.abs(value) < Math.PI);
     if (real.length === 0) return null;
-    const way = (/** @type {number} */ value) => {
-      const turn = value - pair[link];
-      return Math.abs(turn - TURN * Math.round(turn / TURN));
-    };
-    const nearest = real.reduce((one, other) => (way(other) < way(one) ? other : one));
+    const way = (/** @type {number} */ value) => Math.abs(wrapped(value - pair[link]));
+    const nearest = leastBy(real, way) ?? 0;
     const touching = link === 1 ? [pair[0], nearest] : [nearest, pair[1]];
-    const places = qboundLiveGeometry.jointPlaces(arm, touching);
-    return qboundLiveGeometry.contact(places[link], places[link + 1], arm.radii[link], shape);
-  }
-
-  /** The pose whose tool is at a place, or as near as the arm reaches, bent as it is.
-   * @type {(arm: LiveArm, pair: Pair, place: Point) => Pair} */
-  function poseAt({ lengths: [a, b] }, [first, second], [x, y]) {
-    const distance = within(Math.hypot(x, y), [Math.abs(a - b), a + b]);
-    const cosine = within((distance * distance - a * a - b * b) / (2 * a * b), [-1, 1]);
-    const bend = Math.acos(cosine) * (Math.sin(second) < 0 ? -1 : 1);
-    if (Math.hypot(x, y) < 1e-9) return [first, bend];
-    const turn = Math.atan2(b * Math.sin(bend), a + b * Math.cos(bend));
-    return [Math.atan2(y, x) - turn, bend];
+    const places = qboundLiveSpace.jointPlaces(arm, touching);
+    return qboundLiveSpace.contact(places[link], places[link + 1], arm.radii[link], shape);
   }
 
   /** @type {FigureKind} */
   function show(root) {
     const { clear, draggable, element, handle, layer, make, number, onKeys, pathText } =
       qboundEngine;
-    const { picture, pixelOf } = qboundEngine;
-    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine } = qboundParts;
-    const { valueRow, whenWidthChanges } = qboundParts;
+    const { CIRCLE, picture, pixelOf, valueRow, wholePicture } = qboundEngine;
+    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine, whenWidthChanges } =
+      qboundParts;
 
     /** @type {LiveScene} */
     let scene = qboundLiveScene.START;
@@ -77,8 +76,8 @@
     let shapes = [];
     /** @type {LiveRegions} */
     let regions;
-    let space = qboundLiveFibres.freeSpace(360);
-    /** @type {LivePictures} */
+    let space = qboundLiveSpace.freeSpace(360);
+    /** @type {ReturnType<typeof newPictures>} */
     let drawn;
     /** @type {LiveObstacle[]} */
     let pictured = []; // what the elements of the obstacles show
@@ -109,7 +108,7 @@
 
     /** @type {(pair: Pair) => void} */
     function move(pair) {
-      const q = pair.map((value) => value - TURN * Math.round(value / TURN));
+      const q = pair.map((value) => wrapped(value));
       scene = { ...scene, q };
       isTouched = true;
       later();
@@ -119,8 +118,7 @@
     function changeChosen(next, name) {
       const found = checked(next);
       if (chosen === null || !found) return;
-      const obstacles = scene.obstacles.map((old, i) => (i === chosen ? found : old));
-      change({ obstacles }, `${name} ${chosen}`);
+      change({ obstacles: replaced(scene.obstacles, chosen, found) }, `${name} ${chosen}`);
     }
 
     /** @type {(index: number | null) => void} */
@@ -227,7 +225,7 @@
     const degreeRow = { low: -180, high: 180, step: 0.5, digits: 2, unit: "°" };
     const poseRows = [0, 1].map((k) =>
       valueRow({ ...degreeRow, name: `q${"₁₂"[k]}`, spoken: `q${k + 1} in degrees` }, (value) =>
-        move(scene.q.map((old, i) => (i === k ? value * DEGREE : old))),
+        move(replaced(scene.q, k, value * DEGREE)),
       ),
     );
     /** @type {(key: "lengths" | "thicknesses", k: number, name: string, range: number[]) => SetRow} */
@@ -242,8 +240,7 @@
           digits: 3,
           unit: "m",
         },
-        (value) =>
-          change({ [key]: scene[key].map((old, i) => (i === k ? value : old)) }, `${key} ${k}`),
+        (value) => change({ [key]: replaced(scene[key], k, value) }, `${key} ${k}`),
       );
     const armRows = LINKS.map((_, k) => ({
       length: armRow("lengths", k, "length", RANGES.length),
@@ -280,70 +277,59 @@
       fillers.push((now) => {
         name.value = now.name;
       });
+      const { place, size, angle } = RANGES;
       field(
         "x",
         "x in metres",
-        RANGES.place,
-        "m",
-        (now) => now.x,
-        (now, x) => ({ ...now, x }),
+        place,
+        ({ x }) => x,
+        (x) => ({ x }),
       );
       field(
         "y",
         "y in metres",
-        RANGES.place,
-        "m",
-        (now) => now.y,
-        (now, y) => ({ ...now, y }),
+        place,
+        ({ y }) => y,
+        (y) => ({ y }),
       );
-      if (one.kind === "disc")
+      for (const [k, name] of SIZES[one.kind].entries())
         field(
-          "radius",
-          "radius in metres",
-          RANGES.size,
-          "m",
-          (now) => (now.kind === "disc" ? now.radius : 0),
-          (now, radius) => (now.kind === "disc" ? { ...now, radius } : now),
+          name,
+          `${name} in metres`,
+          size,
+          ({ sizes }) => sizes[k],
+          (value, { sizes }) => ({ sizes: replaced(sizes, k, value) }),
         );
-      else
+      if (one.kind !== "disc")
         field(
           "turned",
           "turned by, in degrees",
-          RANGES.angle,
-          "°",
+          angle,
           (now) => now.angle / DEGREE,
-          (now, angle) => ({ ...now, angle: angle * DEGREE }),
+          (value) => ({ angle: value * DEGREE }),
         );
-      if (one.kind === "box")
-        for (const side of /** @type {const} */ (["width", "height"]))
-          field(
-            side,
-            `${side} in metres`,
-            RANGES.size,
-            "m",
-            (now) => (now.kind === "box" ? now[side] : 0),
-            (now, value) => (now.kind === "box" ? { ...now, [side]: value } : now),
-          );
       if (one.kind === "polygon") buildCorners(one);
       fields.append(buttons([`Delete this ${one.kind}`, remove]));
     }
 
-    /** @type {(name: string, spoken: string, range: number[], unit: string, get: (one: LiveObstacle) => number, set: (one: LiveObstacle, value: number) => LiveObstacle) => void} */
-    function field(name, spoken, [low, high], unit, get, set) {
-      const step = unit === "m" ? 0.01 : 1;
-      const row = valueRow(
-        { name, spoken, low, high, step, digits: unit === "m" ? 3 : 1, unit },
-        (value) => {
-          const now = nowChosen();
-          if (now) changeChosen(set(now, value), `field ${name}`);
-        },
-      );
+    /** A field of the chosen obstacle: how to get its value, and what another one changes.
+     * @type {(name: string, spoken: string, range: number[], get: (now: LiveObstacle) => number, set: (value: number, now: LiveObstacle) => Partial<LiveObstacle>) => void} */
+    function field(name, spoken, range, get, set) {
+      const [low, high] = range;
+      const look =
+        range === RANGES.angle
+          ? { step: 1, digits: 1, unit: "°" }
+          : { step: 0.01, digits: 3, unit: "m" };
+      const row = valueRow({ name, spoken, low, high, ...look }, (value) => {
+        const now = nowChosen();
+        if (now) changeChosen({ ...now, ...set(value, now) }, `field ${name}`);
+      });
       fields.append(row.row);
       fillers.push((now) => row.set(get(now)));
     }
 
     /** One corner of the chosen polygon at a time, about the polygon's own place.
-     * @type {(polygon: LivePolygon) => void} */
+     * @type {(polygon: LiveObstacle) => void} */
     function buildCorners({ corners }) {
       const which = element("select", { ariaLabel: "Corner" });
       which.append(
@@ -366,20 +352,14 @@
           `corner ${"xy"[k]}`,
           `${"xy"[k]} of the corner, in metres from the polygon's place`,
           RANGES.corner,
-          "m",
-          (now) => (now.kind === "polygon" ? (now.corners[corner]?.[k] ?? 0) : 0),
-          (now, value) =>
-            withCorner(now, corner, (old) => old.map((v, i) => (i === k ? value : v))),
+          (now) => now.corners[corner]?.[k] ?? 0,
+          (value, { corners: all }) => ({
+            corners: replaced(all, corner, replaced(all[corner], k, value)),
+          }),
         );
       fields.append(
         buttons(["Add a corner after it", () => addCorner()], ["Remove it", () => dropCorner()]),
       );
-    }
-
-    /** @type {(now: LiveObstacle, index: number, to: (old: Point) => Point) => LiveObstacle} */
-    function withCorner(now, index, to) {
-      if (now.kind !== "polygon") return now;
-      return { ...now, corners: now.corners.map((old, i) => (i === index ? to(old) : old)) };
     }
 
     function addCorner() {
@@ -455,7 +435,7 @@
 
     /* --- pictures ------------------------------------------------------------------------------- */
 
-    function build() {
+    function newPictures() {
       const square = picture(
         joints.svg,
         [
@@ -476,17 +456,7 @@
       const home = joints.svg.appendChild(make("path", { class: "home-mark", d: cross }));
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
       const view = [-VIEW, VIEW];
-      const fitted = picture(
-        plane.svg,
-        [view, view],
-        { left: 8, right: 8, top: 8, bottom: 8 },
-        true,
-      );
-      const whole = {
-        ...fitted,
-        box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
-      };
-      clear(whole);
+      const whole = wholePicture(plane.svg, [view, view]);
       const base = layer(whole, "base", false);
       const [x, y] = whole.at([0, 0]);
       base.append(make("circle", { class: "axle", cx: x, cy: y, r: 5 }));
@@ -503,7 +473,7 @@
         make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
       );
       const hands = layer(whole, "hands", false);
-      drawn = {
+      return {
         square,
         whole,
         ...layers,
@@ -518,9 +488,14 @@
         tool,
         hands,
       };
-      const pixels = (square.box.right - square.box.left) * (window.devicePixelRatio || 1);
+    }
+
+    function build() {
+      drawn = newPictures();
+      const { left, right } = drawn.square.box;
+      const pixels = (right - left) * (window.devicePixelRatio || 1);
       pictured = [];
-      space = qboundLiveFibres.freeSpace(Math.min(FINEST, Math.ceil(pixels)));
+      space = qboundLiveSpace.freeSpace(Math.min(FINEST, Math.ceil(pixels)));
       hasNewScene = true;
       draw();
     }
@@ -542,12 +517,12 @@
       );
       if (!isSame) arm = next;
       shapes = scene.obstacles.map((one) => {
-        const shape = known.get(one) ?? qboundLiveGeometry.placed(one);
+        const shape = known.get(one) ?? qboundLiveSpace.placed(one);
         known.set(one, shape);
         return shape;
       });
       const columns = space.columnsOf(arm, shapes);
-      regions = qboundLiveFibres.components(columns, scene.home);
+      regions = qboundLiveSpace.regions(columns, scene.home);
       drawRegions();
       drawObstacles();
       drawHands();
@@ -563,7 +538,7 @@
 
     function showTotals() {
       const all = regions.areas.map((area) => `${number((100 * area) / TURN ** 2, 2)}\u00a0%`);
-      const free = regions.areas.reduce((sum, area) => sum + area, 0) / TURN ** 2;
+      const free = sum(regions.areas) / TURN ** 2;
       const count = all.length === 1 ? "one piece" : `${all.length} pieces`;
       const home = regions.home ? "" : " Home is not safe.";
       const parts =
@@ -586,15 +561,15 @@
 
     function drawRegions() {
       const { columns, of, areas } = regions;
-      const outlines = qboundLiveFibres.outlines(columns, of, areas.length, scale());
+      const outlines = qboundLiveSpace.outlines(columns, of, areas.length, scale());
       const paths = children(drawn.regions, "path", 2 * areas.length);
       for (const [i, { fill, edge }] of outlines.entries())
         for (const [k, d] of [fill, edge].entries())
-          attributes(paths[2 * i + k], { class: k ? `${tint(i)} edge` : tint(i), d });
+          set(paths[2 * i + k], { class: k ? `${tint(i)} edge` : tint(i), d });
       const places = areas.length > 1 ? roomiest() : [];
       for (const [i, text] of children(drawn.names, "text", places.length).entries()) {
         const [x, y] = drawn.square.at(places[i].pair);
-        attributes(text, { class: "piece-name", x, y: y + 5, "text-anchor": "middle" });
+        set(text, { class: "piece-name", x, y: y + 5, "text-anchor": "middle" });
         text.textContent = places[i].room > 9 ? String(i + 1) : "";
       }
       drawShadow();
@@ -613,11 +588,6 @@
       return /** @type {SVGElement[]} */ ([...parent.children]);
     }
 
-    /** @type {(one: Element, values: Record<string, string | number>) => void} */
-    function attributes(one, values) {
-      for (const [key, value] of Object.entries(values)) one.setAttribute(key, String(value));
-    }
-
     /** A place for the name of each piece, with much room around it; the room is in pixels. */
     function roomiest() {
       const { columns, of, areas } = regions;
@@ -631,8 +601,8 @@
           if (piece < 0 || height <= 2 * found[piece].room) continue;
           const middle = (low + high) / 2;
           let [left, right] = [k, k];
-          while (left > 0 && qboundLiveFibres.holds(columns[left - 1].free, middle)) left -= 1;
-          while (columns[right + 1] && qboundLiveFibres.holds(columns[right + 1].free, middle))
+          while (left > 0 && qboundEngine.holds(columns[left - 1].free, middle)) left -= 1;
+          while (columns[right + 1] && qboundEngine.holds(columns[right + 1].free, middle))
             right += 1;
           const { q } = columns[k];
           const beside = Math.min(q - columns[left].q, columns[right].q - q) * dx;
@@ -649,13 +619,14 @@
         return;
       }
       const shape = shapes[chosen];
-      const { windows } = qboundLiveFibres.forbiddenBy(arm, shape, 1);
+      const windows = qboundLiveSpace.upperArm(arm, shape);
       const columns = regions.columns.map(({ q }) => {
-        const all = qboundLiveFibres.holds(windows, q);
-        return { q, free: all ? [-Math.PI, Math.PI] : qboundLiveFibres.forearm(arm, shape, q) };
+        const all = qboundEngine.holds(windows, q);
+        const free = all ? CIRCLE : qboundLiveSpace.forearm(arm, shape, q);
+        return { q, free, by: free.map(() => 0) };
       });
       const of = columns.map(({ free }) => new Array(free.length / 2).fill(0));
-      const [{ fill }] = qboundLiveFibres.outlines(columns, of, 1, scale());
+      const [{ fill }] = qboundLiveSpace.outlines(columns, of, 1, scale());
       drawn.shadow.setAttribute("d", fill);
     }
 
@@ -712,9 +683,8 @@
         drawn.hands.append(make("path", { class: "turn-line", d: pathText([from, to]) }));
         hand("turn", to);
       }
-      if (one.kind === "disc") hand("size", drawn.whole.at([one.x + one.radius, one.y]));
-      if (one.kind === "box")
-        hand("size", drawn.whole.at(onObstacle(one, [one.width / 2, one.height / 2])));
+      if (one.kind === "disc") hand("size", drawn.whole.at([one.x + one.sizes[0], one.y]));
+      if (one.kind === "box") hand("size", drawn.whole.at(onObstacle(one, larger(one.sizes, 0.5))));
       if (one.kind !== "disc")
         for (const [i, place] of shapes[chosen].points.entries()) {
           const [x, y] = drawn.whole.at(place);
@@ -770,15 +740,13 @@
 
     /** What changes with the pose alone. */
     function drawPose() {
-      const places = qboundLiveGeometry.jointPlaces(arm, scene.q).map(drawn.whole.at);
-      const found = qboundLiveGeometry.encounters(arm, shapes, scene.q);
+      const places = qboundLiveSpace.jointPlaces(arm, scene.q).map(drawn.whole.at);
+      const found = qboundLiveSpace.encounters(arm, shapes, scene.q);
       const hits = found.filter(({ gap }) => gap < 0);
-      const least = found.reduce((a, b) => (b.gap < (a?.gap ?? Infinity) ? b : a), found[0]);
+      const least = leastBy(found, ({ gap }) => gap);
       for (const [k, line] of drawn.links.entries()) {
         const [[x1, y1], [x2, y2]] = [places[k], places[k + 1]];
-        for (const [key, value] of Object.entries({ x1, y1, x2, y2 }))
-          line.setAttribute(key, value.toFixed(2));
-        line.setAttribute("stroke-width", (2 * pixels(arm.radii[k])).toFixed(2));
+        set(line, { x1, y1, x2, y2, "stroke-width": 2 * pixels(arm.radii[k]) });
         line.classList.toggle(
           "hit",
           hits.some(({ link }) => link === k),
@@ -804,12 +772,12 @@
     /** What holds of a pose.
      * @type {(pair: Pair) => string} */
     function poseText(pair) {
-      const found = qboundLiveGeometry.encounters(arm, shapes, pair);
+      const found = qboundLiveSpace.encounters(arm, shapes, pair);
       const hits = found.filter(({ gap }) => gap < 0);
       if (hits.length > 0) return `Not safe: ${hits.map((hit) => hitText(hit, pair)).join("; ")}.`;
       if (found.length === 0) return "Safe. There is no obstacle.";
       const least = found.reduce((a, b) => (b.gap < a.gap ? b : a));
-      const piece = qboundLiveFibres.componentOf(regions, pair);
+      const piece = qboundLiveSpace.regionOf(regions, pair);
       const count = regions.areas.length;
       const where =
         count < 2 || piece < 0
@@ -832,7 +800,7 @@
 
     /** The pose under the mouse: a second arm, and what holds of it. */
     function drawPointed() {
-      const places = pointed ? qboundLiveGeometry.jointPlaces(arm, pointed) : [];
+      const places = pointed ? qboundLiveSpace.jointPlaces(arm, pointed) : [];
       drawn.ghost.setAttribute("d", pathText(places.map(drawn.whole.at)));
       const there = pointed?.map((value) => degrees(value, 0)).join(", ");
       under.textContent = pointed
@@ -869,13 +837,10 @@
         changeChosen({ ...one, angle: Math.atan2(y - one.y, x - one.x) }, name);
       else if (part !== "size") {
         corner = Number(part.split(" ")[1]);
-        changeChosen(
-          withCorner(one, corner, () => [a, b]),
-          name,
-        );
-      } else if (one.kind === "disc") changeChosen({ ...one, radius: Math.hypot(a, b) }, name);
+        changeChosen({ ...one, corners: replaced(one.corners, corner, [a, b]) }, name);
+      } else if (one.kind === "disc") changeChosen({ ...one, sizes: [Math.hypot(a, b)] }, name);
       else if (one.kind === "box")
-        changeChosen({ ...one, width: 2 * Math.abs(a), height: 2 * Math.abs(b) }, name);
+        changeChosen({ ...one, sizes: [2 * Math.abs(a), 2 * Math.abs(b)] }, name);
     }
 
     /** @type {(pixel: Point, held: Element | null) => void} */
@@ -887,7 +852,7 @@
       else if (held === drawn.elbow.room) move([Math.atan2(place[1], place[0]), scene.q[1]]);
       else {
         if (held === null && chosen !== null) choose(null);
-        move(poseAt(arm, scene.q, place));
+        move(qboundLiveSpace.poseAt(arm, scene.q, place));
       }
     }
 
@@ -897,19 +862,17 @@
       const one = nowChosen();
       if (one) changeChosen({ ...one, x: one.x + dx * size, y: one.y + dy * size }, "keys");
       else {
-        const [, , [x, y]] = qboundLiveGeometry.jointPlaces(arm, scene.q);
-        move(poseAt(arm, scene.q, [x + dx * size, y + dy * size]));
+        const [, , [x, y]] = qboundLiveSpace.jointPlaces(arm, scene.q);
+        move(qboundLiveSpace.poseAt(arm, scene.q, [x + dx * size, y + dy * size]));
       }
     }
 
     /** @type {(factor: number) => void} */
     function grow(factor) {
       const one = nowChosen();
-      if (one?.kind === "disc") changeChosen({ ...one, radius: one.radius * factor }, "grow");
-      if (one?.kind === "box")
-        changeChosen({ ...one, width: one.width * factor, height: one.height * factor }, "grow");
-      if (one?.kind === "polygon")
-        changeChosen({ ...one, corners: one.corners.map((c) => c.map((v) => v * factor)) }, "grow");
+      if (!one) return;
+      const corners = one.corners.map((at) => larger(at, factor));
+      changeChosen({ ...one, sizes: larger(one.sizes, factor), corners }, "grow");
     }
 
     plane.svg.addEventListener("pointerdown", take);
@@ -963,5 +926,5 @@
     whenWidthChanges(joints.figure, build);
   }
 
-  qboundFigures.live = Object.assign(show, { exitContact, featureText, poseAt });
+  qboundFigures.live = Object.assign(show, { exitContact, featureText });
 }

@@ -2,7 +2,8 @@
 /* Configuration space, live: an arm among obstacles, as a link keeps it and as a robot file says it.
    Lengths are in metres, angles in radians; links and files have degrees. */
 const qboundLiveScene = (() => {
-  const { encounters, isSimple, placed } = qboundLiveGeometry;
+  const { TURN, between, leastBy, turnedBy, wrapped } = qboundEngine;
+  const { encounters, isSimple, placed } = qboundLiveSpace;
   const DEGREE = Math.PI / 180;
   const LINKS = ["upper arm", "forearm"];
 
@@ -15,6 +16,9 @@ const qboundLiveScene = (() => {
     size: [0.02, 1.5],
     corner: [-1.5, 1.5],
   };
+  /** What the sizes of each kind of obstacle are; a polygon has corners instead. */
+  const SIZES = { disc: ["radius"], box: ["width", "height"], polygon: [] };
+  const KINDS = /** @type {LiveObstacle["kind"][]} */ (Object.keys(SIZES));
   const MOST_OBSTACLES = 30;
   const MOST_CORNERS = 12;
   const LONGEST_NAME = 40;
@@ -26,14 +30,15 @@ const qboundLiveScene = (() => {
     q: [150 * DEGREE, -60 * DEGREE],
     home: [150 * DEGREE, -60 * DEGREE],
     obstacles: [
-      { kind: "disc", name: "pillar", x: 1.15, y: -0.4, angle: 0, radius: 0.2 },
-      { kind: "box", name: "crate", x: 0.7, y: 0.8, angle: 0.3, width: 0.5, height: 0.35 },
+      { kind: "disc", name: "pillar", x: 1.15, y: -0.4, angle: 0, sizes: [0.2], corners: [] },
+      { kind: "box", name: "crate", x: 0.7, y: 0.8, angle: 0.3, sizes: [0.5, 0.35], corners: [] },
       {
         kind: "polygon",
         name: "wedge",
         x: -0.55,
         y: -1.05,
         angle: 0,
+        sizes: [],
         corners: [
           [-0.3, -0.2],
           [0.35, -0.2],
@@ -54,24 +59,27 @@ const qboundLiveScene = (() => {
     const arm = armOf(scene);
     /** @type {(x: number, y: number) => number} */
     const room = (x, y) => {
-      const disc = placed({ kind: "disc", name: "", x, y, angle: 0, radius: 0 });
+      const disc = { points: [[x, y]], radius: 0, x, y, size: 0 };
       const links = [scene.q, scene.home].flatMap((q) => encounters(arm, [disc], q));
       const others = scene.obstacles.map((one) => Math.hypot(one.x - x, one.y - y) - 0.2);
       return Math.min(...links.map(({ gap }) => gap), ...others);
     };
-    const places = Array.from({ length: 24 }, (_, k) => {
-      const [x, y] = [Math.cos, Math.sin].map((f) => (1.1 + 0.2 * (k % 3)) * f((k * Math.PI) / 12));
-      return { x, y, room: room(x, y) };
-    });
-    const { x, y } = places.reduce((one, other) => (other.room > one.room ? other : one));
-    const base = { name: freeName(scene, kind, -1), x, y, angle: 0 };
-    if (kind === "disc") return { kind, ...base, radius: 0.15 };
-    if (kind === "box") return { kind, ...base, width: 0.4, height: 0.25 };
-    const corners = [0, 1, 2, 3, 4].map((k) => {
-      const angle = Math.PI / 2 + (2 * Math.PI * k) / 5;
-      return [0.22 * Math.cos(angle), 0.22 * Math.sin(angle)];
-    });
-    return { kind, ...base, corners };
+    const places = Array.from({ length: 24 }, (_, k) =>
+      turnedBy((TURN * k) / 24).map((value) => (1.1 + 0.2 * (k % 3)) * value),
+    );
+    const [x, y] = leastBy(places, (place) => -room(place[0], place[1])) ?? [0, 0];
+    const pentagon = [0, 1, 2, 3, 4].map((k) =>
+      turnedBy(TURN / 4 + (TURN * k) / 5).map((value) => 0.22 * value),
+    );
+    return {
+      kind,
+      name: freeName(scene, kind, -1),
+      x,
+      y,
+      angle: 0,
+      sizes: { disc: [0.15], box: [0.4, 0.25], polygon: [] }[kind],
+      corners: kind === "polygon" ? pentagon : [],
+    };
   }
 
   /** A name as a robot file allows it, that no link and no other obstacle has.
@@ -91,22 +99,17 @@ const qboundLiveScene = (() => {
     return `${name} ${k}`;
   }
 
-  /** @type {(value: number, [low, high]: number[]) => number} */
+  /** @type {(value: number, range: number[]) => number} */
   function within(value, [low, high]) {
-    return Math.min(high, Math.max(low, value));
+    return between(value, low, high);
   }
 
   /** An obstacle with its numbers in range; null where it is none (edges that cross).
    * @type {(obstacle: LiveObstacle) => LiveObstacle | null} */
   function checked(obstacle) {
-    const turned = obstacle.angle - 2 * Math.PI * Math.round(obstacle.angle / (2 * Math.PI));
-    const [x, y] = [within(obstacle.x, RANGES.place), within(obstacle.y, RANGES.place)];
-    const found = { ...obstacle, x, y, angle: turned };
-    if (found.kind === "disc") found.radius = within(found.radius, RANGES.size);
-    if (found.kind === "box") {
-      found.width = within(found.width, RANGES.size);
-      found.height = within(found.height, RANGES.size);
-    }
+    const [x, y] = [obstacle.x, obstacle.y].map((value) => within(value, RANGES.place));
+    const sizes = obstacle.sizes.map((value) => within(value, RANGES.size));
+    const found = { ...obstacle, x, y, angle: wrapped(obstacle.angle), sizes };
     if (found.kind !== "polygon") return found;
     const outside = found.corners.flat().some((value) => Math.abs(value) > RANGES.corner[1]);
     const count = found.corners.length;
@@ -137,12 +140,7 @@ const qboundLiveScene = (() => {
     words.set("home", angles(scene.home));
     if (pose) words.set("q", angles(scene.q));
     for (const one of scene.obstacles) {
-      const sizes =
-        one.kind === "disc"
-          ? [one.radius]
-          : one.kind === "box"
-            ? [one.width, one.height]
-            : one.corners.flat();
+      const sizes = [...one.sizes, ...one.corners.flat()];
       const numbers = [list([one.x, one.y], 4), list([one.angle / DEGREE], 2), list(sizes, 4)];
       words.append("o", `${one.kind} ${numbers.join(",")} ${one.name}`);
     }
@@ -161,8 +159,8 @@ const qboundLiveScene = (() => {
     const scene = {
       lengths: arm.slice(0, 2).map((value) => within(value, RANGES.length)),
       thicknesses: arm.slice(2).map((value) => within(value, RANGES.thickness)),
-      home: home.map((value) => angle(value)),
-      q: q.map((value) => angle(value)),
+      home: home.map((value) => wrapped(value * DEGREE)),
+      q: q.map((value) => wrapped(value * DEGREE)),
       obstacles: [],
     };
     for (const word of words.getAll("o").slice(0, MOST_OBSTACLES)) {
@@ -170,11 +168,6 @@ const qboundLiveScene = (() => {
       if (found) scene.obstacles.push(found);
     }
     return scene;
-  }
-
-  /** @type {(degrees: number) => number} */
-  function angle(degrees) {
-    return (degrees - 360 * Math.round(degrees / 360)) * DEGREE;
   }
 
   /** @type {(text: string | null, count: number) => number[] | null} */
@@ -187,20 +180,24 @@ const qboundLiveScene = (() => {
 
   /** @type {(text: string, scene: LiveScene) => LiveObstacle | null} */
   function obstacleOf(text, scene) {
-    const [kind, numbers, ...name] = text.split(" ");
+    const [word, numbers, ...name] = text.split(" ");
     const count = (numbers ?? "").split(",").length;
     const values = numbersOf(numbers, count);
     if (!values) return null;
     const [x, y, degrees, ...sizes] = values;
-    const base = { name: freeName(scene, name.join(" "), -1), x, y, angle: angle(degrees) };
-    if (kind === "disc" && sizes.length === 1) return checked({ kind, ...base, radius: sizes[0] });
-    if (kind === "box" && sizes.length === 2)
-      return checked({ kind, ...base, width: sizes[0], height: sizes[1] });
-    if (kind !== "polygon" || sizes.length % 2 === 1) return null;
-    const corners = Array.from({ length: sizes.length / 2 }, (_, i) =>
-      sizes.slice(2 * i, 2 * i + 2),
-    );
-    return checked({ kind, ...base, corners });
+    const kind = KINDS.find((one) => one === word);
+    if (!kind) return null;
+    const isPolygon = kind === "polygon";
+    if (isPolygon ? sizes.length % 2 : sizes.length !== SIZES[kind].length) return null;
+    return checked({
+      kind,
+      name: freeName(scene, name.join(" "), -1),
+      x,
+      y,
+      angle: wrapped(degrees * DEGREE),
+      sizes: isPolygon ? [] : sizes,
+      corners: isPolygon ? sizes.flatMap((a, i) => (i % 2 ? [[sizes[i - 1], a]] : [])) : [],
+    });
   }
 
   /* --- a robot file ------------------------------------------------------------------------------ */
@@ -245,10 +242,10 @@ const qboundLiveScene = (() => {
       lines.push(`capsule = { from = [0.0, 0.0, 0.0], to = ${to}, radius = ${radius} }`);
     }
     for (const obstacle of scene.obstacles) {
-      const { x, y, name } = obstacle;
+      const { x, y, name, sizes } = obstacle;
       lines.push("", "[[obstacle]]", `name = ${JSON.stringify(name)}`);
       if (obstacle.kind === "disc")
-        lines.push(`disc = { at = ${row([x, y, 0])}, radius = ${decimal(obstacle.radius)} }`);
+        lines.push(`disc = { at = ${row([x, y, 0])}, radius = ${decimal(sizes[0])} }`);
       else lines.push(`polygon = [${placed(obstacle).points.map(row).join(", ")}]`);
     }
     return `${lines.join("\n")}\n`;
@@ -265,6 +262,7 @@ const qboundLiveScene = (() => {
     DEGREE,
     LINKS,
     RANGES,
+    SIZES,
     MOST_OBSTACLES,
     MOST_CORNERS,
     LONGEST_NAME,
@@ -276,6 +274,5 @@ const qboundLiveScene = (() => {
     robotFile,
     sceneOf,
     textOf,
-    within,
   };
 })();

@@ -1,40 +1,8 @@
 "use strict";
-/* What the figures that one moves in a chapter share: values to set, words that say what holds. */
-{
-  const { addArm, element, layer, make, newPrefix, number, pathText, placeArm } = qboundEngine;
-
-  /** A value with its name, a slider and a field.
-   * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
-  function valueRow({ name, spoken, low, high, step, digits, unit }, change) {
-    const limits = { min: String(low), max: String(high) };
-    const slide = element("input", { type: "range", ...limits, step: String(step) });
-    const field = element("input", { type: "number", ...limits, step: "any" });
-    slide.ariaLabel = spoken;
-    field.ariaLabel = `${spoken}, as a number`;
-    let shown = "";
-    let typed = false; // what a reader types stays as it is typed
-    for (const input of [slide, field]) {
-      input.addEventListener("input", () => {
-        const value = Number(input.value);
-        if (input.value === "" || !Number.isFinite(value)) return;
-        typed = input === field;
-        change(Math.min(high, Math.max(low, value)));
-        typed = false;
-      });
-    }
-    field.addEventListener("blur", () => {
-      field.value = shown;
-    });
-    const box = element("span", { className: "unit" }, field, unit);
-    return {
-      row: element("div", { className: "slider" }, element("span", {}, name), slide, box),
-      set(value) {
-        shown = String(Number(value.toFixed(digits)));
-        slide.value = String(value);
-        if (!typed) field.value = shown;
-      },
-    };
-  }
+/* What the figures that one moves in a chapter share: boxes to tick, words that say what holds. */
+const qboundParts = (() => {
+  const { addArm, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
+  const { number, placeArm } = qboundEngine;
 
   /** A box to tick.
    * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
@@ -123,26 +91,8 @@
     for (const k of [0, 1]) {
       const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
       for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
-        const value = (tickAt * Math.PI) / 180;
-        const [x, y] = drawn.at(k === 0 ? [value, low[1]] : [low[0], value]);
-        const line =
-          k === 0
-            ? [
-                [x, top],
-                [x, bottom],
-              ]
-            : [
-                [left, y],
-                [right, y],
-              ];
-        const at =
-          k === 0
-            ? { x, y: bottom + 15, "text-anchor": "middle" }
-            : { x: left - 6, y: y + 4, "text-anchor": "end" };
-        group.append(
-          make("path", { class: "grid", d: pathText(line) }),
-          make("text", at, `${tickAt}°`.replace("-", "−")),
-        );
+        const text = `${tickAt}°`.replace("-", "−");
+        group.append(...gridLine(drawn, k, (tickAt * Math.PI) / 180, text, bottom + 15));
       }
     }
     group.append(
@@ -194,22 +144,18 @@
    * @type {(robot: Robot, pair: Pair) => number | null} */
   function regionAt(robot, pair) {
     const all = turns(robot).map((by) => pair.map((value, k) => value + by[k]));
-    const i = robot.components.findIndex(({ loops }) => all.some((at) => isInside(loops, at)));
+    /** @type {(component: Component, at: Pair) => boolean} */
+    const holds = ({ loops }, at) =>
+      loops.filter((loop) =>
+        isInside(
+          loop.flatMap((arc) => arc.points),
+          at,
+        ),
+      ).length %
+        2 ===
+      1;
+    const i = robot.components.findIndex((one) => all.some((at) => holds(one, at)));
     return i < 0 ? null : i + 1;
-  }
-
-  /** Whether a ray from a point crosses the outlines an odd number of times.
-   * @type {(loops: Component["loops"], point: Pair) => boolean} */
-  function isInside(loops, [x, y]) {
-    let odd = false;
-    for (const loop of loops) {
-      const points = loop.flatMap((arc) => arc.points);
-      for (const [i, [bx, by]] of points.entries()) {
-        const [ax, ay] = points.at(i - 1) ?? [bx, by];
-        if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) odd = !odd;
-      }
-    }
-    return odd;
   }
 
   /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
@@ -218,11 +164,10 @@
     return one.every((value, k) => Math.abs(value - other[k]) < 1e-9);
   }
 
-  window.qboundParts = {
+  return {
     isSame,
     turns,
     regionAt,
-    valueRow,
     tick,
     buttons,
     statusLine,
@@ -235,4 +180,4 @@
     moveArm,
     moveTo,
   };
-}
+})();

@@ -4,16 +4,13 @@
 {
   const NEAR = 14; // pixels: a press so near to a dot means the dot
 
-  /* --- arithmetic: tests/test_play_kinds.py runs it beside the library -------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The other posture at the tool's place; null where a limit forbids it or there is none.
    * @type {(robot: Robot, pair: Pair) => Pair | null} */
   function otherPosture(robot, pair) {
-    const { armOf, determinant, possible, toolAt, toolMap } = qboundEngine;
-    const map = toolMap(robot, robot.q);
-    const side = determinant(map, pair) >= 0;
-    const found = possible(robot, armOf(map), toolAt(map, pair));
-    return found.find((one) => determinant(map, one) >= 0 !== side) ?? null;
+    const map = qboundEngine.toolMap(robot, robot.q);
+    return qboundEngine.otherPosture(robot, map, qboundEngine.armOf(map), pair);
   }
 
   /** Whether a pose is safe, in which region it lies, and what it violates.
@@ -71,7 +68,7 @@
 
   /** @type {(root: HTMLElement, robot: Robot) => void} */
   function showPostures(root, robot) {
-    const { element, make, mount, pixelOf, withPair } = qboundEngine;
+    const { element, make, mount, pixelOf, placeAt, withPair } = qboundEngine;
     const { buttons, statusLine } = qboundParts;
     const arm = mount(root, robot, {
       controls: [],
@@ -100,9 +97,7 @@
       const other = pair && judge(robot, pair);
       root.classList.toggle("alone", other === null);
       if (other && second && dot) {
-        const [x, y] = arm.joints.at(other.pair);
-        dot.setAttribute("cx", String(x));
-        dot.setAttribute("cy", String(y));
+        placeAt(dot, arm.joints.at(other.pair), "c");
         for (const part of [dot, second.spine.parentElement])
           part?.classList.toggle("unsafe", !other.safe);
         qboundParts.moveArm(robot, second, withPair(robot, robot.q, other.pair));

@@ -5,9 +5,8 @@
   const STEP = Math.PI / 720; // a quarter of a degree: no wall between two regions is thinner
   const HALVINGS = 12;
   const BEHIND = Math.PI / 36; // how far to look for what a boundary hides
-  const TURN = 2 * Math.PI;
 
-  /* --- arithmetic: tests/test_play_kinds.py runs it beside the library -------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** What must not be negative: each boundary in use, restricted to the joints that move.
    * @type {(robot: Robot) => Rule[]} */
@@ -25,21 +24,12 @@
     return rules.filter(({ form }) => evaluate(form, x, y) < 0).map(({ wall }) => wall);
   }
 
-  /** The shortest way from one pair of joint values to another: a joint that wraps takes it.
-   * @type {(robot: Robot, from: Pair, to: Pair) => Pair} */
-  function wayTo(robot, from, to) {
-    return to.map((value, k) => {
-      const way = value - from[k];
-      return robot.views[k].wraps ? way - TURN * Math.round(way / TURN) : way;
-    });
-  }
-
   /** Go from a safe pose towards another in small steps; where one is barred, along the boundary by
       one joint alone; where that is barred too, stop. `by` is what barred the straight way last.
    * @type {(robot: Robot, rules: Rule[], from: Pair, to: Pair) => Slid} */
   function slide(robot, rules, from, to) {
     let [at, by] = [from, /** @type {Wall[]} */ ([])];
-    const goal = wayTo(robot, from, to).map((way, k) => from[k] + way);
+    const goal = qboundEngine.wayTo(robot, from, to).map((way, k) => from[k] + way);
     const most = Math.max(...goal.map((value, k) => Math.abs(value - from[k]))) / STEP;
     for (let i = 0; i < 2 * Math.ceil(most); i += 1) {
       const rest = goal.map((value, k) => value - at[k]);

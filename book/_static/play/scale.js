@@ -9,7 +9,7 @@
   const LONGEST =
     "Scale 1.000: the tool goes up to 10.000 cm below its limit, on the edge 3–4. Edges not safe: 1–2, 2–3, 3–4, 4–5, 5–6, 6–1.";
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The height of the tool above its limit as a form of both joints: the first half-space in use.
    * @type {(robot: Robot) => Matrix} */
@@ -23,12 +23,12 @@
       edge passes zero upward, found by bisection.
    * @type {(matrix: Matrix, start: Pair, end: Pair) => Lowest} */
   function leastOnEdge(matrix, start, end) {
-    const { basis, evaluate } = qboundEngine;
+    const { basis, basisSlope, evaluate } = qboundEngine;
     const along = start.map((value, k) => end[k] - value);
     /** @type {(t: number) => Pair} */
     const at = (t) => start.map((value, k) => value + t * along[k]);
     /** @type {(q: number) => number[]} */
-    const rise = (q) => [0, -Math.sin(q), Math.cos(q)];
+    const rise = (q) => basisSlope("revolute", q);
     /** @type {(q: number) => number[]} */
     const here = (q) => basis("revolute", q);
     /** @type {(t: number) => number} */
@@ -69,10 +69,10 @@
   /** @type {FigureKind} */
   function show(root, options, { robot: given }) {
     if (!given?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
-    const { clear, element, layer, make, number, pathText, picture } = qboundEngine;
-    const { pointPlaces, project, scaledPolygon, viewAxes, withPair } = qboundEngine;
-    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine, valueRow } =
-      qboundParts;
+    const { clear, element, layer, make, number, pathText, picture, valueRow } = qboundEngine;
+    const { placeAt, pointPlaces, project, scaledPolygon, viewAxes, wholePicture, withPair } =
+      qboundEngine;
+    const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine } = qboundParts;
     const robot = given;
     const { polygon } = given;
     const { vertices, centroid, largest } = polygon;
@@ -87,7 +87,7 @@
       canvas("The arm at the lowest point that the tool reaches on the polygon's edges."),
     ];
     const status = statusLine(LONGEST);
-    /** @type {ScalePictures} */
+    /** @type {ReturnType<typeof drawJoints> & ReturnType<typeof drawPlane>} */
     let drawn;
 
     const row = valueRow(
@@ -186,14 +186,9 @@
     }
 
     function drawPlane() {
-      const fitted = picture(plane.svg, armBox(), { left: 8, right: 8, top: 8, bottom: 8 }, true);
-      const whole = {
-        ...fitted,
-        box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
-      };
-      clear(whole);
+      const whole = wholePicture(plane.svg, armBox());
       const group = layer(whole, "floor");
-      const [, y] = fitted.at([0, limit]);
+      const [, y] = whole.at([0, limit]);
       const below = `M0 ${y}H${whole.width}V${whole.height}H0Z`;
       group.append(
         make("path", { class: "below", d: below }),
@@ -233,12 +228,9 @@
       for (const [i, text] of drawn.numbers.entries()) {
         const [x, y] = places[i];
         const size = Math.hypot(gx - x, gy - y) || 1;
-        text.setAttribute("x", (x + (17 * (gx - x)) / size).toFixed(1));
-        text.setAttribute("y", (y + (17 * (gy - y)) / size + 4).toFixed(1));
+        placeAt(text, [x + (17 * (gx - x)) / size, y + (17 * (gy - y)) / size + 4]);
       }
-      const [x, y] = drawn.joints.at(q);
-      drawn.dot.setAttribute("cx", x.toFixed(2));
-      drawn.dot.setAttribute("cy", y.toFixed(2));
+      placeAt(drawn.dot, drawn.joints.at(q), "c");
       drawn.dot.classList.toggle("violated", value < -TOUCHING);
       showArm(q);
       tell(values, worst);

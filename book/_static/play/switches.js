@@ -11,7 +11,7 @@
   const LONGEST =
     "Home is cut off by β₁,₁,₁, β₂,₁,₁, β₃,₃,₂. What is left: q₁ from −180.00° (edge of the square) to 180.00° (edge of the square), q₂ from −180.00° (edge of the square) to 180.00° (edge of the square), less what the curves cut off.";
 
-  /* --- arithmetic: tests/test_play.py runs it beside the library ------------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The components of a pair of points that depend on its joint: a cos q + b sin q = c where one
       vanishes (eq. 29).
@@ -33,12 +33,13 @@
       const seen = placeIn(frames[far.frame], far.at).map((value, k) => value - place[k]);
       return placeIn(back, seen).map((value, k) => value - near.at[k]);
     };
-    const [ahead, across, behind] = [0, TURN / 4, TURN / 2].map(vector);
-    return ahead.flatMap((value, k) => {
-      const c = -(value + behind[k]) / 2;
-      const [a, b] = [value + c, across[k] + c];
+    const at = [0, TURN / 3, -TURN / 3];
+    const seen = at.map(vector);
+    return [0, 1, 2].flatMap((k) => {
+      const values = seen.map((one) => one[k]);
+      const [constant, a, b] = qboundEngine.throughThree("revolute", at, values);
       const moves = Math.hypot(a, b) > 1e-9;
-      return moves ? [{ boundary: pair.name, component: k + 1, joint, a, b, c }] : [];
+      return moves ? [{ boundary: pair.name, component: k + 1, joint, a, b, c: -constant }] : [];
     });
   }
 
@@ -77,11 +78,10 @@
       whether it ends in roots (Theorem 2).
    * @type {(matrix: Matrix, first: number) => WallArc} */
   function arcAt(matrix, first) {
-    const { alongSecond, basis } = qboundEngine;
+    const { alongSecond, basis, circleArc } = qboundEngine;
     const [constant, a, b] = alongSecond(matrix, basis("revolute", first));
-    const ratio = -constant / Math.hypot(a, b);
-    const alpha = Math.acos(Math.min(1, Math.max(-1, ratio)));
-    return { middle: Math.atan2(b, a), alpha, cuts: Math.abs(ratio) <= 1 };
+    const { theta, alpha, count } = circleArc(a, b, -constant);
+    return { middle: theta, alpha, cuts: count > 0 };
   }
 
   /** @type {(bound: Component2 & { k: number }) => string} */
@@ -98,7 +98,7 @@
     );
     const curved = walls.flatMap(({ boundary, component, matrix }) => {
       const { middle, alpha } = arcAt(matrix, q[0]);
-      const away = q[1] - middle - TURN * Math.round((q[1] - middle) / TURN);
+      const away = qboundEngine.wrapped(q[1] - middle);
       if (Math.abs(away) <= alpha) return [];
       return [nameOf({ boundary, component, k: away > 0 ? 1 : 2 })];
     });
@@ -183,10 +183,8 @@
 
   /** @type {(name: string, text: string) => HTMLLIElement[]} */
   function lineKey(name, text) {
-    const { element, make } = qboundEngine;
-    const key = make("svg", { width: 22, height: 10, viewBox: "0 0 22 10", "aria-hidden": "true" });
-    key.append(make("path", { class: `bound ${name}`, d: "M0 5H22" }));
-    return [element("li", {}, key, text)];
+    const { element, legendKey } = qboundEngine;
+    return [element("li", {}, legendKey(`bound ${name}`, "M0 5H22", 10), text)];
   }
 
   /** @type {FigureKind} */

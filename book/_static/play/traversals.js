@@ -3,12 +3,10 @@
    how far it is. Options: data-start ("all", "right", "left", "mirror"), data-scale (0.95), and
    data-small, which plays by itself until the reader takes over. */
 {
-  const PACE = 14; // s for a way as wide as the picture, and
-  const PAUSE = 1200; // ms at each stop where the reader wants nothing to move
   const PIECES = 40; // of the tool's path between two stops
   const NEAR_SINGULAR = 0.02; // of the largest |det J|: here the arm looks stretched
 
-  /* --- arithmetic: tests/test_play_kinds.py runs it beside the library -------------------------- */
+  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The ways that a reader can choose, each with the points that it visits, counted from 1.
    * @type {(robot: Robot, scale: number) => Way[]} */
@@ -31,24 +29,8 @@
 
   /** The piece of a path on which a fraction of its length lies.
    * @type {(robot: Robot, stops: Pair[], done: number) => number} */
-  function legAt(robot, stops, done) {
-    const lengths = qboundEngine.pieceLengths(robot, stops);
-    const total = lengths.reduce((a, b) => a + b, 0);
-    let rest = done * total;
-    const leg = lengths.findIndex((length) => {
-      rest -= length;
-      return rest <= 1e-12;
-    });
-    return leg < 0 ? lengths.length - 1 : leg;
-  }
-
-  /** The fractions of its length at which a path comes to its stops.
-   * @type {(robot: Robot, stops: Pair[]) => number[]} */
-  function stopsAt(robot, stops) {
-    const lengths = qboundEngine.pieceLengths(robot, stops);
-    const total = lengths.reduce((a, b) => a + b, 0);
-    const ends = lengths.map((_, i) => lengths.slice(0, i + 1).reduce((a, b) => a + b, 0));
-    return [0, ...ends.map((end) => end / total)];
+  function legOf(robot, stops, done) {
+    return qboundEngine.legAt(qboundEngine.pieceLengths(robot, stops), done - 1e-12).leg;
   }
 
   /** The tool's places along a path of straight pieces, up to a fraction of its length.
@@ -60,68 +42,11 @@
     );
   }
 
-  /* --- a path that plays ------------------------------------------------------------------------ */
-
-  /** Moves a fraction from 0 to 1; where the reader wants no motion, from stop to stop.
-   * @type {(show: (done: number) => void, change: (runs: boolean) => void) => Player} */
-  function player(show, change) {
-    const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-    let [done, frame, timer, runs] = [0, 0, 0, false];
-    const stop = () => {
-      window.cancelAnimationFrame(frame);
-      window.clearTimeout(timer);
-      if (runs) turn(false);
-    };
-    /** @type {(on: boolean) => void} */
-    const turn = (on) => {
-      runs = on;
-      change(on);
-    };
-    /** @type {(value: number) => boolean} */
-    const reach = (value) => {
-      done = Math.min(1, value);
-      show(done);
-      return done < 1;
-    };
-    /** @type {(seconds: number, loops: boolean) => void} */
-    const glide = (seconds, loops) => {
-      let last = performance.now();
-      /** @type {(now: number) => void} */
-      const step = (now) => {
-        const next = done + Math.max(0, Math.min(100, now - last)) / (1000 * seconds);
-        last = now;
-        if (reach(loops ? next % 1 : next)) frame = window.requestAnimationFrame(step);
-        else stop();
-      };
-      frame = window.requestAnimationFrame(step);
-    };
-    /** @type {(places: number[]) => void} */
-    const leap = (places) => {
-      const [next, ...later] = places;
-      if (reach(next ?? 1)) timer = window.setTimeout(() => leap(later), PAUSE);
-      else stop();
-    };
-    return {
-      calm: () => calm.matches,
-      runs: () => runs,
-      stop,
-      go(value) {
-        stop();
-        reach(value);
-      },
-      play(seconds, places, loops = false) {
-        stop();
-        if (done >= 1) done = 0;
-        turn(true);
-        if (calm.matches) leap(places.filter((place) => place > done + 1e-9));
-        else glide(seconds, loops);
-      },
-    };
-  }
-
-  /** @type {(robot: Robot, stops: Pair[]) => number} */
-  function secondsOf(robot, stops) {
-    return PACE * qboundEngine.pieceLengths(robot, stops).reduce((a, b) => a + b, 0);
+  /** How long a path plays, and its stops.
+   * @type {(robot: Robot, stops: Pair[]) => { seconds: number, places: number[] }} */
+  function timesOf(robot, stops) {
+    const { PACE, pieceLengths, stopsAt, sum } = qboundEngine;
+    return { seconds: PACE * sum(pieceLengths(robot, stops)), places: stopsAt(robot, stops) };
   }
 
   /* --- drawing ---------------------------------------------------------------------------------- */
@@ -153,7 +78,7 @@
   /** @type {(arm: Explorer, trace: Trace, done: number) => void} */
   function drawDone(arm, { way, joints, plane }, done) {
     const { alongPath, pathText } = qboundEngine;
-    const leg = done > 0 ? legAt(arm.robot, way.stops, done) : -1;
+    const leg = done > 0 ? legOf(arm.robot, way.stops, done) : -1;
     const passed = way.stops.slice(0, leg + 1);
     const path = [...passed, alongPath(arm.robot, way.stops, done)];
     joints.setAttribute("d", done > 0 ? pathText(path.map(arm.joints.at)) : "");
@@ -166,7 +91,7 @@
   /** @type {(arm: Explorer, way: Way, done: number) => string} */
   function stageText(arm, way, done) {
     const { determinant, number, toolAt } = qboundEngine;
-    const leg = legAt(arm.robot, way.stops, done);
+    const leg = legOf(arm.robot, way.stops, done);
     const last = way.labels.length - 1;
     const on =
       done >= 1
@@ -205,9 +130,10 @@
   /** The front page's: it moves by itself, until the reader does.
    * @type {(root: HTMLElement, robot: Robot, ways: Way[]) => void} */
   function small(root, robot, [way]) {
-    const { alongPath, element, mount } = qboundEngine;
+    const { alongPath, element, mount, player } = qboundEngine;
     const arm = mount(root, robot, { controls: [], show: { polygon: false }, q: robot.q });
-    const [seconds, places] = [1.5 * secondsOf(robot, way.stops), stopsAt(robot, way.stops)];
+    const { seconds, places } = timesOf(robot, way.stops);
+    const slowly = { seconds: 1.5 * seconds, places, loops: true };
     const button = element("button", { type: "button", textContent: "Play" });
     let put = arm.pair(); // where the path put the arm
     const walk = player(
@@ -222,7 +148,7 @@
     let asked = true; // whether it shall play while it is in sight
     const press = () => {
       asked = !walk.runs();
-      if (asked) walk.play(seconds, places, true);
+      if (asked) walk.play(slowly);
       else walk.stop();
     };
     const hint = "Drag the dot, or the tool.";
@@ -238,14 +164,14 @@
     walk.go(0);
     if (walk.calm()) return;
     new IntersectionObserver(([{ isIntersecting }]) => {
-      if (isIntersecting && asked && !walk.runs()) walk.play(seconds, places, true);
+      if (isIntersecting && asked && !walk.runs()) walk.play(slowly);
       else if (!isIntersecting) walk.stop();
     }).observe(root);
   }
 
   /** @type {(root: HTMLElement, robot: Robot, ways: Way[], scale: number, start: string) => void} */
   function full(root, robot, ways, scale, start) {
-    const { alongPath, element, mount } = qboundEngine;
+    const { alongPath, element, mount, player } = qboundEngine;
     const { buttons, statusLine, tick } = qboundParts;
     const arm = mount(root, robot, {
       controls: [],
@@ -289,7 +215,7 @@
     );
 
     function begin() {
-      walk.play(secondsOf(robot, way.stops), stopsAt(robot, way.stops));
+      walk.play(timesOf(robot, way.stops));
     }
 
     /** @type {(name: string) => void} */
@@ -330,5 +256,5 @@
     choose(way.name);
   }
 
-  qboundFigures.traversals = Object.assign(show, { waysOf, legAt, stopsAt, toolPath });
+  qboundFigures.traversals = Object.assign(show, { waysOf, legOf, toolPath });
 }

@@ -22,14 +22,23 @@ from qbound.files import write_whole
 from qbound.printable import printable
 from qbound.region import Region, Slices
 
-ARITHMETIC: Final = ("kinematics.js", "bodies.js", "postures.js", "slices.js", "polygons.js")
+ARITHMETIC: Final = (
+    "vectors.js",
+    "roots.js",
+    "arcs.js",
+    "kinematics.js",
+    "contacts.js",
+    "postures.js",
+    "fibres.js",
+    "polygons.js",
+)
 """What repeats the library's computations and knows no page."""
 
-PICTURES: Final = ("drawing.js", "hands.js", "joint_space.js", "arm.js", "parts.js")
+PICTURES: Final = ("drawing.js", "hands.js", "player.js", "joint_space.js", "arm.js", "parts.js")
 ENGINE: Final = (*ARITHMETIC, *PICTURES, "engine.js")
 """What every figure of a page shares."""
 
-EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "controls.js")
+EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "frame.js", "controls.js")
 """What each explorer has for itself: its state, and what shows it."""
 
 SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")
@@ -166,13 +175,13 @@ def engine_style() -> str:
 
 
 def shorter_script(script: str) -> str:
-    """Leave out comments that begin a line, and indentation.
+    """Leave out comments and indentation.
 
-    No string of such a script may go over a line's end.
+    No string of such a script may go over a line's end, or hold two slashes after a space.
     """
     code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
-    lines = (line.strip() for line in code.splitlines())
-    return "".join(f"{line}\n" for line in lines if line and not line.startswith("//"))
+    lines = (re.sub(r"(^|\s+)//\s.*", "", line).strip() for line in code.splitlines())
+    return "".join(f"{line}\n" for line in lines if line)
 
 
 def web_text(name: str) -> str:

@@ -19,7 +19,7 @@ from qbound.units import counted, joint_text
 LARGEST: Final = 2**16 - 1
 """Of the whole numbers that a place is written with: parts of a range."""
 
-SCRIPTS: Final = ("surface.js", "surface_start.js")
+SCRIPTS: Final = ("vectors.js", "frame.js", "surface.js", "surface_start.js")
 
 
 def surface_page(surface: Surface) -> str:

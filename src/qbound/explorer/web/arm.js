@@ -49,12 +49,7 @@ function planePlaces(robot, q) {
 
 /** @type {(svg: SVGSVGElement, robot: Robot, state: State, slice: Slice, box: number[][]) => PlanePicture} */
 function drawPlane(svg, robot, state, slice, box) {
-  const fitted = picture(svg, box, { left: 8, right: 8, top: 8, bottom: 26 }, true);
-  const drawn = {
-    ...fitted,
-    box: { left: 0, top: 0, right: fitted.width, bottom: fitted.height },
-  };
-  clear(drawn);
+  const drawn = wholePicture(svg, box, 26);
   const axes = viewAxes(robot, state.q);
   if (robot.plane.oblique) drawFloor(robot, drawn, axes);
   else drawGround(robot, drawn, axes);
@@ -241,16 +236,6 @@ function lineThrough(corners, side) {
   return corners.flatMap((a, i) => crossing(a, corners[(i + 1) % corners.length], side));
 }
 
-/** Where the step from a to b changes sides, if it does.
- * @type {(a: Point, b: Point, side: Side) => Point[]} */
-function crossing(a, b, side) {
-  const [from, to] = [side(a), side(b)];
-  const [isIn, staysIn] = [from <= 0, to <= 0];
-  if (isIn === staysIn) return [];
-  const share = from / (from - to);
-  return [[a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]];
-}
-
 /** @type {(frame: number) => string} */
 function linkColour(frame) {
   return `var(--links-${frame % 5})`;
@@ -333,8 +318,7 @@ function placeArm(robot, drawn, state, lit) {
 
 /** @type {(element: SVGElement, point: Point, prefix?: string) => void} */
 function placeAt(element, [x, y], prefix = "") {
-  element.setAttribute(`${prefix}x`, String(x));
-  element.setAttribute(`${prefix}y`, String(y));
+  set(element, { [`${prefix}x`]: x, [`${prefix}y`]: y });
 }
 
 /** @type {(robot: Robot, drawn: PlanePicture, state: State, lit: Lit, i: number, place: Point) => void} */
@@ -413,8 +397,7 @@ function placeGap(line, wall, [a, b], lit) {
   line.classList.toggle("closest", lit.closest === wall.name);
   line.classList.toggle("lit", lit.violated.has(wall.name));
   if (!near) return;
-  for (const [key, value] of Object.entries({ x1: a[0], y1: a[1], x2: b[0], y2: b[1] }))
-    line.setAttribute(key, String(value));
+  set(line, { x1: a[0], y1: a[1], x2: b[0], y2: b[1] });
 }
 
 /** The arm without bodies at another pose: a line from base to tool.

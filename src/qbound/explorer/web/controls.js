@@ -67,31 +67,26 @@ function buildPose() {
   byId("pose").replaceChildren(...robot.joints.map(poseRow), note);
 }
 
+/** @type {SetRow[]} */
+const poseRows = [];
+
 /** A slider and a field for one joint.
- * @type {(joint: Joint, j: number) => HTMLDivElement} */
+ * @type {(joint: Joint, j: number) => HTMLElement} */
 function poseRow(joint, j) {
   const turn = joint.kind === "revolute";
   const factor = turn ? DEGREE : 1;
   const [low, high] = rangeShown(joint, j).map((value) => value / factor);
-  const [min, max] = [String(low), String(high)];
-  const step = String(turn ? 0.1 : (high - low) / 1000);
-  const row = rowValues(j); // its slider counts slices
-  const reach = row ? { min: "0", max: String(row.length - 1), step: "1" } : { min, max, step };
-  const slide = newPart(`slide-${j}`, element("input", { type: "range", ...reach }));
-  const field = newPart(`value-${j}`, element("input", { type: "number", min, max, step: "any" }));
   const name = joint.name + (robot.free.includes(j) ? "" : " (held)");
-  slide.ariaLabel = name;
-  field.ariaLabel = `${name}, ${turn ? "degrees" : robot.length_unit}`;
-  for (const input of [slide, field]) {
-    input.addEventListener("input", () => {
-      const value = Number(input.value);
-      if (input.value === "" || !Number.isFinite(value)) return;
-      setJoint(j, row && input === slide ? row[value] : value * factor);
-    });
-  }
-  field.addEventListener("blur", showPose);
-  const unit = element("span", { className: "unit" }, field, turn ? "°" : robot.length_unit);
-  return element("div", { className: "slider" }, element("span", {}, name), slide, unit);
+  const unit = turn ? "°" : robot.length_unit;
+  const [step, digits] = turn ? [0.1, 1] : [(high - low) / 1000, 4];
+  const places = rowValues(j)?.map((value) => value / factor);
+  const row = valueRow({ name, spoken: name, low, high, step, digits, unit, places }, (value) =>
+    setJoint(j, value * factor),
+  );
+  newPart(`slide-${j}`, row.slide);
+  newPart(`value-${j}`, row.field).ariaLabel = `${name}, ${turn ? "degrees" : unit}`;
+  poseRows[j] = row;
+  return row.row;
 }
 
 /** The range of a joint's slider: what is drawn, its limits, or one turn.
@@ -260,25 +255,17 @@ function copyLink() {
 
 /* --- a page of its own ------------------------------------------------------------------------- */
 
-/** The address holds the view. In a frame the page tells its height, and is told whether its
-    surroundings are dark. One that stands in its frame's `srcdoc` (a notebook's output) has no
-    address, and no room elsewhere. */
+/** The address holds the view. A page that stands in its frame's `srcdoc` (a notebook's output) has
+    no address, and no room elsewhere. */
 function ownPage() {
   window.addEventListener("hashchange", () => {
     restore();
     buildShow();
     rebuild();
   });
-  const page = document.documentElement;
   const hasAddress = window.location.protocol !== "about:";
   byId("share").hidden = !hasAddress;
-  if (window.parent === window || !hasAddress) return;
-  page.classList.add("embedded");
-  const tell = () => window.parent.postMessage({ explorerHeight: page.offsetHeight }, "*");
-  new ResizeObserver(tell).observe(document.body);
-  window.addEventListener("message", ({ data }) => {
-    if (["light", "dark"].includes(data?.theme)) page.style.colorScheme = data.theme;
-  });
+  if (hasAddress) answerFrame();
 }
 
 if (options.page) {
@@ -312,7 +299,7 @@ const explorer = {
   moveTool,
   play,
   stop: stopPlaying,
-  isPlaying,
+  isPlaying: walker.runs,
   walkStops,
   setScale,
   refresh,

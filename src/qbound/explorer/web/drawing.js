@@ -11,9 +11,14 @@ const SVG = "http://www.w3.org/2000/svg";
  * @returns {SVGElementTagNameMap[K]} */
 function make(name, attributes, text = "") {
   const element = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  set(element, attributes);
   element.textContent = text;
   return element;
+}
+
+/** @type {(element: Element, attributes: Record<string, string | number>) => void} */
+function set(element, attributes) {
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
 }
 
 /** The height of a line of text: it differs from font to font.
@@ -57,6 +62,16 @@ function picture(svg, ranges, margin, equal) {
   };
 }
 
+/** An empty picture of the plane, with equal scales: it shows what lies in its margin, too.
+ * @type {(svg: SVGSVGElement, ranges: number[][], bottom?: number) => Picture} */
+function wholePicture(svg, ranges, bottom = 8) {
+  const fitted = picture(svg, ranges, { left: 8, right: 8, top: 8, bottom }, true);
+  const box = { left: 0, top: 0, right: fitted.width, bottom: fitted.height };
+  const drawn = { ...fitted, box };
+  clear(drawn);
+  return drawn;
+}
+
 /** Where pictures stand one below the other, two of them and a line of words fit the screen.
  * @type {(svg: SVGSVGElement) => number} */
 function largestHeight(svg) {
@@ -90,6 +105,23 @@ function clear(drawn) {
   const clip = make("clipPath", { id: `${drawn.svg.id}-clip` });
   clip.append(make("rect", { x: left, y: top, width: right - left, height: bottom - top }));
   drawn.svg.append(clip);
+}
+
+/** A line of the grid and its label, of the axis below (k = 0) or of the one on the left.
+ * @type {(drawn: Picture, k: number, value: number, text: string, below: number, width?: number) => SVGElement[]} */
+function gridLine(drawn, k, value, text, below, width = 0) {
+  const { left, top, right, bottom } = drawn.box;
+  const [x, y] = drawn.at([value, value]);
+  const middle = Math.min(x, drawn.width - 2 - width / 2); // the last stays in the picture
+  return k === 0
+    ? [
+        make("line", { class: "grid", x1: x, x2: x, y1: top, y2: bottom }),
+        make("text", { x: middle, y: below, "text-anchor": "middle" }, text),
+      ]
+    : [
+        make("line", { class: "grid", x1: left, x2: right, y1: y, y2: y }),
+        make("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, text),
+      ];
 }
 
 /** Random poses: round dots where safe (grey where cut off from home), crosses where not.
@@ -134,12 +166,6 @@ function thin(names, width) {
   }
 }
 
-/** @type {(value: number, digits: number) => string} */
-function number(value, digits) {
-  const text = value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
-  return text.replace("-", "−");
-}
-
 /** @type {Record<string, string>} */
 const LEGEND_SHAPES = {
   singular: "M0 7H22",
@@ -151,13 +177,20 @@ const LEGEND_SHAPES = {
   crosses: "M9 5l4 4m0 -4l-4 4",
 };
 
+/** What a legend shows beside a text.
+ * @type {(name: string, d: string, height?: number) => SVGSVGElement} */
+function legendKey(name, d, height = 14) {
+  const viewBox = `0 0 22 ${height}`;
+  const key = make("svg", { width: 22, height, viewBox, "aria-hidden": "true" });
+  for (const part of name === "workspace twice" ? [0, 1] : [0])
+    key.append(make("path", { class: name, d, "data-part": part }));
+  return key;
+}
+
 /** One line of a legend, or none.
  * @type {(name: string, text: string, shows: boolean) => HTMLLIElement[]} */
 function legend(name, text, shows) {
   if (!shows) return [];
-  const key = make("svg", { width: 22, height: 14, viewBox: "0 0 22 14", "aria-hidden": "true" });
-  const d = LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z";
-  for (const part of name === "workspace twice" ? [0, 1] : [0])
-    key.append(make("path", { class: name, d, "data-part": part }));
+  const key = legendKey(name, LEGEND_SHAPES[name] ?? "M0 0H22V14H0Z");
   return [element("li", {}, key, text)];
 }

@@ -190,6 +190,14 @@ interface Arm {
   s2: number;
 }
 
+interface CircleArc {
+  d: number; // amplitude
+  theta: number; // middle
+  alpha: number; // half the width
+  count: number; // of roots; -1: every angle is one
+  empty: boolean; // no angle satisfies the inequality
+}
+
 /* --- slices ----------------------------------------------------------------------------------- */
 
 interface NamedView extends View {
@@ -206,30 +214,39 @@ interface SliceProblem {
   ranges: NamedView[];
 }
 
-interface Span {
-  low: { at: number };
-  high: { at: number };
-}
-
-interface Interval extends Span {
-  low: { at: number; by: number };
-  high: { at: number; by: number };
-}
-
-interface Fibre {
-  t: number;
-  intervals: Interval[];
+interface Column {
+  q: number; // of the first joint
+  free: number[]; // of the second: ends of intervals, in order
+  by: number[]; // a label for each end
 }
 
 type Row = number[]; // of a cell: value of the first joint, lowest and highest of the second
 
 interface Cell {
-  low: number;
+  low: number; // labels of its ends
   high: number;
   rows: Row[];
   piece: number;
-  before: Interval[];
-  after: Interval[];
+}
+
+interface Decomposition {
+  columns: Column[];
+  of: number[][]; // the component of each interval of each column
+  cells: Cell[];
+}
+
+interface ColumnSizes {
+  closest: number; // columns so near stand for one place
+  least: number; // of an upright edge
+  wraps: boolean; // whether the last column is the first one
+}
+
+interface UprightEdge {
+  q: number;
+  low: number;
+  high: number;
+  piece: number;
+  side: 0 | 1; // of what is free: 0, it begins here; 1, it ends
 }
 
 interface Edge {
@@ -250,8 +267,7 @@ interface DrawnArc {
   points: Pair[];
 }
 
-interface Slice {
-  cells: Cell[];
+interface Slice extends Decomposition {
   home: number | null;
   exact: boolean; // whether the arcs are the library's
   own: boolean; // whether it is the slice that the page opened with
@@ -300,6 +316,32 @@ interface Lit {
   boundaries: Set<string>; // those whose points are joined by a line
   points: Set<number>; // of what is bold
   named: Set<number>; // those, and the points of the closest boundary
+}
+
+interface ValueRow {
+  name: string; // beside the slider
+  spoken: string; // for those who do not see it, with its unit
+  low: number;
+  high: number;
+  step: number; // of the slider; the field takes any number
+  digits: number; // that the field shows
+  unit: string;
+  places?: number[]; // that the slider counts
+}
+
+interface SetRow {
+  row: HTMLElement;
+  slide: HTMLInputElement;
+  field: HTMLInputElement;
+  set: (value: number) => void;
+}
+
+interface Player {
+  calm: () => boolean; // whether the reader wants no motion
+  runs: () => boolean;
+  stop: () => void;
+  go: (done: number) => void;
+  play: (way: { seconds: number; places: number[]; from?: number; loops?: boolean }) => void;
 }
 
 interface Picture {

@@ -34,18 +34,8 @@ function drawJointAxes(robot, drawn, line) {
       ...[view.low, view.high].map((value) => wordWidth(drawn.svg, shown(joint, value))),
     );
     const most = k === 0 ? (right - left) / (widest + 8) : (bottom - top) / (line + 4);
-    for (const value of ticks(view, turn, most)) {
-      const [x, y] = drawn.at(k === 0 ? [value, 0] : [0, value]);
-      const ends =
-        k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
-      group.append(make("line", { class: "grid", ...ends }));
-      const middle = Math.min(x, drawn.width - 2 - widest / 2); // the last stays in the picture
-      const place =
-        k === 0
-          ? { x: middle, y: rows[0], "text-anchor": "middle" }
-          : { x: left - 6, y: y + 4, "text-anchor": "end" };
-      group.append(make("text", place, shown(joint, value)));
-    }
+    for (const value of ticks(view, turn, most))
+      group.append(...gridLine(drawn, k, value, shown(joint, value), rows[0], widest));
     const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
     group.append(
       k === 0
@@ -158,26 +148,17 @@ function nameBeside(drawn, name, points) {
 
 /** @type {(points: Point[]) => number[]} */
 function stepLengths(points) {
-  return points.slice(1).map((p, i) => Math.hypot(p[0] - points[i][0], p[1] - points[i][1]));
+  return points.slice(1).map((p, i) => Math.hypot(...minus(p, points[i])));
 }
 
 /** The middle of a polyline by length, and the unit normal to the right of its direction.
  * @type {(points: Point[]) => Point[]} */
 function middleOf(points) {
-  const steps = stepLengths(points);
-  let rest = sum(steps) / 2;
-  let i = 0;
-  while (i < steps.length - 1 && rest > steps[i]) {
-    rest -= steps[i];
-    i += 1;
-  }
-  const [a, b] = [points[i], points[i + 1]];
-  const share = steps[i] === 0 ? 0 : rest / steps[i];
-  const [dx, dy] = [(b[0] - a[0]) / (steps[i] || 1), (b[1] - a[1]) / (steps[i] || 1)];
-  return [
-    [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])],
-    [-dy, dx],
-  ];
+  const { leg, share } = legAt(stepLengths(points), 0.5);
+  const [a, b] = [points[leg], points[leg + 1]];
+  const way = minus(b, a);
+  const size = Math.hypot(...way) || 1;
+  return [partWay(a, b, share), [-way[1] / size, way[0] / size]];
 }
 
 /** @type {(drawn: Picture, polygon: VertexPolygon, scale: number) => void} */

@@ -1,20 +1,6 @@
-"use strict";
-/* The explorer's arithmetic, from here to polygons.js: it repeats the library's and knows no page,
-   and tests/test_explorer.py runs it beside Python. This file: harmonic forms, frames, margins. */
-
-const TURN = 2 * Math.PI;
+/* Harmonic forms, frames, margins and the plane of motion of a robot. */
 
 /* --- harmonic forms: sums over products of (1, cos q, sin q) or (1, q, q^2) ------------------- */
-
-/** @type {(kind: Kind, q: number) => number[]} */
-function basis(kind, q) {
-  return kind === "revolute" ? [1, Math.cos(q), Math.sin(q)] : [1, q, q * q];
-}
-
-/** @type {(kind: Kind, q: number) => number[]} */
-function basisSlope(kind, q) {
-  return kind === "revolute" ? [0, -Math.sin(q), Math.cos(q)] : [0, 1, 2 * q];
-}
 
 /** Hold all joints but the two free ones: the 3 by 3 coefficients that are left.
     A form is a list of terms [coefficient, index of joint 1's factor, of joint 2's, ...].
@@ -58,46 +44,7 @@ function freeKinds(robot) {
   return robot.free.map((j) => robot.joints[j].kind);
 }
 
-/* --- vectors, turns, frames: qbound.robot (Table 2) ------------------------------------------- */
-
-const IDENTITY = [
-  [1, 0, 0],
-  [0, 1, 0],
-  [0, 0, 1],
-];
-
-/** @type {(a: Place, b: Place) => number} */
-function dot(a, b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/** @type {(matrix: Matrix, v: Place) => Place} */
-function apply(matrix, v) {
-  return matrix.map((row) => dot(row, v));
-}
-
-/** @type {(a: Place, b: Place) => Place} */
-function add(a, b) {
-  return a.map((value, i) => value + b[i]);
-}
-
-/** @type {(a: Matrix, b: Matrix) => Matrix} */
-function product(a, b) {
-  return a.map((row) =>
-    [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k]),
-  );
-}
-
-/** Rodrigues' formula about a unit axis.
- * @type {(axis: Place, q: number) => Matrix} */
-function axisTurn([x, y, z], q) {
-  const [c, s, t] = [Math.cos(q), Math.sin(q), 1 - Math.cos(q)];
-  return [
-    [t * x * x + c, t * x * y - s * z, t * x * z + s * y],
-    [t * x * y + s * z, t * y * y + c, t * y * z - s * x],
-    [t * x * z - s * y, t * y * z + s * x, t * z * z + c],
-  ];
-}
+/* --- frames: qbound.robot (Table 2) ------------------------------------------------------------ */
 
 /** The base and the frame after each step: turn and place, seen from the base.
  * @type {(robot: Robot, q: Pose) => Frame[]} */
@@ -139,9 +86,8 @@ function margins(robot, q) {
   const placed = placedParts(robot, found);
   /** @type {(wall: Wall) => number} */
   const marginTo = (wall) => {
-    if (wall.kind === "bodies") return bodiesEncounter(wall, placed).distance;
-    if (wall.kind === "pair") return pairMargin(wall, places);
-    return isOfBody(wall) ? lowestCorner(robot, wall, found).value : halfSpaceMargin(wall, places);
+    if (isAboutBodies(wall)) return bodiesMargin(robot, wall, found, placed);
+    return wall.kind === "pair" ? pairMargin(wall, places) : halfSpaceMargin(wall, places);
   };
   /** @type {(wall: Wall) => Margin} */
   const marginOf = (wall) => ({
@@ -153,10 +99,10 @@ function margins(robot, q) {
   return [...robot.boundaries.map(marginOf), ...limitMargins(robot, q)];
 }
 
-/** Whether a half-space keeps a body, not a point.
- * @type {(wall: HalfSpaceWall) => boolean} */
-function isOfBody(wall) {
-  return wall.body !== null;
+/** Whether a boundary is about bodies, not about points: then it has no form of its own.
+ * @type {(wall: Wall) => wall is BodiesWall | HalfSpaceWall} */
+function isAboutBodies(wall) {
+  return wall.kind === "bodies" || (wall.kind === "half-space" && wall.body !== null);
 }
 
 /** @type {(wall: PairWall, places: Place[]) => number} */
@@ -174,24 +120,15 @@ function halfSpaceMargin(wall, places) {
 function limitMargins(robot, q) {
   return robot.limits.map((limit) => {
     const joint = robot.joints[limit.joint];
+    // A joint that turns all the way round has no beginning: its value nearest to the middle.
+    const at = joint.wraps ? wrapped(q[limit.joint], limit.middle) : q[limit.joint];
     return {
       name: limit.name,
-      value: limit.side * (limit.value - around(joint, q[limit.joint], limit.middle)),
+      value: limit.side * (limit.value - at),
       used: true,
       unit: joint.kind === "revolute" ? "angle" : "length",
     };
   });
-}
-
-/** A joint that turns all the way round has no beginning: its value nearest to `middle`.
- * @type {(joint: Joint, q: number, middle: number) => number} */
-function around(joint, q, middle) {
-  return joint.wraps ? q - TURN * Math.round((q - middle) / TURN) : q;
-}
-
-/** @type {(value: number, low: number, high: number) => number} */
-function between(value, low, high) {
-  return Math.min(high, Math.max(low, value));
 }
 
 /** @type {(robot: Robot, q: Pose, pair: Pair) => Pose} */
@@ -213,21 +150,6 @@ function tightest(robot, found) {
 /** @type {(found: Margin[]) => boolean} */
 function isSafe(found) {
   return found.every((one) => !one.used || one.value >= 0);
-}
-
-/** @type {(values: number[]) => number} */
-function sum(values) {
-  return values.reduce((total, value) => total + value, 0);
-}
-
-/** The entry whose size is least, the first of equals; null where there is none.
- * @template T
- * @param {T[]} all
- * @param {(one: T) => number} size
- * @returns {T | null} */
-function leastBy(all, size) {
-  const sizes = all.map(size);
-  return all[sizes.indexOf(Math.min(...sizes))] ?? null;
 }
 
 /* --- the plane of motion ---------------------------------------------------------------------- */

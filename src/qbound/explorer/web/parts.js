@@ -21,6 +21,43 @@ function element(name, properties, ...children) {
   return made;
 }
 
+/** A value with its name, a slider and a field. An angle may go on beyond the slider's ends, other
+    values stop there. Where there are `places`, the slider counts them.
+ * @type {(value: ValueRow, change: (value: number) => void) => SetRow} */
+function valueRow({ name, spoken, low, high, step, digits, unit, places }, change) {
+  const limits = { min: String(low), max: String(high) };
+  const reach = places ? { min: "0", max: String(places.length - 1) } : limits;
+  const slide = element("input", { type: "range", ...reach, step: String(places ? 1 : step) });
+  const field = element("input", { type: "number", ...limits, step: "any" });
+  slide.ariaLabel = spoken;
+  field.ariaLabel = `${spoken}, as a number`;
+  let shown = "";
+  let typed = false; // what a reader types stays as it is typed
+  for (const input of [slide, field]) {
+    input.addEventListener("input", () => {
+      const value = places && input === slide ? places[Number(input.value)] : Number(input.value);
+      if (input.value === "" || !Number.isFinite(value)) return;
+      typed = input === field;
+      change(unit === "°" ? value : between(value, low, high));
+      typed = false;
+    });
+  }
+  field.addEventListener("blur", () => {
+    field.value = shown;
+  });
+  const box = element("span", { className: "unit" }, field, unit);
+  return {
+    row: element("div", { className: "slider" }, element("span", {}, name), slide, box),
+    slide,
+    field,
+    set(value) {
+      shown = String(Number(value.toFixed(digits)));
+      slide.value = String(places?.indexOf(value) ?? value);
+      if (!typed) field.value = shown;
+    },
+  };
+}
+
 /** Put a copy of the explorer's parts into an element; sections that no one asked for stay outside
     of the page and are updated there, so that no script has to ask which there are.
  * @type {(root: Element, prefix: string, shows: (control: string) => boolean) => Map<string, Element>} */

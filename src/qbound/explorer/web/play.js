@@ -1,9 +1,5 @@
 /* Paths that play, and the task that asks for one: why the arm must stretch. */
 
-const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-let playing = 0; // the animation frame that is asked for, or
-let waiting = 0; // with reduced motion the timer
-
 /* --- the task ---------------------------------------------------------------------------------- */
 
 function hasTask() {
@@ -29,10 +25,11 @@ function showTask(safe) {
   const singular = Math.abs(det) <= NEAR_SINGULAR * slice.largest;
   const across = Math.sign(det) !== state.side;
   for (const [i, line] of joints.singular.entries()) {
-    const near = Math.abs(shortWay(1, now[1] - slice.lines[i])) <= 45 * DEGREE;
+    const [, off] = wayTo(robot, [now[0], slice.lines[i]], now);
+    const near = Math.abs(off) <= 45 * DEGREE;
     line.classList.toggle("lit", singular && near);
   }
-  const gap = Math.max(...now.map((value, k) => Math.abs(shortWay(k, mirror[k] - value))));
+  const gap = Math.max(...wayTo(robot, now, mirror).map(Math.abs));
   const text = taskText(safe, singular, across, across && gap < 6 * DEGREE);
   if (byId("task-text").textContent !== text) byId("task-text").textContent = text;
 }
@@ -69,71 +66,43 @@ function walkStops() {
   return walks[state.walk].map((i) => corners[i]);
 }
 
+/** @type {(done: number) => void} */
+let tellDone = () => {};
+
+const walker = player(
+  (done) => {
+    setPair(alongPath(robot, state.path ?? [], done));
+    tellDone(done);
+    refresh();
+  },
+  (runs) => {
+    byId("play").setAttribute("aria-pressed", String(runs));
+    byId("play").textContent = runs ? "Pause" : "Play";
+  },
+  () => state.speed,
+);
+
 /** Move along straight pieces from a fraction of their length on; `each` hears how far it is.
  * @type {(stops: Pair[], from: number, each: (done: number) => void) => void} */
 function play(stops, from, each) {
-  stopPlaying();
-  const behavior = calm.matches ? "auto" : "smooth";
+  const behavior = walker.calm() ? "auto" : "smooth";
   svgOf("plane").scrollIntoView({ block: "nearest", behavior });
   state.path = stops;
-  byId("play").setAttribute("aria-pressed", "true");
-  byId("play").textContent = "Pause";
-  /** @type {(done: number) => boolean} */
-  const reach = (done) => {
-    setPair(alongPath(robot, stops, done));
-    each(done);
-    refresh();
-    return done < 1;
-  };
-  if (calm.matches) playCalmly(stops, from, reach);
-  else playSmoothly(stops, from, reach);
-}
-
-/** @type {(stops: Pair[], from: number, reach: (done: number) => boolean) => void} */
-function playSmoothly(stops, from, reach) {
-  const duration = 14000 * sum(pieceLengths(robot, stops));
-  let done = from;
-  /** @type {(time: number, last: number) => void} */
-  const step = (time, last) => {
-    done = Math.min(1, done + (Math.min(100, time - last) * state.speed) / duration);
-    if (reach(done)) playing = window.requestAnimationFrame((next) => step(next, time));
-    else stopPlaying();
-  };
-  playing = window.requestAnimationFrame((time) => step(time, time));
-}
-
-/** With reduced motion: from stop to stop, without anything in between.
- * @type {(stops: Pair[], from: number, reach: (done: number) => boolean) => void} */
-function playCalmly(stops, from, reach) {
-  const lengths = pieceLengths(robot, stops);
-  const places = lengths
-    .map((_, i) => sum(lengths.slice(0, i + 1)) / sum(lengths))
-    .filter((place) => place > from + 1e-6);
-  const step = () => {
-    if (reach(Math.min(1, places.shift() ?? 1)) && places.length > 0)
-      waiting = window.setTimeout(step, 1200 / state.speed);
-    else stopPlaying();
-  };
-  step();
+  tellDone = each;
+  const seconds = PACE * sum(pieceLengths(robot, stops));
+  walker.play({ seconds, places: stopsAt(robot, stops), from });
 }
 
 function stopPlaying() {
-  window.cancelAnimationFrame(playing);
-  window.clearTimeout(waiting);
-  byId("play").setAttribute("aria-pressed", "false");
-  byId("play").textContent = "Play";
-}
-
-function isPlaying() {
-  return byId("play").getAttribute("aria-pressed") === "true";
+  walker.stop();
 }
 
 function playWalk() {
-  if (isPlaying()) {
+  if (walker.runs()) {
     stopPlaying();
     return;
   }
-  play(walkStops(), state.progress >= 1 ? 0 : state.progress, (done) => {
+  play(walkStops(), state.progress, (done) => {
     state.progress = done;
     inputOf("progress").value = String(done);
   });
@@ -149,7 +118,7 @@ function showProgress() {
 
 /** A safe way in joint space to the mirrored pose, if it is a simple one. */
 function playTask() {
-  if (isPlaying()) {
+  if (walker.runs()) {
     stopPlaying();
     return;
   }
@@ -177,6 +146,6 @@ function isSafeWay(stops) {
 }
 
 function playFlip() {
-  const other = otherPosture();
+  const other = flipped();
   if (other) play([inView(pairOf(state.q)), other], 0, () => {});
 }

@@ -32,7 +32,7 @@ function smallestClearance(robot, q, vertices, factor, centre) {
         }
         const found = bodies.length > 0 ? framesOf(robot, withPair(robot, q, at)) : [];
         for (const wall of bodies) {
-          const value = wallMargin(robot, wall, found);
+          const value = bodiesMargin(robot, wall, found);
           if (value < best.value) best = { value, name: wall.name, q: at };
         }
       }
@@ -62,6 +62,12 @@ function randomPairs(robot) {
   );
 }
 
+/** The shortest way from one pair of joint values to another: a joint that wraps takes it.
+ * @type {(robot: Robot, from: Pair, to: Pair) => Pair} */
+function wayTo(robot, from, to) {
+  return to.map((value, k) => (robot.views[k].wraps ? wrapped(value - from[k]) : value - from[k]));
+}
+
 /** Length of each straight piece of a path: the largest change of a joint, in views' widths.
  * @type {(robot: Robot, stops: Pair[]) => number[]} */
 function pieceLengths(robot, stops) {
@@ -71,17 +77,28 @@ function pieceLengths(robot, stops) {
     .map((b, i) => Math.max(...b.map((value, k) => Math.abs(value - stops[i][k]) / size[k])));
 }
 
+/** The fractions of its length at which a path comes to its stops.
+ * @type {(robot: Robot, stops: Pair[]) => number[]} */
+function stopsAt(robot, stops) {
+  const lengths = pieceLengths(robot, stops);
+  return stops.map((_, i) => sum(lengths.slice(0, i)) / sum(lengths));
+}
+
+/** On which of so long pieces a fraction of their whole length lies, and the share of that piece.
+ * @type {(lengths: number[], fraction: number) => { leg: number, share: number }} */
+function legAt(lengths, fraction) {
+  let rest = between(fraction, 0, 1) * sum(lengths);
+  let leg = 0;
+  while (leg < lengths.length - 1 && rest > lengths[leg]) {
+    rest -= lengths[leg];
+    leg += 1;
+  }
+  return { leg, share: lengths[leg] > 0 ? Math.min(1, rest / lengths[leg]) : 1 };
+}
+
 /** The place on a path of straight pieces after a fraction of its length.
  * @type {(robot: Robot, stops: Pair[], fraction: number) => Pair} */
 function alongPath(robot, stops, fraction) {
-  const lengths = pieceLengths(robot, stops);
-  let rest = Math.min(1, Math.max(0, fraction)) * sum(lengths);
-  for (let i = 0; i < lengths.length; i += 1) {
-    if (rest <= lengths[i] || i === lengths.length - 1) {
-      const share = lengths[i] === 0 ? 1 : Math.min(1, rest / lengths[i]);
-      return stops[i].map((value, k) => value + share * (stops[i + 1][k] - value));
-    }
-    rest -= lengths[i];
-  }
-  return stops[0];
+  const { leg, share } = legAt(pieceLengths(robot, stops), fraction);
+  return stops.length > 1 ? partWay(stops[leg], stops[leg + 1], share) : stops[0];
 }

@@ -1,29 +1,5 @@
 /* Kinematics of two joints in the plane of motion: qbound.workspace.planar. */
 
-/* --- complex numbers [re, im], for kinematics in the plane ------------------------------------ */
-
-/** @type {(a: Point, b: Point) => Point} */
-const minus = (a, b) => [a[0] - b[0], a[1] - b[1]];
-/** @type {(a: Point, b: Point) => Point} */
-const plus = (a, b) => [a[0] + b[0], a[1] + b[1]];
-/** @type {(a: Point, b: Point) => Point} */
-const times = (a, b) => [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
-/** @type {(a: Point, b: Point) => number} */
-const inner = (a, b) => a[0] * b[0] + a[1] * b[1];
-/** @type {(a: Point, b: Point) => number} */
-const cross = (a, b) => a[0] * b[1] - a[1] * b[0];
-/** @type {(a: Point) => number} */
-const angle = (a) => Math.atan2(a[1], a[0]);
-/** @type {(q: number) => Point} */
-const turnedBy = (q) => [Math.cos(q), Math.sin(q)];
-/** @type {(a: Point) => Point} */
-const mirrored = (a) => [-a[0], a[1]];
-
-/** @type {(q: number) => number} */
-function wrapped(q) {
-  return q - TURN * Math.ceil((q - Math.PI) / TURN);
-}
-
 /** The arm's own numbers, read off the coefficients of its tool map.
     RR: c + e^{i s1 q1} (d + e^{i s2 q2} e).  RP: c + e^{i s1 q1} (d + q2 e).
     PR: c + q1 d + e^{i s2 q2} e.             PP: c + q1 d + q2 e.
@@ -119,6 +95,19 @@ function possible(robot, arm, target) {
     pair.map((value, k) => turnsWithin(kinds[k], value, robot.views[k])[0]),
   );
   return turned.filter((pair) => pair.every((value) => value !== undefined));
+}
+
+/** Whether det J has the same sign at two poses; 0 counts as positive.
+ * @type {(map: ToolMap, one: Pair, other: Pair) => boolean} */
+function isLikePosture(map, one, other) {
+  return determinant(map, one) >= 0 === determinant(map, other) >= 0;
+}
+
+/** The other posture at the tool's place; null where a limit forbids it or there is none.
+ * @type {(robot: Robot, map: ToolMap, arm: Arm, pair: Pair) => Pair | null} */
+function otherPosture(robot, map, arm, pair) {
+  const found = possible(robot, arm, toolAt(map, pair));
+  return found.find((one) => !isLikePosture(map, one, pair)) ?? null;
 }
 
 /** The pose of an RR arm whose joints and tool are mirrored in the vertical through joint one.

@@ -121,7 +121,7 @@ function showStatus(found) {
   byId("status").classList.toggle("violated", !isSafe(found));
   if (shows("pose")) {
     byId("posture").textContent = postureText();
-    partOf("flip", HTMLButtonElement).disabled = otherPosture() === null;
+    partOf("flip", HTMLButtonElement).disabled = flipped() === null;
   }
   window.clearTimeout(timers.say);
   timers.say = window.setTimeout(() => say(verdict, reason), 600);
@@ -147,12 +147,8 @@ function showMargins(found, lit) {
 function showPose() {
   if (!shows("pose")) return;
   if (robot.row) byId("row").textContent = rowText(robot.row);
-  for (const [j, { kind }] of robot.joints.entries()) {
-    const [unit, digits] = kind === "revolute" ? [DEGREE, 1] : [1, 4];
-    const value = String(Number((state.q[j] / unit).toFixed(digits)));
-    const [field, slide] = [inputOf(`value-${j}`), inputOf(`slide-${j}`)];
-    if (document.activeElement !== field) field.value = value; // not while one types
-    slide.value = String(rowValues(j)?.indexOf(state.q[j]) ?? value);
+  for (const [j, { slide, set: show }] of poseRows.entries()) {
+    show(state.q[j] / (robot.joints[j].kind === "revolute" ? DEGREE : 1));
     slide.setAttribute("aria-valuetext", jointText(j, state.q[j]));
   }
 }

@@ -72,23 +72,23 @@ const state = {
 function findSlice() {
   const known = knownSlice();
   const problem = sliceProblem(robot, state.q, known?.walls);
-  const cells = sliceCells(problem, COLUMNS);
-  const home = pieceAt(cells, inView(pairOf(robot.q)));
+  const found = decompose(problem, COLUMNS);
+  const home = pieceAt(found.columns, found.of, inView(pairOf(robot.q)));
   const map = toolMap(robot, state.q);
   const arm = armOf(map);
   const regular = map.planar && sweepsAnArea(arm, robot.reach);
-  const inside = cells.filter((cell) => cell.piece === home);
+  const inside = found.cells.filter((cell) => cell.piece === home);
   const [, view] = robot.views;
   const lines = singularValues(arm).flatMap((value) => turnsWithin(map.kinds[1], value, view));
   return {
-    cells,
+    ...found,
     home,
     exact: known !== null,
     own: robot.joints.every((_, j) => isAsOpened(j)),
     map,
     arm,
     regular,
-    arcs: known ? exactArcs(known) : slicedArcs(problem, cells, home),
+    arcs: known ? exactArcs(known) : slicedArcs(problem, found, home),
     images: postureImages(map, arm, regular ? inside : [], problem.ranges[1]),
     lines: regular ? lines : [],
     largest: largestDeterminant(map),
@@ -116,9 +116,9 @@ function exactArcs({ components }) {
   return components.flatMap(({ home, loops }) => loops.flat().map((arc) => ({ ...arc, home })));
 }
 
-/** @type {(problem: SliceProblem, cells: Cell[], home: number | null) => DrawnArc[]} */
-function slicedArcs(problem, cells, home) {
-  const edges = cellEdges(problem, cells);
+/** @type {(problem: SliceProblem, found: Decomposition, home: number | null) => DrawnArc[]} */
+function slicedArcs(problem, found, home) {
+  const edges = cellEdges(problem, found);
   return edges.map((edge) => ({ ...edge, branch: null, home: edge.piece === home }));
 }
 
@@ -136,7 +136,7 @@ function largestDeterminant(map) {
 function judgeSample() {
   return randomPairs(robot).map((pair) => {
     const q = withPair(robot, state.q, pair);
-    const home = slice.home === null || pieceAt(slice.cells, pair) === slice.home;
+    const home = slice.home === null || pieceAt(slice.columns, slice.of, pair) === slice.home;
     return { pair, safe: isSafe(margins(robot, q)), home, tool: toolAt(slice.map, pair) };
   });
 }
@@ -191,38 +191,18 @@ function moveTool(target) {
   if (!slice.regular) return;
   const now = pairOf(state.q);
   const found = possible(robot, slice.arm, target);
-  const same = found.filter((pair) => isLikePosture(pair, now));
+  const same = found.filter((pair) => isLikePosture(slice.map, pair, now));
   const best = nearest(same.length > 0 ? same : found, now);
   if (best) movePose(best);
 }
 
-/** Whether det J has the same sign at two poses; 0 counts as positive.
- * @type {(a: Pair, b: Pair) => boolean} */
-function isLikePosture(a, b) {
-  const [positive, alsoPositive] = [a, b].map((pair) => determinant(slice.map, pair) >= 0);
-  return positive === alsoPositive;
-}
-
 /** @type {(pairs: Pair[], now: Pair) => Pair | null} */
 function nearest(pairs, now) {
-  return leastBy(pairs, (pair) =>
-    sum(pair.map((value, k) => Math.abs(shortWay(k, value - now[k])))),
-  );
-}
-
-/** @type {(k: number, difference: number) => number} */
-function shortWay(k, difference) {
-  return robot.views[k].wraps ? difference - TURN * Math.round(difference / TURN) : difference;
+  return leastBy(pairs, (pair) => sum(wayTo(robot, now, pair).map(Math.abs)));
 }
 
 /** The same place of the tool in the other posture, if the joints' limits allow it.
  * @type {() => Pair | null} */
-function otherPosture() {
-  if (!slice.regular) return null;
-  const now = pairOf(state.q);
-  const found = possible(robot, slice.arm, toolAt(slice.map, now));
-  return nearest(
-    found.filter((pair) => !isLikePosture(pair, now)),
-    now,
-  );
+function flipped() {
+  return slice.regular ? otherPosture(robot, slice.map, slice.arm, pairOf(state.q)) : null;
 }

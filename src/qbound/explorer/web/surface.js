@@ -226,11 +226,7 @@ function jointWords(data, place) {
 /** A number with as many digits as a thousandth of its range needs.
  * @type {(value: number, ends: number[]) => string} */
 function axisNumber(value, [low, high]) {
-  const digits = Math.max(0, 2 - Math.floor(Math.log10(high - low)));
-  return value
-    .toFixed(digits)
-    .replace(/^-(0(\.0+)?)$/, "$1")
-    .replace("-", "−");
+  return number(value, Math.max(0, 2 - Math.floor(Math.log10(high - low))));
 }
 
 /** @type {(root: HTMLElement, data: SurfaceData) => Surface3 | null} */
@@ -283,15 +279,15 @@ function showSurface(root, data) {
     const middle = seenAt(matrix, [0, 0, 0], width, height);
     for (const [axis, edge] of namedEdges(matrix, width, height).entries()) {
       const [a, b] = edge.map((corner) => seenAt(matrix, corner, width, height));
-      const way = [(a[0] + b[0]) / 2 - middle[0], (a[1] + b[1]) / 2 - middle[1]];
+      const way = minus(partWay(a, b, 0.5), middle);
       const size = Math.hypot(...way) || 1;
-      const at = [0.06, 0.94, 0.5].map((t) => [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+      const at = [0.06, 0.94, 0.5].map((t) => partWay(a, b, t));
       for (const [k, spot] of spots[axis].entries()) {
         const away = k === 2 ? 34 : 16;
         const half = [spot.offsetWidth / 2 + 2, spot.offsetHeight / 2 + 2];
         const [x, y] = at[k].map((value, j) => value + (way[j] / size) * away);
-        spot.style.left = `${Math.min(width - half[0], Math.max(half[0], x))}px`;
-        spot.style.top = `${Math.min(height - half[1], Math.max(half[1], y))}px`;
+        spot.style.left = `${between(x, half[0], width - half[0])}px`;
+        spot.style.top = `${between(y, half[1], height - half[1])}px`;
       }
     }
   }
@@ -329,12 +325,12 @@ function showSurface(root, data) {
 
   function turn(/** @type {number} */ right, /** @type {number} */ up) {
     view.yaw -= right;
-    view.pitch = Math.min(STRAIGHT_UP, Math.max(-STRAIGHT_UP, view.pitch + up));
+    view.pitch = between(view.pitch + up, -STRAIGHT_UP, STRAIGHT_UP);
     redraw();
   }
 
   function zoom(/** @type {number} */ factor) {
-    view.distance = Math.min(FARTHEST, Math.max(NEAREST, view.distance * factor));
+    view.distance = between(view.distance * factor, NEAREST, FARTHEST);
     redraw();
   }
 

@@ -75,7 +75,8 @@ function statusText(found) {
   }
   const close = tightest(robot, found);
   const nearby = close ? `Closest: ${words(close)}.` : "Nothing bounds this arm.";
-  const away = slice.home !== null && pieceAt(slice.cells, inView(pairOf(state.q))) !== slice.home;
+  const away =
+    slice.home !== null && pieceAt(slice.columns, slice.of, inView(pairOf(state.q))) !== slice.home;
   return [away ? "Safe, but cut off from home." : "Safe.", nearby];
 }
 
@@ -92,7 +93,7 @@ function postureText() {
 
 /** @type {() => string} */
 function otherPostureText() {
-  const other = otherPosture();
+  const other = flipped();
   if (other === null) return "beyond a limit";
   return isSafe(margins(robot, withPair(robot, state.q, other))) ? "safe" : "not safe";
 }

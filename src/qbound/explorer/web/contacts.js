@@ -1,69 +1,44 @@
-/* Bodies in the plane of motion: qbound.geometry.distance, and where along the second joint two of
-   them touch. A part is a convex core (a point, a segment, a polygon) with a radius. */
+/* Distances of convex parts in the plane of motion, qbound.geometry.distance, and where along the
+   second joint two bodies touch. A part is a convex core (a point, a segment, a polygon) with a
+   radius. */
 
 const TOUCH = 1e-9; // of the reach: so near to contact a root of a feature is one
 
-/** The parts of every body at a pose, in two coordinates of the plane of motion.
- * @type {(robot: Robot, found: Frame[]) => PlacedPart[][]} */
-function placedParts(robot, found) {
-  return robot.bodies.map((_, i) => partsOfBody(robot, found, i));
-}
-
-/** @type {(robot: Robot, found: Frame[], i: number) => PlacedPart[]} */
-function partsOfBody(robot, found, i) {
+/** The parts of bodies at a pose, of all or of some, in two coordinates of the plane of motion.
+ * @type {(robot: Robot, found: Frame[], wanted?: number[]) => PlacedPart[][]} */
+function placedParts(robot, found, wanted) {
   const [u, v] = robot.flat ?? IDENTITY;
-  const { frame, parts } = robot.bodies[i];
-  return parts.map(({ corners, radius }) => ({
-    radius,
-    corners: corners.map((corner) => {
-      const place = placeIn(found[frame], corner);
-      return [dot(u, place), dot(v, place)];
-    }),
-  }));
+  return robot.bodies.map(({ frame, parts }, i) => {
+    if (wanted && !wanted.includes(i)) return [];
+    return parts.map(({ corners, radius }) => ({
+      radius,
+      corners: corners.map((corner) => {
+        const place = placeIn(found[frame], corner);
+        return [dot(u, place), dot(v, place)];
+      }),
+    }));
+  });
 }
 
 /** Edges of a core, each as its start, unit step, length and unit normal: outward of a polygon.
  * @type {(corners: Point[]) => CoreEdge[]} */
 function coreEdges(corners) {
-  const count = corners.length < 3 ? corners.length - 1 : corners.length;
-  const sense = corners.length < 3 || isAnticlockwise(corners) ? 1 : -1;
-  return corners.slice(0, count).map((start, i) => {
-    const end = corners[(i + 1) % corners.length];
-    const [x, y] = [end[0] - start[0], end[1] - start[1]];
+  if (corners.length === 1) return [];
+  const sense = corners.length < 3 || area(corners) > 0 ? 1 : -1;
+  return sides(corners).map(([start, end]) => {
+    const [x, y] = minus(end, start);
     const length = Math.hypot(x, y);
-    return {
-      start,
-      step: [x / length, y / length],
-      length,
-      normal: turnedRight(x, y, sense / length),
-    };
+    const normal = [(sense * y) / length, (-sense * x) / length];
+    return { start, step: [x / length, y / length], length, normal };
   });
-}
-
-/** @type {(x: number, y: number, factor: number) => Point} */
-function turnedRight(x, y, factor) {
-  return [y * factor, -x * factor];
-}
-
-/** @type {(corners: Point[]) => boolean} */
-function isAnticlockwise(corners) {
-  let doubled = 0;
-  for (const [i, [x, y]] of corners.entries()) {
-    const [u, v] = corners[(i + 1) % corners.length];
-    doubled += x * v - u * y;
-  }
-  return doubled > 0;
 }
 
 /** How far two cores are apart, negative by how deep they overlap, and the two places that show it.
  * @type {(one: Point[], other: Point[]) => Encounter} */
 function encounter(one, other) {
   const beyond = [edgeGaps(one, other), edgeGaps(other, one).map(swapped)].flat();
-  const most = beyond.reduce((best, gap) => (gap.distance > best.distance ? gap : best), {
-    distance: -Infinity,
-    places: [one[0], other[0]],
-  });
-  if (beyond.length > 0 && most.distance < 0 && !areBeside(one, other)) return most;
+  const most = leastBy(beyond, ({ distance }) => -distance);
+  if (most && most.distance < 0 && !areBeside(one, other)) return most;
   const near = [...nearestPlaces(one, other), ...nearestPlaces(other, one).map(swapped)];
   return near.reduce((best, gap) => (gap.distance < best.distance ? gap : best));
 }
@@ -116,17 +91,12 @@ function areBeside(one, other) {
 /** The nearest place of a core's edges to each corner of another core.
  * @type {(core: Point[], far: Point[]) => Encounter[]} */
 function nearestPlaces(core, far) {
-  const edges = core.length > 1 ? coreEdges(core) : [];
-  return far.flatMap((corner) => {
-    const places = edges.map(({ start, step, length }) => {
-      const along = between(beside(corner, start, step), 0, length);
-      return [start[0] + along * step[0], start[1] + along * step[1]];
-    });
-    return (places.length > 0 ? places : [core[0]]).map((place) => ({
-      distance: Math.hypot(corner[0] - place[0], corner[1] - place[1]),
-      places: [place, corner],
-    }));
-  });
+  return far.flatMap((corner) =>
+    sides(core).map(([a, b]) => {
+      const { gap, at } = toSegment(corner, a, b);
+      return { distance: gap, places: [at, corner] };
+    }),
+  );
 }
 
 /** The margin of two bodies, and the nearest places of the two parts that decide it.
@@ -156,6 +126,13 @@ function onSurfaces([a, b], one, other) {
     [a[0] + one * x, a[1] + one * y],
     [b[0] - other * x, b[1] - other * y],
   ];
+}
+
+/** The margin of a boundary about bodies; their parts are placed, unless that has been done.
+ * @type {(robot: Robot, wall: BodiesWall | HalfSpaceWall, found: Frame[], placed?: PlacedPart[][]) => number} */
+function bodiesMargin(robot, wall, found, placed) {
+  if (wall.kind === "half-space") return lowestCorner(robot, wall, found).value;
+  return bodiesEncounter(wall, placed ?? placedParts(robot, found, wall.bodies)).distance;
 }
 
 /** The corner of a body that is lowest over a wall, and how much; seen from the base.
@@ -193,7 +170,7 @@ function bodyCuts(problem, first) {
   return bodies.flatMap((wall, i) => {
     const by = problem.forms.length + i;
     const touching = contactValues(wall, seen, kind, values, view).filter((at) => {
-      const least = wallMargin(robot, wall, framesAt(problem, first, at));
+      const least = bodiesMargin(robot, wall, framesAt(problem, first, at));
       return Math.abs(least) <= TOUCH * robot.reach;
     });
     touching.sort((a, b) => a - b);
@@ -214,15 +191,6 @@ function partsAt(problem, first, second) {
   return { robot: problem.robot, found, placed: placedParts(problem.robot, found) };
 }
 
-/** @type {(robot: Robot, wall: BodiesWall | HalfSpaceWall, found: Frame[]) => number} */
-function wallMargin(robot, wall, found) {
-  if (wall.kind === "half-space") return lowestCorner(robot, wall, found).value;
-  /** @type {PlacedPart[][]} */
-  const placed = [];
-  for (const i of wall.bodies) placed[i] = partsOfBody(robot, found, i);
-  return bodiesEncounter(wall, placed).distance;
-}
-
 /** Roots of the features of a boundary along the second joint, seen at three of its values.
  * @type {(wall: BodiesWall | HalfSpaceWall, seen: Seen[], kind: Kind, values: number[], view: View) => number[]} */
 function contactValues(wall, seen, kind, values, view) {
@@ -240,16 +208,6 @@ function contactValues(wall, seen, kind, values, view) {
       return sides.every((side) => dot(side, factors) >= -1e-6);
     });
   });
-}
-
-/** The form that takes three values: at 0 and a third of a turn either way, or at 0 and +-h.
- * @type {(kind: Kind, at: number[], values: number[]) => number[]} */
-function throughThree(kind, [, h], [middle, ahead, back]) {
-  if (kind === "revolute") {
-    const constant = (middle + ahead + back) / 3;
-    return [constant, (2 * middle - ahead - back) / 3, (ahead - back) / Math.sqrt(3)];
-  }
-  return [middle, (ahead - back) / (2 * h), (ahead + back - 2 * middle) / (2 * h * h)];
 }
 
 /** Each feature's value, 0 in contact, and the values that are not negative where it is one.
@@ -301,8 +259,7 @@ function stepsFrom(corners, i) {
   const n = corners.length;
   const near = n < 3 ? [1 - i].filter((k) => k >= 0 && k < n) : [(i + 1) % n, (i + n - 1) % n];
   return near.map((k) => {
-    const [x, y] = [corners[k][0] - corners[i][0], corners[k][1] - corners[i][1]];
-    const size = Math.hypot(x, y);
-    return [x / size, y / size];
+    const way = minus(corners[k], corners[i]);
+    return way.map((value) => value / Math.hypot(...way));
   });
 }
