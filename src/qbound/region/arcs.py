@@ -14,17 +14,15 @@ from functools import cache, cached_property, partial
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats, Ints
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.region.plane import Plane
 from qbound.tolerances import QUADRATURE, SAME_POINT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FIBRE: Final = -3
 """Stands for the form of a root where a piece follows none."""

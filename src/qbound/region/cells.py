@@ -14,18 +14,14 @@ from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.decomposition import Cell, Decomposition, turned_root, vanishes_on
 from qbound.region.plane import Plane, ranges, runs, which
 from qbound.region.precise import NUMBER, UndecidedError, in_order
 from qbound.tolerances import SAME_POINT, TOUCH, UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 INSET = 1e-4 * np.arange(4)
 """Where cells are looked at beside their lines, in parts of their width."""

@@ -10,8 +10,8 @@ from itertools import accumulate, chain
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN, first_from, nearest_turn
 from qbound.printable import printable
 from qbound.region.arcs import NODES, Arc, legendre, ordered
@@ -32,10 +32,6 @@ ROOM: Final = 1.25
 Roots are analytic between critical values, and the nodes lie densest at both ends. Where a fibre
 were taller, a sample would have a little less of it.
 """
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

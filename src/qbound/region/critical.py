@@ -14,8 +14,8 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Complexes, Floats, Ints
 from qbound.forms.angles import TURN, turns_within
 from qbound.forms.factors import FACTORS, Kind, basis
 from qbound.region.plane import Plane, which
@@ -32,11 +32,6 @@ from qbound.region.precise import (
     to_float,
 )
 from qbound.tolerances import UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Complexes = NDArray[np.complex128]
 
 BLOCK = 2**14
 """Polynomials that are solved at once: fast enough, small enough for any memory."""

@@ -17,8 +17,8 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, turns_up_to
 from qbound.region.critical import NO_EVENTS, Events, Finder, Lines, find_lines
@@ -34,10 +34,6 @@ from qbound.region.precise import (
     precision,
 )
 from qbound.tolerances import BEYOND_JUMP, SAME_POINT, UNCHANGED, UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 Rows = tuple[Ints, Floats, Floats, Ints, Ints]
 """Slab, lift value, its error, root and contact of roots."""

@@ -12,13 +12,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats
 from qbound.region.decomposition import decompose
 from qbound.region.pieces import INSIDE
 from qbound.region.precise import Precise
 from qbound.region.problem import Problem
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 TRIED = 1000
 """Random places at the start."""

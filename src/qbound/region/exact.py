@@ -9,8 +9,8 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Array
 from qbound.boundary.contacts import Contacts
 from qbound.boundary.exact_contacts import ExactContacts, Feature
 from qbound.boundary.functions import clearance, pair_vector
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     arb = flint.arb
 
-Array = NDArray[Any]
 Made = TypeVar("Made")
 
 BITS = 1280

@@ -10,13 +10,10 @@ from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Ints
 from qbound.region.cells import CellComplex
 from qbound.region.plane import ranges, runs, which
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LOWER, UP, UPPER, DOWN = range(4)
 """Half-edges round a cell, in the order of the loop: along a root, or along a critical line."""

@@ -13,8 +13,8 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.factors import basis, basis_and_slope
 from qbound.region.arcs import FIBRE, Arc, Pieces, ordered
@@ -25,9 +25,6 @@ from qbound.region.plane import Plane, runs, which
 from qbound.region.precise import UndecidedError
 from qbound.tolerances import NEWTON_DONE, POLISHED, TRANSVERSAL, UNIT
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Item = TypeVar("Item")
 
 

@@ -15,6 +15,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names
 from qbound.boundary.functions import clearance, pair_vector
 from qbound.forms.angles import TURN, first_from
@@ -25,7 +26,6 @@ from qbound.printable import printable
 from qbound.region.problem import Problem, state
 from qbound.tolerances import ZERO_AMPLITUDE
 
-Floats = NDArray[np.float64]
 AnyBoundary = TypeVar("AnyBoundary", bound=Boundary)
 
 UPPER: Final = 1

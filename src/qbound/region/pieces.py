@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
@@ -20,10 +20,6 @@ from qbound.region.critical import NO_EVENTS, Events, Finder, shifted
 from qbound.region.plane import Plane, normalised, ranges, which
 from qbound.region.precise import KINDS, Zero, in_order, midpoint, precision
 from qbound.tolerances import AGREE, BOX, NEAR, UNIT, WALL
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 INSIDE = 0.43
 """Where an interval is looked at: off its middle, which may be a place of symmetry."""

@@ -12,17 +12,14 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.forms.angles import TURN
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, ZERO_AMPLITUDE
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 Range = tuple[float, float] | None
 
 FEW = 16

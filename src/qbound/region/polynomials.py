@@ -8,12 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Complexes, Floats, Ints
 from qbound.tolerances import UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Complexes = NDArray[np.complex128]
 
 FAR = 2.0
 """Roots farther than this from 0 are not wanted: bases are scaled to the unit circle or [-1, 1]."""

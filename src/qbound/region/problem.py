@@ -13,8 +13,8 @@ from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Floats
 from qbound.boundary.body_contacts import body_contacts
 from qbound.boundary.contacts import NO_CONTACTS, Contacts
 from qbound.boundary.errors import clearance_error
@@ -35,7 +35,6 @@ from qbound.model.robot import Boundary, Held, Robot
 from qbound.printable import printable
 from qbound.tolerances import ROUNDING
 
-Floats = NDArray[np.float64]
 Rule = Literal["clearance", "paper"]
 
 

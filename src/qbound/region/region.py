@@ -10,8 +10,9 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Bools, Floats
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.model.values import real_numbers
 from qbound.printable import printable
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
 
     from qbound.measures.nearest import BoundaryPoint
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 class UnresolvedError(ValueError):

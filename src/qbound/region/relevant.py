@@ -17,18 +17,14 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.evaluator import Range
 from qbound.forms.angles import TURN
 from qbound.forms.bending import bending
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region.problem import Problem
 from qbound.tolerances import UNCERTAIN_SIGN
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 FEW: Final = 64
 """Forms up to which none is left out: they cost less than the proof."""

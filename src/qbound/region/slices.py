@@ -6,13 +6,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from qbound.arrays import Floats
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.region.region import Region, find_region
 from qbound.tolerances import SAME_POINT
-
-Floats = NDArray[np.float64]
 
 MOST_SLICES = 1000
 """Slices that are made at once: a slip of the keyboard is no work without end."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN
 from qbound.region.arcs import ordered
 from qbound.region.cells import CellComplex
@@ -22,10 +22,6 @@ from qbound.region.plane import which
 from qbound.region.precise import LEVELS, Precise, precision
 from qbound.region.problem import Problem
 from qbound.tolerances import ON_ARC, UNIT
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 PLACES = (-1.2, -0.4, 0.3, 1.0)
 """Where arcs are looked at: angles of their parametrization, from -pi/2 to pi/2."""
