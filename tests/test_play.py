@@ -57,6 +57,7 @@ data-controls="task"></div>
 
 <div class="play" data-figure="scale" data-rule="paper"></div>
 """,
+    "live": '# Configuration space\n\n<div class="play" data-figure="live"></div>\n',
     "plain": "# Without a figure\n",
     "unknown": '# A kind that is not there\n\n<div class="play" data-figure="nothing"></div>\n',
 }
@@ -101,6 +102,19 @@ def test_a_page_with_hooks_loads_the_engine_once_then_the_data_then_the_loader(s
         "play/short/play.js",
     ]
     assert own_scripts(folder, "plain") == []
+
+
+def test_a_page_without_explorers_loads_what_its_figure_needs(site, open_site):
+    assert own_scripts(site[0], "live") == [
+        "play/parts_of_engine.js",
+        "play/short/parts.js",
+        "play/short/live_space.js",
+        "play/short/live_scene.js",
+        "play/short/live.js",
+        "play/short/play.js",
+    ]
+    page = open_site("live")
+    assert "in 3 pieces" in page.locator(".totals").inner_text()
 
 
 def test_a_page_has_at_most_150_kilobytes_of_our_scripts(site):

@@ -39,8 +39,8 @@ function encounter(one, other) {
   const beyond = [edgeGaps(one, other), edgeGaps(other, one).map(swapped)].flat();
   const most = leastBy(beyond, ({ distance }) => -distance);
   if (most && most.distance < 0 && !areBeside(one, other)) return most;
-  const near = [...nearestPlaces(one, other), ...nearestPlaces(other, one).map(swapped)];
-  return near.reduce((best, gap) => (gap.distance < best.distance ? gap : best));
+  const [near, back] = [nearestCorner(one, other), nearestCorner(other, one)];
+  return near.distance <= back.distance ? near : swapped(back);
 }
 
 /** @type {(gap: Encounter) => Encounter} */
@@ -88,15 +88,18 @@ function areBeside(one, other) {
   );
 }
 
-/** The nearest place of a core's edges to each corner of another core.
- * @type {(core: Point[], far: Point[]) => Encounter[]} */
-function nearestPlaces(core, far) {
-  return far.flatMap((corner) =>
-    sides(core).map(([a, b]) => {
+/** The place of a core's edges and the corner of another core that are nearest to each other.
+ * @type {(core: Point[], far: Point[]) => Encounter} */
+function nearestCorner(core, far) {
+  /** @type {Encounter} */
+  let best = { distance: Infinity, places: [] };
+  for (const [a, b] of sides(core)) {
+    for (const corner of far) {
       const { gap, at } = toSegment(corner, a, b);
-      return { distance: gap, places: [at, corner] };
-    }),
-  );
+      if (gap < best.distance) best = { distance: gap, places: [at, corner] };
+    }
+  }
+  return best;
 }
 
 /** The margin of two bodies, and the nearest places of the two parts that decide it.

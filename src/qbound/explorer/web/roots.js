@@ -40,6 +40,7 @@ function circleArc(a, b, c) {
 /** Both ends of that arc, where a cos q + b sin q = c; none where no angle is a root, or every one.
  * @type {(a: number, b: number, c: number) => number[]} */
 function circleRoots(a, b, c) {
+  if (Math.abs(c) > (1 + 2 * TANGENT) * Math.hypot(a, b)) return []; // sooner than an arc cosine
   const { theta, alpha, count } = circleArc(a, b, c);
   return count > 0 ? [theta - alpha, theta + alpha] : [];
 }
@@ -58,6 +59,7 @@ function turnsWithin(kind, value, { low, high }) {
  * @type {(kind: Kind, coefficients: number[], view: View) => number[]} */
 function rootsWithin(kind, [constant, a, b], view) {
   const found = kind === "revolute" ? circleRoots(a, b, -constant) : realRoots(constant, a, b);
+  if (found.length === 0) return found;
   return found.flatMap((root) => turnsWithin(kind, root, view)).filter((root) => root > view.low);
 }
 

@@ -110,7 +110,10 @@ function sides(corners) {
 /** Area of a polygon, positive where it goes anticlockwise.
  * @type {(corners: Point[]) => number} */
 function area(corners) {
-  return sum(sides(corners).map(([a, b]) => cross(a, b))) / 2;
+  let doubled = 0;
+  for (let i = 0, j = corners.length - 1; i < corners.length; j = i, i += 1)
+    doubled += cross(corners[j], corners[i]);
+  return doubled / 2;
 }
 
 /** Whether a place lies inside a polygon: a ray from it crosses an odd number of sides.
@@ -128,10 +131,11 @@ function isInside(corners, [x, y]) {
 /** The place of a segment that is nearest to a point, and its share of the way.
  * @type {(p: Point, a: Point, b: Point) => { gap: number, share: number, at: Point }} */
 function toSegment(p, a, b) {
-  const way = minus(b, a);
-  const square = inner(way, way);
-  const share = square > 0 ? between(inner(minus(p, a), way) / square, 0, 1) : 0;
-  const at = [a[0] + share * way[0], a[1] + share * way[1]];
+  const [x, y] = [b[0] - a[0], b[1] - a[1]];
+  const square = x * x + y * y;
+  const along = (p[0] - a[0]) * x + (p[1] - a[1]) * y;
+  const share = square > 0 ? between(along / square, 0, 1) : 0;
+  const at = [a[0] + share * x, a[1] + share * y];
   return { gap: Math.hypot(p[0] - at[0], p[1] - at[1]), share, at };
 }
 
