@@ -120,6 +120,7 @@ ACCEPTED = {
     "another velocity": ("box", in_robot('name = "q2"', 'name = "q2"\nvelocity = 5.5')),
     "another home and tool": ("box", in_robot('q2 = 0 }\ntool = "tip"', 'q2 = 9 }\ntool = "post"')),
     "a name in another script": ("box", in_robot('"arm"', '"Größe \u202e \U0001f916"')),
+    "limits of a hundred turns": ("lift", in_robot("limits = [-1, 1]", "limits = [-1, 627.3185307179586476925286766559005768]")),
     "numbers of the robot in other words": ("box", in_robot("[3, 0, 0]", "[+30_0.0e-2, -0.0, 0]")),
     "a place of a longer sum": ("witness in the crate", put("witness", "place", "near", ["0.25", "0.250", "25e-2", "0.25"])),
     "a disc of radius 0": ("witness in the crate", put("witness", "place", "inside", 1, "0")),
@@ -247,6 +248,7 @@ POLYGON = {
     "a loop that passes a corner twice": ("polygon", all_around([[*SQUARE[:3], ["16", "8"], ["16", "16"], ["8", "16"], ["8", "8"], SQUARE[3]]], [*HALVES[:1], [0, 2, 7], [2, 3, 4], [2, 4, 5]]), "passes a configuration twice"),
     "a loop of two": ("polygon", all_around([SQUARE, [["60", "0"], ["68", "0"]]], HALVES), "claim.points[1]: a list of 3 to 20000 is wanted"),
     "a loop twice": ("polygon", all_around([SQUARE, SQUARE], [*HALVES, *HALVES]), "claim.triangles: two pieces lie on one side of an edge"),
+    "a loop twice that is filled once": ("polygon", all_around([SQUARE, SQUARE], HALVES), "an edge of the loops stands there twice"),
     "a loop that goes twice round": ("polygon", all_around([SQUARE + SQUARE], HALVES), "claim.points: a loop passes a configuration twice"),
     "a loop walked backwards": ("polygon", all_around([SQUARE[::-1]], HALVES), "claim.triangles: a piece is not convex, flat, or goes clockwise"),
     "an island walked backwards": ("polygon", all_around([SQUARE, moved(SQUARE, 20)[::-1]], [*HALVES, [4, 6, 5], [4, 7, 6]]), "claim.triangles: an edge of the loops is not the edge of one piece alone"),
@@ -421,6 +423,7 @@ WITNESS = {
     "segments that touch": ("witness of a crossing", put(*AT, ["45"]), "witness: 'rod, wire' is not violated there"),
     "segments seen at a distance": ("witness of a crossing", put("claim", "margin", "1e-40"), "witness: 'rod, wire' is not violated there"),
     "another part": ("witness in the crate", put(*PLACE, "keep", 7), "witness.place.near: a list of 3 is wanted"),
+    "limits of little more than a hundred turns": ("lift", in_robot("limits = [-1, 1]", "limits = [-1, 627.3186]"), "more than 100 turns apart"),
     "a smaller margin than is left": ("witness", in_robot("offset = -1.5", "offset = -9"), "witness: 'floor' is not violated there"),
 }  # fmt: skip
 
@@ -1068,6 +1071,14 @@ def test_work_is_counted_before_it_is_done(monkeypatch, name):
     for checker in CHECKERS:
         assert "too much work" in str(verdict(checker, data))
     assert check.Work.done <= 1.5 * check.Work.MOST
+
+
+def test_the_work_of_a_file_is_always_the_same():
+    done = []
+    for name in ("bodies", "box", "bodies"):
+        verdict("first", original(name))
+        done.append(check.Work.done)
+    assert done[0] == done[2] > done[1]
 
 
 def test_the_bounds_of_the_page_are_those_of_the_checker():

@@ -179,8 +179,14 @@ def test_what_is_kept_on_a_leaf_is_what_is_kept_at_all_its_places(width):
             u = keep.normal or check.unit(row)
             near, far = (in_floats(hull.corners[0], scale) for hull in (keep.near, keep.far))
             true = (seen(s, keep.far.frame, far, keep.near.frame) - near) @ in_floats(u, 1)
-            below = [true.min() + 1e-9 * scale, *(true.min() - x * scale for x in np.geomspace(1e-9, 99, 40))]
-            kept = [check.is_kept(s.draft.steps, s.pose, with_gap(keep, x, scale), u, s.cell) for x in below]
+            below = [
+                true.min() + 1e-9 * scale,
+                *(true.min() - x * scale for x in np.geomspace(1e-9, 99, 40)),
+            ]
+            kept = [
+                check.is_kept(s.draft.steps, s.pose, with_gap(keep, x, scale), u, s.cell)
+                for x in below
+            ]
             assert kept == sorted(kept)
             assert not kept[0], (seed, keep.name)
             lost.append((true.min() - below[kept.index(True)]) / scale)
@@ -196,8 +202,14 @@ def test_what_is_violated_on_a_leaf_is_what_is_violated_at_all_its_places(free_s
         for keep in s.draft.arm.keeps:
             near, far = (hull.corners[0] for hull in (keep.near, keep.far))
             spots = check.Spots(near, far, 0)
-            step = seen(s, keep.far.frame, in_floats(far, scale), keep.near.frame) - in_floats(near, scale)
-            true = np.linalg.norm(step, axis=1) if keep.normal is None else step @ in_floats(keep.normal, 1)
+            step = seen(s, keep.far.frame, in_floats(far, scale), keep.near.frame) - in_floats(
+                near, scale
+            )
+            true = (
+                np.linalg.norm(step, axis=1)
+                if keep.normal is None
+                else step @ in_floats(keep.normal, 1)
+            )
             for above, wanted in ((-1e-9, [False]), (10, [False, True])):
                 other = with_gap(keep, true.max() + above * scale, scale)
                 holds = check.is_violated(s.draft.steps, s.pose, other, spots, s.cell, s.free)
