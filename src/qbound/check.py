@@ -9,7 +9,7 @@ another. This file decides whether the proof holds. It imports nothing but the s
 uses no floating point, and can be copied and run alone. The page "The certificate" of the book
 defines the format; what that page does not list is refused.
 
-Read it from top to bottom. The first 200 lines of code are the kernel, on which all else stands:
+Read it from top to bottom. The first three parts are the kernel:
 
     numbers       whole numbers of 2^-224, and how far they can be off
     kinematics    where the frames are, where a place is, how it moves, how much its path bends
@@ -1729,7 +1729,9 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
     arm = Arm(robot, claim.margin)
     if "witness" in content:
         demand(claim.kind != "no path", "witness: a claim of no path has a proof")
-        said = f"refuted: {refute(arm, claim, content['witness'])}"
+        said = (
+            f"refuted: {refute(arm, claim, content['witness'])}\nthe claim was that the set keeps"
+        )
     elif claim.kind == "no path":
         prove_no_path(arm, claim, content["proof"])
         said = "proved: no path within the limits keeps all of the following"

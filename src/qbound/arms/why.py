@@ -149,7 +149,7 @@ def why(
     source : str, Path or Robot
         A robot file, the name of a packaged robot, or a robot.
     start, goal : array_like, shape (n,)
-        rad or length.
+        rad or length. Of a joint without limits, values that differ by whole turns are one.
     seed : int
         Of the search for a path; the same seed, the same answer.
     hold : bool

@@ -34,7 +34,11 @@ def add_to(commands: Any) -> None:
     )
     add_robot(parser)
     parser.add_argument(
-        "values", nargs="+", metavar="VALUE", help="start and goal, one after the other: 20deg, 0.3"
+        "values",
+        nargs="+",
+        metavar="VALUE",
+        help="start and goal, one after the other: 20deg, 0.3m; a plain number is in the unit of"
+        " the robot file",
     )
     parser.add_argument(
         "--hold",

@@ -348,7 +348,14 @@ class Region:
         """
         from qbound.measures.nearest import nearest_boundary
 
+        self._check_number(component)
         return nearest_boundary(self, q, component, weights)
+
+    def _check_number(self, component: int | None) -> None:
+        """Refuse a number of a component that there is none of, such as the -1 of no component."""
+        count = len(self.components)
+        if component is not None and component not in range(count):
+            raise ValueError(f"component {component}: there are {count}, numbered from 0")
 
     def sample(self, n: int, rng: np.random.Generator | int | None = None) -> Floats:
         """Draw feasible configurations, evenly over the area of all components.
@@ -423,6 +430,7 @@ class Region:
         """
         from qbound.figures.pictures import plot_region
 
+        self._check_number(component)
         return plot_region(self, ax, component=component, unit=unit, **style)
 
     def explore(self) -> Any:
@@ -489,6 +497,7 @@ class Region:
         """
         from qbound.export.outlines import find_outlines, outlines_shapely
 
+        self._check_number(component)
         return outlines_shapely(find_outlines(self, deviation), component)
 
     def _repr_svg_(self) -> str | None:
