@@ -25,6 +25,7 @@ from support.certificates import Draft, drop, in_robot, no_path, proved, put, re
 from support.claims import (
     ARM,
     BODIES,
+    FREE,
     HALVES,
     MAKERS,
     SEGMENTS,
@@ -117,7 +118,7 @@ ACCEPTED = {
     "squares that share a corner": ("two squares", put(*POINTS, 1, moved(SQUARE, 8))),
     "parts from another corner on": ("bodies", also(put("parts", "hook", each(lambda p: p[1:] + p[:1])), rehash)),
     "another comment in the robot": ("box", in_robot("schema = 1", "# another arm?\nschema = 1")),
-    "another velocity": ("box", in_robot('name = "q2"', 'name = "q2"\nvelocity = 5.5')),
+    "another velocity": ("box", in_robot('name = "q2"', 'name = "q2", velocity = 5.5')),
     "another home and tool": ("box", in_robot('q2 = 0 }\ntool = "tip"', 'q2 = 9 }\ntool = "post"')),
     "a name in another script": ("box", in_robot('"arm"', '"Größe \u202e \U0001f916"')),
     "limits of a hundred turns": ("lift", in_robot("limits = [-1, 1]", "limits = [-1, 627.3185307179586476925286766559005768]")),
@@ -428,13 +429,13 @@ WITNESS = {
 }  # fmt: skip
 
 R = in_robot
-JOINT = 'name = "q1"\n'
+JOINT = 'name = "q1", '
 ROBOT = {
     "no TOML": (R("schema = 1", "schema = = 1"), "robot: no TOML: "),
     "an unknown key": (R("schema = 1", 'schema = 1\nnote = "safe"'), "robot: unknown key 'note'"),
-    "an unknown key of a joint": (R(JOINT, JOINT + 'colour = "red"\n'), "robot.joint[0]: unknown key 'colour'"),
-    "an unknown key of a boundary": (R("clearance", "radius = 1\nclearance"), "robot.boundary[1]: unknown key 'radius'"),
-    "an unknown table": (R("[[joint]]", "[extra]\n[[joint]]"), "robot: unknown key 'extra'"),
+    "an unknown key of a joint": (R(JOINT, JOINT + 'colour = "red", '), "robot.joint[0]: unknown key 'colour'"),
+    "an unknown key of a boundary": (R("clearance", "radius = 1, clearance"), "robot.boundary[1]: unknown key 'radius'"),
+    "an unknown table": (R("joint = [", "extra = { x = 1 }\njoint = ["), "robot: unknown key 'extra'"),
     "a dotted key": (R("tool =", "home.q3 = 0\ntool ="), "robot: line 6: a key with a dot"),
     "a quoted dotted key": (R("tool =", '"home"."q3" = 0\ntool ='), "robot: line 6: '.' follows another word or string"),
     "a string in two words": (R('"arm"', '"arm" "leg"'), 'robot: line 2: \'"leg"\' follows another word or string'),
@@ -450,7 +451,7 @@ ROBOT = {
     "a home without a joint": (R("q1 = 0, ", ""), "robot.home: the key 'q1' is missing"),
     "a home of texts": (R("q1 = 0", 'q1 = "0"'), "robot.home.q1: a number is wanted"),
     "a tool that is no point": (R('tool = "tip"', 'tool = "top"'), "robot: the tool is no point"),
-    "no joints": (lambda d: d.update(robot=re.sub(r"\[\[joint.*?\n\n", "", d["robot"], flags=re.S)), "robot: the key 'joint' is missing"),
+    "no joints": (lambda d: d.update(robot=re.sub("joint = .*?\n]", "", d["robot"], flags=re.S)), "robot: the key 'joint' is missing"),
     "an unknown joint": (R('"revolute"', '"screw"'), "robot.joint[0].type: revolute or prismatic or parallelogram is wanted"),
     "a parent that is missing": (R('parent = "1"', 'parent = "7"'), "robot.joint[1]: its parent is not the frame before"),
     "one name for two joints": (R('name = "q2"', 'name = "q1"'), "robot: joint: two are called 'q1'"),
@@ -459,14 +460,14 @@ ROBOT = {
     "an origin of texts": (R("[0, 0, 2]", '["0", "0", "2"]'), "robot.joint[0].origin[0]: a number is wanted"),
     "an origin that is a text": (R("[0, 0, 2]", '"002"'), "robot.joint[0].origin: a list of 3 is wanted"),
     "an axis of zeros": (R("[0, 1, 0]", "[0, 0.0, 0]"), "robot.joint[0].axis: a direction must not be 0"),
-    "no axis": (R("axis = [0, 1, 0]\n", ""), "robot.joint[0]: the key 'axis' is missing"),
+    "no axis": (R(", axis = [0, 1, 0]", ""), "robot.joint[0]: the key 'axis' is missing"),
     "limits turned round": (R("[-170, 170]", "[170, -170]"), "robot.joint[1].limits: the first one must be less"),
     "limits that are equal": (R("[-170, 170]", "[170, 170]"), "robot.joint[1].limits: the first one must be less"),
     "limits of more than a hundred turns": (R("[-170, 170]", "[-170, 35830.1]"), "robot.joint[1].limits: more than 100 turns apart"),
     "a slide without limits": (R('"revolute"', '"prismatic"'), "robot.joint[0]: a prismatic joint needs limits"),
-    "a velocity of 0": (R(JOINT, JOINT + "velocity = 0\n"), "robot.joint[0].velocity: a number of more than 0 is wanted"),
-    "a crank without a bar": (R(JOINT, JOINT + "crank = [1, 0, 0]\n"), "robot.joint[0]: crank and bar belong to a parallelogram"),
-    "a mount of more than five turns": (R(JOINT, JOINT + "rpy = [0, 1801, 0]\n"), "robot.joint[0].rpy: an angle of more than five turns"),
+    "a velocity of 0": (R(JOINT, JOINT + "velocity = 0, "), "robot.joint[0].velocity: a number of more than 0 is wanted"),
+    "a crank without a bar": (R(JOINT, JOINT + "crank = [1, 0, 0], "), "robot.joint[0]: crank and bar belong to a parallelogram"),
+    "a mount of more than five turns": (R(JOINT, JOINT + "rpy = [0, 1801, 0], "), "robot.joint[0].rpy: an angle of more than five turns"),
     "a number that is a text": (R("-1.5", '"-1.5"'), "robot.boundary[0].offset: a number is wanted"),
     "a number that is nan": (R("-1.5", "nan"), "robot.boundary[0].offset: 'nan' is no decimal number"),
     "a number that is infinite": (R("-1.5", "-inf"), "robot.boundary[0].offset: '-inf' is no decimal number"),
@@ -480,7 +481,7 @@ ROBOT = {
     "a clearance below 0": (R("clearance = 0.5", "clearance = -0.5"), "robot.boundary[1].clearance: a number of 0 or more is wanted"),
     "a radius below 0": (R("radius = 0.25", "radius = -0.25"), "robot.point[0].radius: a number of 0 or more is wanted"),
     "a normal of zeros": (R("normal = [0, 0, 1]", "normal = [0, 0, 0]"), "robot.boundary[0].normal: a direction must not be 0"),
-    "a point of a frame that is missing": (R('frame = "2"\nat', 'frame = "7"\nat'), "robot: no frame is called '7'"),
+    "a point of a frame that is missing": (R('frame = "2", at', 'frame = "7", at'), "robot: no frame is called '7'"),
     "a point with the name of a frame": (R('name = "post"', 'name = "1"'), "robot: a point has the name of a frame"),
     "two points of one name": (R('name = "post"', 'name = "tip"'), "robot: point: two are called 'tip'"),
     "a pair of one point": (R('["tip", "post"]', '["tip", "tip"]'), "robot.boundary[1]: two different names are wanted"),
@@ -490,9 +491,9 @@ ROBOT = {
     "a boundary named as the limit of a joint without limits": (R('name = "spare"', 'name = "q1.lower"'), "robot: a boundary has the name of a limit"),
     "two boundaries of one name": (R('name = "gap"', 'name = "floor"'), "robot: boundary: two are called 'floor'"),
     "a used that is a number": (R("used = false", "used = 0"), "robot.boundary[2].used: True or False is wanted"),
-    "an unused boundary that is wrong": (R("used = false", "used = false\nclearance = -1"), "robot.boundary[2]: unknown key 'clearance'"),
-    "a half-space of two things": (R('point = "tip"\nn', 'point = "tip"\nbody = "tip"\nn'), "robot.boundary[0]: a point or a body is wanted"),
-    "a half-space of nothing": (R('point = "tip"\nn', "n"), "robot.boundary[0]: a point or a body is wanted"),
+    "an unused boundary that is wrong": (R("used = false", "used = false, clearance = -1"), "robot.boundary[2]: unknown key 'clearance'"),
+    "a half-space of two things": (R('point = "tip", n', 'point = "tip", body = "tip", n'), "robot.boundary[0]: a point or a body is wanted"),
+    "a half-space of nothing": (R('point = "tip", n', "n"), "robot.boundary[0]: a point or a body is wanted"),
     "an unknown boundary": (R('"half-space"', '"cone"'), "robot.boundary[0].type: pair or bodies or half-space is wanted"),
     "half a character": (R('"arm"', '"\\ud800"'), "robot: no TOML: "),
     "eight joints": (lambda d: d.update(robot=eight_joints()), "robot.joint: a list of 1 to 7 is wanted"),
@@ -505,7 +506,7 @@ ROBOT = {
     "a larger clearance": (R("clearance = 0.5", "clearance = 5.6"), "proof.trees[1][0]: the bound of 'gap' fails on a leaf"),
     "a larger radius": (R("radius = 0.25", "radius = 4"), "proof.trees[0][0]: the bound of 'floor' fails on a leaf"),
     "a limit within the box": (R("[-170, 170]", "[-170, 10]"), "claim: beyond the limit 'q2.upper'"),
-    "a boundary that is used after all": (R("used = false", ""), "proof.trees: a list of 3 is wanted"),
+    "a boundary that is used after all": (R(", used = false", ""), "proof.trees: a list of 3 is wanted"),
     "a lower arm": (R("[0, 0, 2]", "[0, 0, -2]"), "proof.trees[0][0]: the bound of 'floor' fails on a leaf"),
 }  # fmt: skip
 
@@ -531,15 +532,15 @@ OF_BODIES = {
     "a larger crate": (R("[[0.6, 0.4], [0.9, 0.4]", "[[0.6, -0.1], [0.9, -0.1]"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
     "a thicker arm": (R("radius = 0.04", "radius = 0.4"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
     "more clearance": (R("clearance = 0.01", "clearance = 0.3"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
-    "an obstacle left out": (R('[[obstacle]]\nname = "pillar"\ndisc = { at = [-0.3, 0.5, 0], radius = 0.1 }\n', ""), "proof.trees: a list of 13 is wanted"),
+    "an obstacle left out": (R('  { name = "pillar", disc = { at = [-0.3, 0.5, 0], radius = 0.1 } },\n', ""), "proof.trees: a list of 13 is wanted"),
     "collisions left out": (R('collisions = "all"\n', ""), "parts: unknown key 'hook'"),
     "other collisions": (R('"all"', '"some"'), "robot.collisions: all is wanted"),
     "more is allowed": (R("allowed = [", 'allowed = [["hand", "crate"], '), "proof.trees: a list of 14 is wanted"),
     "less is allowed": (R('allowed = [["upper arm", "hand"]]', ""), "proof.trees: a list of 16 is wanted"),
     "what is not there is allowed": (R('"upper arm", "hand"', '"upper arm", "thumb"'), "allowed: nothing is called 'thumb'"),
     "one body is allowed": (R('"upper arm", "hand"', '"hand", "hand"'), "allowed: two different names are wanted"),
-    "two shapes": (R("disc =", "polygon = [[0, 0], [1, 0], [0, 1]]\ndisc ="), "robot: a body has one shape: a polygon, a capsule or a disc"),
-    "no shape": (R("disc = { at = [-0.3, 0.5, 0], radius = 0.1 }", ""), "robot: a body has one shape: a polygon, a capsule or a disc"),
+    "two shapes": (R("disc =", "polygon = [[0, 0], [1, 0], [0, 1]], disc ="), "robot: a body has one shape: a polygon, a capsule or a disc"),
+    "no shape": (R(", disc = { at = [-0.3, 0.5, 0], radius = 0.1 }", ""), "robot: a body has one shape: a polygon, a capsule or a disc"),
     "a radius of a body below 0": (R("radius = 0.1", "radius = -0.1"), "robot.obstacle[1].disc.radius: a number of 0 or more is wanted"),
     "a disc without a place": (R("at = [-0.3, 0.5, 0], radius", "radius"), "robot.obstacle[1].disc: the key 'at' is missing"),
     "a corner of four numbers": (R("[0.6, 0.4]", "[0.6, 0.4, 0, 0]"), "robot.obstacle[0].polygon[0]: a list of 2 to 3 is wanted"),
@@ -549,15 +550,15 @@ OF_BODIES = {
     "an outline that crosses itself": (R("[0.9, 0.7], [0.6, 0.7]", "[0.6, 0.7], [0.9, 0.7]"), "robot: the outline of 'crate' has no area"),
     "an outline of 1,001 corners": (R("[0.6, 0.4], ", "[0.6, 0.4], " * 998), "robot.obstacle[0].polygon: a list of 3 to 1000 is wanted"),
     "two bodies of one name": (R('name = "pillar"', 'name = "crate"'), "robot: body: two are called 'crate'"),
-    "a body without a frame": (R('name = "hand"\nframe = "2"', 'name = "hand"'), "robot.body[1]: the key 'frame' is missing"),
-    "a body of a frame that is missing": (R('name = "hand"\nframe = "2"', 'name = "hand"\nframe = "7"'), "robot: no frame is called '7'"),
-    "an obstacle with a frame": (R('name = "pillar"', 'name = "pillar"\nframe = "0"'), "robot.obstacle[1]: unknown key 'frame'"),
-    "a pair of bodies of one frame": (R("[[boundary]]", '[[boundary]]\nname = "x"\ntype = "bodies"\nbodies = ["crate", "pillar"]\n\n[[boundary]]'), "robot.boundary[0]: two bodies of one frame"),
+    "a body without a frame": (R('name = "hand", frame = "2"', 'name = "hand"'), "robot.body[1]: the key 'frame' is missing"),
+    "a body of a frame that is missing": (R('name = "hand", frame = "2"', 'name = "hand", frame = "7"'), "robot: no frame is called '7'"),
+    "an obstacle with a frame": (R('name = "pillar"', 'name = "pillar", frame = "0"'), "robot.obstacle[1]: unknown key 'frame'"),
+    "a pair of bodies of one frame": (R("boundary = [", 'boundary = [{ name = "x", type = "bodies", bodies = ["crate", "pillar"] },'), "robot.boundary[0]: two bodies of one frame"),
     "a boundary with the name of a pair": (R('name = "floor"', 'name = "hand, crate"'), "robot: boundary: two are called 'hand, crate'"),
     "a body that is not there": (R('body = "hand"', 'body = "thumb"'), "robot.boundary[0]: nothing is called 'thumb'"),
     "a skew axis": (R("axis = [0, 0, 1]", "axis = [0, 0.1, 1]"), "robot: bodies keep apart in a plane only, and the arm leaves it"),
-    "a mount that leaves the plane": (R("origin = [0.5, 0, 0]", "origin = [0.5, 0, 0]\nrpy = [0, 9, 0]"), "robot: bodies keep apart in a plane only, and the arm leaves it"),
-    "a frame turned askew": (R("origin = [0.5, 0, 0]", "origin = [0.5, 0, 0]\nrpy = [0, 1e-5, 0]"), "robot: bodies keep apart in a plane only, and the arm leaves it"),
+    "a mount that leaves the plane": (R("origin = [0.5, 0, 0]", "origin = [0.5, 0, 0], rpy = [0, 9, 0]"), "robot: bodies keep apart in a plane only, and the arm leaves it"),
+    "a frame turned askew": (R("origin = [0.5, 0, 0]", "origin = [0.5, 0, 0], rpy = [0, 1e-5, 0]"), "robot: bodies keep apart in a plane only, and the arm leaves it"),
     "bodies of different heights": (R("at = [-0.3, 0.5, 0]", "at = [-0.3, 0.5, 1000]"), "two bodies to keep apart are not at one height"),
     "an outline that leaves its plane": (R("[0.6, 0.4], [0.9, 0.4]", "[0.6, 0.4, 0.1], [0.9, 0.4]"), "two bodies to keep apart are not at one height"),
     "an arm out of the plane of its bodies": (R("origin = [0.5, 0, 0]", "origin = [0.5, 0, 0.25]"), "two bodies to keep apart are not at one height"),
@@ -568,7 +569,7 @@ def eight_joints():
     joint = '{{ name = "q{}", type = "revolute", parent = "{}", frame = "{}", origin = [1, 0, 0], axis = [0, 0, 1] }}'
     rows = ", ".join(joint.format(j, j, j + 1) for j in range(8))
     home = ", ".join(f"q{j} = 0" for j in range(8))
-    head, rest = ARM.split("[[joint]]")[0].split("home")[0], ARM[ARM.index("[[point]]") :]
+    head, rest = ARM.split("home")[0], ARM[ARM.index("point = [") :]
     return f"{head}home = {{ {home} }}\ntool = 'tip'\njoint = [{rows}]\n\n{rest}"
 
 
@@ -744,8 +745,7 @@ def test_a_long_path_is_named_by_its_ends_its_ranges_and_a_hash_of_all_its_place
     """By the ranges alone, two paths had one printed answer, which read as start and end."""
     places = [f"{k % 7} {k}" for k in range(51)]
     other = [*places[:20], "5.5 20", *places[21:]]
-    free = ARM.split("[[boundary]]")[0]
-    one, two = (said(proved(free, path(", ".join(row)))) for row in (places, other))
+    one, two = (said(proved(FREE, path(", ".join(row)))) for row in (places, other))
     printed = " ".join(f"({q.replace(' ', ', ')})" for q in places)
     assert f"its sha256 is {check.digest(printed)}" in one
     assert "path from (0, 0) to (1, 50)" in one
@@ -761,7 +761,7 @@ def test_that_a_joint_takes_every_angle_is_said_where_it_does_so_without_a_gap(s
     both = polygon([low, high], [*HALVES, *([i + 4 for i in row] for row in HALVES)])
     if not shift:
         both = polygon([[low[0], high[1], high[2], low[3]]], HALVES)
-    free = ARM.split("[[boundary]]")[0].replace("limits = [-170, 170]", "")
+    free = FREE.replace(", limits = [-170, 170]", "")
     if shift == -180:
         both = path("-180 0, 180 0")
     assert ("'q1' takes every angle" in said(proved(free, both))) == angle
@@ -779,7 +779,7 @@ def test_the_answer_speaks_in_the_words_of_the_robot_file_that_is_given():
 @pytest.mark.parametrize("places", [30, 38])
 def test_a_violation_in_the_last_digits_is_one(places):
     for digit, wanted in (("1", "refuted"), ("0", "")):
-        robot = ARM.replace("radius = 0.25", "").replace("-1.5", f"2.{'0' * places}{digit}")
+        robot = ARM.replace(", radius = 0.25", "").replace("-1.5", f"2.{'0' * places}{digit}")
         at = {"at": ["0", "0"], "place": {"keep": 0, "near": [], "far": ["1"]}}
         data = Draft(robot, box("0 0", "0 0")).file(witness=at)
         assert verdict("second", data) == wanted or not wanted
@@ -970,7 +970,7 @@ def balanced(depth, letters="ab"):
 
 def colliding(count):
     """A path along decimals whose values all have one hash; nothing is to be kept."""
-    data = Draft(ARM.split("[[boundary]]")[0], path("0 0, 1 1")).file()
+    data = Draft(FREE, path("0 0, 1 1")).file()
     data["claim"]["points"] = [[[f"{k * (2**61 - 1)}e-20", "0"] for k in range(1, count + 1)]]
     return data | {"proof": {"directions": [], "trees": []}}
 
@@ -986,8 +986,10 @@ def long_outline(count=1000):
 
 
 def obstacles(count):
-    disc = '[[obstacle]]\nname = "o{}"\ndisc = {{ at = [9, 9, 0], radius = 0.1 }}\n'
-    return with_text(BODIES + "".join(map(disc.format, range(count))))
+    disc = '{{ name = "o{}", disc = {{ at = [9, 9, 0], radius = 0.1 }} }},\n'
+    return with_text(
+        BODIES.replace("obstacle = [", "obstacle = [" + "".join(map(disc.format, range(count))))
+    )
 
 
 def free_joints(count, boundaries=0):
@@ -1000,7 +1002,7 @@ def free_joints(count, boundaries=0):
         f'[[point]]\nname = "tip"\nframe = "{count}"\nat = [1, 0, 0]\n',
         *map(wall.format, range(boundaries)),
     ]
-    return ARM.split("[[joint]]")[0].replace("q1 = 0, q2 = 0", home) + "".join(rows)
+    return ARM.split("joint = [")[0].replace("q1 = 0, q2 = 0", home) + "".join(rows)
 
 
 def walls(count, letters):

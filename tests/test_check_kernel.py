@@ -223,7 +223,7 @@ def test_what_is_violated_on_a_leaf_is_what_is_violated_at_all_its_places(free_s
 SHELF = (
     ARM.replace("origin = [0, 0, 2]", "origin = [0, 0, 8]")
     .replace("offset = -1.5", "offset = 8")
-    .replace("radius = 0.25\n", "")
+    .replace(", radius = 0.25", "")
     .replace("[3, 0, 0]", "[0, 0, 0]")
 )
 """The tip stands on the shelf exactly, and 8 is the largest length, a power of two."""
@@ -255,7 +255,7 @@ def test_many_turns_of_all_joints_add_less_than_the_slack(unit):
         for j in range(7)
     ]
     home = ", ".join(f"q{j} = 0" for j in range(7))
-    head = ARM.split("[[joint]]")[0].replace("q1 = 0, q2 = 0", home).replace("deg", unit)
+    head = ARM.split("joint = [")[0].replace("q1 = 0, q2 = 0", home).replace("deg", unit)
     point = '[[point]]\nname = "tip"\nframe = "7"\nat = [0.3, -0.1, 0.7]\n'
     arm = check.Arm(check.read_robot(head + "".join(rows) + point, {}), Fraction(0))
     turned = check.Pose(arm.steps, arm.placed([Fraction(29 - 7 * j) for j in range(7)]))

@@ -171,7 +171,7 @@ PAIRS = [
     *(("parallelogram", "revolute"), ("[0, 0, 1]", "[0, 0, -1]"), ("[0, 1, 0]", "[1, 0, 0]")),
 ]
 ADDED = [
-    *("x = 1", "[[body]]", "[extra]", "home.q1 = 0", "used = false", "radius = 0.5"),
+    *("x = 1", "home.q1 = 0", "used = false", "radius = 0.5"),
     *("clearance = 0", 'at = ["1", "2", "3"]', "limits = [-90, 90]", "limits = [-2, 2]"),
     *("rpy = [0, 90, 0]", "rpy = [0, 0, 30]"),
 ]
@@ -195,8 +195,15 @@ def in_robot(rng: random.Random, data: Json) -> None:
         a, b = rng.choice(PAIRS)
         robot = robot.replace(*((a, b) if a in robot else (b, a)), rng.choice((1, -1)))
     else:
-        lines.insert(rng.randrange(len(lines)), rng.choice(ADDED))
-        robot = "\n".join(lines)
+        ends = [*re.finditer(" }", robot)] if rng.random() < 0.8 else []
+        spot = rng.choice(ends).start() if ends else 0
+        robot = (
+            robot[:spot]
+            + (", " if ends else "")
+            + rng.choice(ADDED)
+            + "\n" * (not ends)
+            + robot[spot:]
+        )
     data["robot"] = robot
     rehash(data)
 
