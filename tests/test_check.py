@@ -725,7 +725,7 @@ SAID = {
     "a witness": ("witness", None, "refuted: 'floor' is violated at 'q1' = 90 deg, 'q2' = 0.5 deg"),
     "a witness of a cell": ("witness of a cell", None, "refuted: 'floor' is violated at 'q1' = 67.5 deg, 'q2' = 0 deg"),
     "a limit": ("limit", None, "refuted: the limit 'q2.upper' is violated at 'q1' = 0 deg, 'q2' = 170.5 deg"),
-    "no path": ("no path", None, "proved: no path within the limits keeps all of the following"),
+    "no path": ("no path", None, "proved: no path from (70) to (-100) keeps all of the following"),
     "start and goal": ("no path", None, "  from start to goal: (70) (-100)"),
     "joints on paths": ("no path, any slide", None, "'shoulder' moves\n  'elbow' takes any value, even jumps"),
     "a joint that is held": ("no path, one held", None, "'elbow' is held"),

@@ -1734,7 +1734,8 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
         )
     elif claim.kind == "no path":
         prove_no_path(arm, claim, content["proof"])
-        said = "proved: no path within the limits keeps all of the following"
+        start, goal = (f"({', '.join(map(exactly, q))})" for q in claim.loops[0])
+        said = f"proved: no path from {start} to {goal} keeps all of the following"
     else:
         for q in (q for cell in claim.corners for q in cell):  # the limits of cells, exactly
             beyond = robot.beyond(q)

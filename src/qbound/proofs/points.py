@@ -13,6 +13,9 @@ from qbound.units import file_units, parse_joint_value
 DECIMAL = re.compile(r"-?[0-9]+([.][0-9]+)?([eE][+-]?[0-9]{1,3})?")
 """How a certificate writes a number."""
 
+MOST_DIGITS = 40
+"""Digits of such a number."""
+
 
 def read_points(robot: Robot, file: str) -> list[Point]:
     """Read a line of joint values a point, in the robot file's units; a first line may name joints.
@@ -41,8 +44,9 @@ def read_points(robot: Robot, file: str) -> list[Point]:
 def as_decimal(where: str, text: str) -> str:
     """Return a decimal as it is written; `where` begins the sentence of the error."""
     plain = text.strip().removeprefix("+")
-    if not DECIMAL.fullmatch(plain):
-        raise ValueError(f"{where}: {text!r} is no decimal number")
+    if not DECIMAL.fullmatch(plain) or sum(map(str.isdigit, plain)) > MOST_DIGITS:
+        shown = plain if len(plain) <= MOST_DIGITS else f"{plain[:MOST_DIGITS]}..."
+        raise ValueError(f"{where}: {shown!r} is no decimal number of at most {MOST_DIGITS} digits")
     return plain
 
 
