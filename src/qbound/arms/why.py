@@ -1,4 +1,4 @@
-"""Why does a plan fail? Whether an arm can get from one configuration to another, and why not.
+"""Whether an arm can get from one configuration to another, and if not, what is in the way.
 
 In this order: does an end violate something; can one joint not pass a range (`separations`); is
 there a path (`search`), each leg of it proved; does a paving of up to three joints, the others

@@ -1,4 +1,4 @@
-"""Which values of two joints are safe? All of them, as components bounded by exact arcs.
+"""Regions: all feasible values of two joints, as components that exact arcs bound.
 
 - `problem`: what is asked: forms, ranges, held joints, rule; `paper_rule`: the windows of Table 6;
 - `exact`: the forms of a problem in exact numbers, where floats do not decide;

@@ -1,4 +1,4 @@
-"""Which boundaries leave no room together? As few as it takes, where a region is empty.
+"""Boundaries that together leave no room where a region is empty, as few as it takes.
 
 A place at which only some boundaries are violated shows that these cannot be missing. A few random
 places propose boundaries of which each is violated somewhere; the cells that these alone leave give

@@ -1,4 +1,4 @@
-r"""Which forms can bound a region at all? The others are proved irrelevant, and take no part.
+r"""Forms that can bound a region; the others are proved irrelevant and take no part.
 
 An arm of many joints has hundreds of boundaries, and in one slice only a few bound anything. Boxes
 of the two joints' ranges are halved until of each is known: some form is negative all over it,
