@@ -1721,8 +1721,12 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
     content, robot = read(data)
     compared = "not compared with any robot file"
     if pin is not None:
-        told = read_robot(pin, content["parts"])
-        demand(told.form == robot.form, f"the robot is not that of {shown(file)}")
+        other = f"the robot is not that of {shown(file)}"
+        try:
+            told = read_robot(pin, content["parts"])
+        except Refused as error:
+            raise Refused(f"{other}: {error}") from None
+        demand(told.form == robot.form, other)
         robot = told  # what is said is said in the words of the file that the reader has
         compared = f"compared with {shown(file)}: the same"
     claim = read_claim(content["claim"], robot)
