@@ -159,6 +159,12 @@ def test_everything_can_be_done_with_keys(open_page):
     page.get_by_label("Name", exact=True).press("Tab")
     settle(page)
     assert page.get_by_label("Obstacle", exact=True).locator(":checked").inner_text() == "shelf"
+    page.get_by_label("Name", exact=True).press_sequentially("!")
+    page.get_by_label("x in metres, as a number", exact=True).evaluate(
+        "field => { field.value = 0.8; field.dispatchEvent(new Event('input')) }"
+    )
+    settle(page)  # the scene was drawn anew while a name was being typed
+    assert page.get_by_label("Name", exact=True).input_value() in ("shelf!", "!shelf")
     page.get_by_role("button", name="Delete this polygon").press("Enter")
     settle(page)
     assert page.locator("[data-body]").count() == 3

@@ -268,14 +268,19 @@
         ariaLabel: "Name",
         maxLength: qboundLiveScene.LONGEST_NAME,
       });
+      let typed = false; // what a reader types stays, though the scene is drawn meanwhile
+      name.addEventListener("input", () => {
+        typed = true;
+      });
       name.addEventListener("change", () => {
+        typed = false;
         const now = nowChosen();
         if (now && chosen !== null)
           changeChosen({ ...now, name: freeName(scene, name.value, chosen) }, "name");
       });
       fields.append(element("label", { className: "slider" }, element("span", {}, "name"), name));
       fillers.push((now) => {
-        name.value = now.name;
+        if (!typed) name.value = now.name;
       });
       const { place, size, angle } = RANGES;
       field(
