@@ -20,7 +20,7 @@ import time
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -50,7 +50,8 @@ Row = dict[str, Any]
 
 def regions_of(text: str) -> tuple[list[Region], list[float]]:
     """Find the region of a file over each joint, and how long each took: processor time, s."""
-    problem = clearance_problem(parse_robot(tomllib.loads(text)))
+    robot = parse_robot(tomllib.loads(text))
+    problem = clearance_problem(replace(robot, source=text))  # decimals, as of a file
     found, seconds = [], []
     for base in (0, 1):
         start = time.process_time()
