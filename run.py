@@ -20,7 +20,6 @@ installed once, in .venv, as requirements.lock pins them.
 """
 
 import argparse
-import contextlib
 import hashlib
 import json
 import os
@@ -53,14 +52,14 @@ PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
 NEXT = ROOT / ".next"  # the book is made here, and takes the place of the old one when it is whole
 WHOLE = "whole"  # a file of NEXT: all is made
-LEFT = NEXT / "left"  # the executed chapters of a build that did not come to its end
+EXECUTED = ROOT / ".executed"  # of each chapter the executed copy, and the results that it wrote
 WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = VENV / "javascript" / "node_modules"
 
 # What the book is made from (a change of any of it makes the book stale), and what is no source.
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
-SOURCES += ["tools/reads", "benchmarks/side_by_side.json"]
+SOURCES += ["tools/chapters", "benchmarks/side_by_side.json"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
 CACHES = [".hypothesis", ".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
 DIST = ROOT / "dist"
@@ -86,8 +85,8 @@ print(*(name for name in names if has[name]))"""
 # end at about the same time. A new one may be left out; it costs nothing but time.
 LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "certainty", "many_robots"]
 LONG += ["obstacles", "every_region", "sampling", "theorem_1", "real_arm", "vector_labelling"]
-# Programs that a chapter's process may start without reading anything of ours.
-HARMLESS = {"fc-list", "uname"}
+# Of the sources, what every chapter is computed with; a change of it executes all of them.
+SHARED = ("src/", "tools/", "benchmarks/", "pyproject.toml")
 
 SCRIPTS = [
     "src/qbound/explorer/web",
@@ -402,6 +401,7 @@ def make_book(update: bool = False, printed: Path | None = None) -> None:
     make_chapters()
     build_pages()
     if fingerprint(ROOT) != made_from:
+        remove(EXECUTED)  # nobody knows what the chapters were made from
         raise Failed("The sources changed while the book was made: make it again.")
     in_next(BOOK_STAMP).write_text(stamped(made_from, in_next(RESULTS)))
     (NEXT / WHOLE).touch()
@@ -414,27 +414,12 @@ def in_next(place: Path) -> Path:
 
 
 def copy_sources() -> None:
-    """Start over in NEXT; of a build that did not come to its end, executed chapters are kept."""
-    set_aside()
+    """Start over in NEXT."""
+    remove(NEXT)
     for name in source_hashes(ROOT):
         (NEXT / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, NEXT / name)
     in_next(RESULTS).mkdir()
-
-
-def set_aside() -> None:
-    """Empty NEXT, but for the chapters that a build which did not come to its end executed."""
-    if in_next(CHAPTERS).exists():
-        collect_executed()
-        remove(LEFT)
-        for place in [CHAPTERS, RESULTS]:
-            (LEFT / place.name).parent.mkdir(exist_ok=True)
-            in_next(place).rename(LEFT / place.name)
-    for path in NEXT.glob("*"):
-        if path.is_file():
-            path.unlink()
-        elif path != LEFT:
-            remove(path)
 
 
 def take_over() -> None:
@@ -494,22 +479,16 @@ def make_chapters() -> None:
         names = " ".join(text.relative_to(ROOT).as_posix() for text in apart)
         advice = f"{in_venv('jupytext').relative_to(ROOT)} --sync {names} takes the newer of each."
         raise Failed(f"The text and the notebook of a chapter differ: {names}.\n{advice}")
-    now = settings()
-    in_next(CHAPTERS).mkdir()
-    old, left = (CHAPTERS, RESULTS), (LEFT / CHAPTERS.name, LEFT / RESULTS.name)
-    kept = {}
-    for stem in (notebook.stem for notebook in notebooks):
-        current = [place for place in (old, left) if is_current(stem, now, *place)]
-        if current:
-            kept[stem] = current[0]
-            keep(stem, *current[0])
-    if kept:
-        say(f"-- {len(kept)} of {len(notebooks)} notebooks, and what they read, are unchanged")
-    if left in kept.values():
-        say(f"   ({list(kept.values()).count(left)} of them from a build that did not end)")
-    changed = [notebook for notebook in notebooks if notebook.stem not in kept]
+    shared = made_with()
+    changed = [notebook for notebook in notebooks if not is_current(notebook, shared)]
+    if len(changed) < len(notebooks):
+        said = f"{len(notebooks) - len(changed)} of {len(notebooks)} notebooks"
+        say(f"-- {said}, and what they are computed with, are unchanged")
     if changed:
-        execute(changed, now)
+        execute(changed, shared)
+    in_next(CHAPTERS).mkdir()
+    for notebook in notebooks:
+        take(notebook)
 
 
 def is_apart(text: Path) -> bool:
@@ -526,28 +505,36 @@ def is_apart(text: Path) -> bool:
     return lines(CELL.sub(r"\1", body)) != lines("\n".join("".join(c["source"]) for c in cells))
 
 
-def execute(notebooks: list[Path], now: dict[str, str]) -> None:
-    """Execute copies of the notebooks; the committed ones stay without outputs."""
+def execute(notebooks: list[Path], shared: str) -> None:
+    """Execute copies of the notebooks; the committed ones stay without outputs.
+
+    A chapter that ran to its end is marked at once, with what it was made from: where another one
+    fails, or all is killed, it is not executed again.
+    """
     for cache in list((ROOT / "src").rglob("__pycache__")):
         remove(cache)  # a compiled module is found current by the time and size of its source alone
-    copies = (shutil.copy(in_next(nb), in_next(CHAPTERS)) for nb in notebooks)
-    chapters = sorted(map(Path, copies), key=when_executed)
+    for notebook in notebooks:
+        remove(executed(notebook).parent)
+        executed(notebook).parent.mkdir(parents=True)
+        shutil.copy(notebook, executed(notebook))
+        mark(notebook).with_suffix(".part").write_text(wanted_of(notebook, shared))
+    chapters = sorted(map(executed, notebooks), key=when_executed)
     nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
     pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
     pytest += ["--maxschedchunk=1"]  # none waits behind another while a process is free
-    ours = ["-c", ROOT / "pyproject.toml", "-p", "per_chapter"]
-    (NEXT / "settings.json").write_text(json.dumps(now), encoding="utf-8")
     must(
         f"Executing {len(chapters)} notebooks",
-        [*pytest, *ours, *nbmake, *chapters],
+        [*pytest, "-c", ROOT / "pyproject.toml", "-p", "per_chapter", *nbmake, *chapters],
         base=one_arithmetic(),
-        PYTHONPATH=TOOLS / "reads",
-        QBOUND_MADE=NEXT / "made",
+        PYTHONPATH=TOOLS / "chapters",
     )
     for chapter in chapters:
         if unrun_cells(chapter):
-            raise Failed(f"{chapter.name}: cells that did not run: {unrun_cells(chapter)}")
-        collect(chapter, now)
+            remove(chapter.parent)
+            raise Failed(f"{chapter.name}: cells did not run.")
+        if not is_x86():
+            keep = [in_venv("python"), TOOLS / "keep_results.py", chapter.parent, RESULTS]
+            must(f"Comparing the results of {chapter.name} with the recorded ones", keep)
 
 
 def when_executed(chapter: Path) -> tuple[int, str]:
@@ -556,69 +543,40 @@ def when_executed(chapter: Path) -> tuple[int, str]:
     return LONG.index(name) if name in LONG else len(LONG), chapter.stem
 
 
-def collect_executed() -> None:
-    """Collect the chapters of NEXT that ran to their end, where the build itself did not."""
-    for chapter in in_next(CHAPTERS).glob("*.ipynb"):
-        ran = (NEXT / "made" / chapter.stem / "ran").exists()
-        if ran and not in_next(record(chapter.stem)).exists() and not unrun_cells(chapter):
-            with contextlib.suppress(Failed, OSError, ValueError):  # then it is executed again
-                now = json.loads((NEXT / "settings.json").read_text(encoding="utf-8"))
-                collect(chapter, now)
+def executed(notebook: Path) -> Path:
+    """Return the executed copy of a chapter; its folder holds the chapter's results too."""
+    return EXECUTED / notebook.stem / notebook.name
 
 
-def collect(chapter: Path, now: dict[str, str]) -> None:
-    """Take over a chapter's results, and write down all that the chapter was made from."""
-    own = NEXT / "made" / chapter.stem
-    if not is_x86():
-        keep = [in_venv("python"), TOOLS / "keep_results.py", own, RESULTS]
-        must(f"Comparing the results of {chapter.name} with the recorded ones", keep)
-    results = {file.name: hash_of(file) for file in own.glob("*.json")}
-    for name in results:
-        if in_next(RESULTS / name).exists():
-            raise Failed(f"{chapter.name} writes {name}, as another chapter does.")
-        shutil.copy(own / name, in_next(RESULTS))
-    lines = (own / "reads").read_text(encoding="utf-8").splitlines()
-    reads = [json.loads(line) for line in lines]
-    programs = {name for kind, name, *_ in reads if kind == "program"}
-    files = {name: total for kind, name, *rest in reads if kind == "file" for total in rest}
-    folders = {name: total for kind, name, *rest in reads if kind == "folder" for total in rest}
-    if any(name.startswith(f"{RESULTS.name}/") for name in files):
-        raise Failed(f"{chapter.name} reads results, which other chapters write: they run at once.")
-    if programs - HARMLESS:  # they may have read anything
-        files |= {name.as_posix(): total for name, total in source_hashes(NEXT).items()}
-    files[f"notebooks/{chapter.name}"] = hash_of(NEXT / "notebooks" / chapter.name)
-    made = {"settings": now, "files": files, "folders": folders, "programs": sorted(programs)}
-    made |= {"copy": hash_of(chapter), "results": results}
-    content = json.dumps(made, indent=1, sort_keys=True)
-    in_next(record(chapter.stem)).write_text(content, encoding="utf-8", newline="\n")
-
-
-def record(stem: str) -> Path:
+def mark(notebook: Path) -> Path:
     """Return the file that says what an executed chapter was made from."""
-    return CHAPTERS / f"{stem}.made-from.json"
+    return executed(notebook).with_name("made-from")
 
 
-def is_current(stem: str, now: dict[str, str], chapters: Path, results: Path) -> bool:
-    """Tell whether executing a chapter again would do the same again, and its work is there."""
-    try:
-        made = json.loads((chapters / record(stem).name).read_text(encoding="utf-8"))
-        files = {ROOT / name: total for name, total in made["files"].items()}
-        files |= {results / name: total for name, total in made["results"].items()}
-        files[chapters / f"{stem}.ipynb"] = made["copy"]
-        same = all(hash_of(file) == total for file, total in files.items())
-        listed = all(names_in(ROOT / name) == total for name, total in made["folders"].items())
-        return made["settings"] == now and same and listed
-    except (OSError, ValueError, LookupError, AttributeError, TypeError):
-        return False  # there is no record, or it is none
+def made_with() -> str:
+    """Return one hash of what every chapter is computed with."""
+    hashes = {name.as_posix(): total for name, total in source_hashes(ROOT).items()}
+    used = [f"{name} {total}" for name, total in hashes.items() if name.startswith(SHARED)]
+    return digest(*settings().values(), *used)
 
 
-def keep(stem: str, chapters: Path, results: Path) -> None:
-    """Take a chapter that is current, with its results, into the next book."""
-    made = json.loads((chapters / record(stem).name).read_text(encoding="utf-8"))
-    for name in [record(stem).name, f"{stem}.ipynb"]:
-        shutil.copy2(chapters / name, in_next(CHAPTERS))
-    for name in made["results"]:
-        shutil.copy2(results / name, in_next(RESULTS))
+def wanted_of(notebook: Path, shared: str) -> str:
+    return digest(shared, hash_of(notebook))
+
+
+def is_current(notebook: Path, shared: str) -> bool:
+    """Tell whether a chapter was executed as it is, with what it is computed with."""
+    made = mark(notebook)
+    return made.is_file() and made.read_text() == wanted_of(notebook, shared)
+
+
+def take(notebook: Path) -> None:
+    """Take an executed chapter and its results into the next book."""
+    shutil.copy2(executed(notebook), in_next(CHAPTERS))
+    for file in sorted(executed(notebook).parent.glob("*.json")):
+        if (in_next(RESULTS) / file.name).exists():
+            raise Failed(f"{notebook.name} writes {file.name}, as another chapter does.")
+        shutil.copy(file, in_next(RESULTS))
 
 
 def hash_of(file: Path) -> str | None:
@@ -626,16 +584,8 @@ def hash_of(file: Path) -> str | None:
     return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else None
 
 
-def names_in(folder: Path) -> str | None:
-    """Return the hash of the names in a folder, as tools/reads notes it, or None without one."""
-    if not folder.is_dir():
-        return None
-    names = {path.name for path in folder.iterdir()} - {"__pycache__", ".ipynb_checkpoints", ".git"}
-    return digest(*sorted(names))
-
-
 def settings() -> dict[str, str]:
-    """Return what every chapter hangs on besides what it reads here."""
+    """Return what every chapter hangs on besides the sources."""
     question = "import sys, platform; print(sys.version, sys.platform, platform.machine())"
     python = subprocess.check_output([in_venv("python"), "-c", question], cwd=ROOT, text=True)
     places = [VENV / "Lib" / "site-packages", *VENV.glob("lib/python*/site-packages")]
@@ -647,20 +597,14 @@ def settings() -> dict[str, str]:
         "packages": digest(*sorted(found)),
         "arithmetic": KERNEL if is_x86() else platform.machine(),
         "environment": digest(*(f"{name}={counts[name]}" for name in sorted(counts))),
-        "how": hash_of(TOOLS / "reads" / "sitecustomize.py") or "",
     }
 
 
-def unrun_cells(notebook: Path) -> list[int]:
-    """Return the numbers (from 1) of the code cells that have not run."""
+def unrun_cells(notebook: Path) -> bool:
+    """Tell whether a code cell has not run."""
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
-    return [
-        number
-        for number, cell in enumerate(cells, start=1)
-        if cell["cell_type"] == "code"
-        and "".join(cell["source"]).strip()
-        and cell.get("execution_count") is None
-    ]
+    code = (c for c in cells if c["cell_type"] == "code" and "".join(c["source"]).strip())
+    return any(cell.get("execution_count") is None for cell in code)
 
 
 def fingerprint(root: Path) -> str:
@@ -972,7 +916,7 @@ def prepare_bench() -> Path:
 def clean() -> int:
     """Remove the environments, the book and the caches; results/ stays."""
     made = [ROOT / name for name in [BENCH, *CACHES, *BUILT]]
-    for path in [VENV, NEXT, CHAPTERS, BUILD, GENERATED, *made]:
+    for path in [VENV, NEXT, EXECUTED, CHAPTERS, BUILD, GENERATED, *made]:
         remove(path)
     say("Removed the environments, the book and the caches.")
     return 0

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 SEED = "1"
 
-twice = load_script("tools/reads/twice.py")
+twice = load_script("tools/chapters/twice.py")
 
 
 @pytest.mark.skipif(

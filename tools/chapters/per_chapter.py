@@ -1,15 +1,14 @@
-"""For pytest, in the run that executes the chapters: each gets a folder of its own.
+"""For pytest, in the run that executes the chapters: each has a folder of its own.
 
-It holds the results that the chapter writes, in ``reads`` what its process read, and ``ran`` when
-all is done and written. If ``run.py`` is killed, this run ends too. With ``QBOUND_TWICE=1`` each
-cell runs twice, so that a cell that depends on its own earlier run is found.
+It holds the executed copy and the results that the chapter writes; the mark that ``run.py`` has put
+there gets its name once all is done and written. If ``run.py`` is killed, this run ends too. With
+``QBOUND_TWICE=1`` each cell runs twice, so that a cell that depends on its own earlier run is found.
 """
 
 import os
 import threading
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import twice
@@ -19,10 +18,7 @@ from nbclient import NotebookClient
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     """Name the folder to the kernel that this chapter is going to start."""
-    folder = Path(os.environ["QBOUND_MADE"], item.path.stem)
-    folder.mkdir(parents=True)
-    os.environ["QBOUND_RESULTS"] = str(folder)
-    os.environ["QBOUND_READS"] = str(folder / "reads")
+    os.environ["QBOUND_RESULTS"] = str(item.path.parent)
     return (yield)
 
 
@@ -30,7 +26,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     """Mark a chapter that has run to its end; what it became is written by then."""
     yield
-    Path(os.environ["QBOUND_MADE"], item.path.stem, "ran").touch()
+    item.path.with_name("made-from.part").rename(item.path.with_name("made-from"))
 
 
 def is_run_twice() -> bool:
