@@ -1,8 +1,8 @@
 """For pytest, in the run that executes the chapters: each has a folder of its own.
 
-It holds the executed copy and the results that the chapter writes; the mark that ``run.py`` has put
-there gets its name once all is done and written. If ``run.py`` is killed, this run ends too. With
-``QBOUND_TWICE=1`` each cell runs twice, so that a cell that depends on its own earlier run is found.
+It holds the executed copy and the results that the chapter writes; the mark that ``run.py`` has
+put there gets its name once all is done and written. If ``run.py`` is killed, this run ends too.
+With ``QBOUND_TWICE=1`` each cell runs twice: a cell that depends on its own earlier run is found.
 """
 
 import os
