@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
+from qbound.region.cells import critical_lines
 from qbound.region.critical import Finder
-from qbound.region.decomposition import critical_lines
 from qbound.region.pieces import find_pieces
 from qbound.region.plane import Plane
 from qbound.region.precise import Precise, precision

@@ -17,10 +17,9 @@ from qbound.forms.factors import basis, basis_and_slope, basis_slope
 from qbound.measures import nearest
 from qbound.model.frames import cross
 from qbound.region import critical, pieces
-from qbound.region.arcs import NODES, legendre
-from qbound.region.components import CELL_NODES, _smooth_rules
+from qbound.region.cells import critical_lines
 from qbound.region.critical import Events, Finder, _Request
-from qbound.region.decomposition import critical_lines
+from qbound.region.outline import CELL_NODES, NODES, _smooth_rules, legendre
 from qbound.region.pieces import find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, runs
 from qbound.region.precise import Precise

@@ -10,9 +10,8 @@ from scipy.sparse.csgraph import connected_components
 
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
-from qbound.region.cells import CellComplex
-from qbound.region.decomposition import decompose
-from qbound.region.halfedges import find_loops, half_edges
+from qbound.region.cells import CellComplex, decompose
+from qbound.region.outline import find_loops, half_edges
 from qbound.region.plane import Plane
 from qbound.region.precise import Precise
 from support.forms import LIMITS, Moved, Piece, Ranges

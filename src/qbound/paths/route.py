@@ -17,7 +17,7 @@ from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Traversal, follow, straight
 from qbound.region import Component, Region
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 from qbound.tolerances import TOUCH
 
 Along = Literal["lines", "arcs"]

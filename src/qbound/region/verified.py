@@ -14,10 +14,8 @@ import numpy as np
 
 from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN
-from qbound.region.arcs import ordered
-from qbound.region.cells import CellComplex
-from qbound.region.components import Component, numbered
-from qbound.region.decomposition import apart, turned_root
+from qbound.region.cells import CellComplex, apart, turned_root
+from qbound.region.outline import Component, numbered, ordered
 from qbound.region.plane import which
 from qbound.region.precise import LEVELS, Precise, precision
 from qbound.region.problem import Problem

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.region import Component, NoHomeError, Problem
-from qbound.region.arcs import Arc, integrate
+from qbound.region.outline import Arc, integrate
 from qbound.workspace.cover import Cover
 from qbound.workspace.fibres import Fibres, find_fibres
 from qbound.workspace.layers import Layers, Ranges

@@ -20,7 +20,7 @@ from qbound.arrays import Floats
 from qbound.forms.angles import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Problem
-from qbound.region.arcs import NODES, converged, legendre
+from qbound.region.outline import NODES, converged, legendre
 from qbound.tolerances import CHORD, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL
 from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
 from qbound.workspace.fibres import Fibres

@@ -15,7 +15,7 @@ from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.geometry.bisection import last_before
 from qbound.region import Component
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 from qbound.workspace.fibres import Fibres
 from qbound.workspace.planar import turns_within
 
