@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -98,7 +100,7 @@ def both_ways(problem: Problem, monkeypatch):
     monkeypatch.setattr("qbound.region.problem.MANY", 10**9)
     whole = solve(problem)
     monkeypatch.setattr("qbound.region.problem.MANY", 0)
-    return whole, solve(problem)
+    return whole, solve(replace(problem))
 
 
 def assert_same(whole, found):

@@ -269,14 +269,14 @@ def test_one_that_is_wrong_in_doubles_is_computed_again_with_more_in_balls(monke
 
 def test_regions_that_differ_between_the_joints_are_unresolved(monkeypatch):
     """A component is lost over one joint of a delicate problem."""
-    built = engine._Asked._region
+    built = engine._over
 
-    def fewer(self, base, caution):
-        region = built(self, base, caution)
+    def fewer(problem, home, base, caution):
+        region = built(problem, home, base, caution)
         return replace(region, found=region.found[: 5 - base])
 
-    monkeypatch.setattr(engine._Asked, "_region", fewer)
-    monkeypatch.setattr(engine._Asked, "is_delicate", lambda self, region: True)
+    monkeypatch.setattr(engine, "_over", fewer)
+    monkeypatch.setattr(engine, "_is_delicate", lambda region: True)
     monkeypatch.setattr(engine, "faults", lambda region: [])
     region = find_region(load_robot("minervabot-v2"))
     assert "5 components over one joint, 4 over the other" in region.unresolved

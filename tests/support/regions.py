@@ -1,5 +1,6 @@
 """What must hold of every region: its arcs, its area and pieces on a grid, either joint as base."""
 
+from collections import Counter
 from math import pi
 
 import numpy as np
@@ -204,11 +205,12 @@ def pieces_of(precise: Precise) -> list[Piece]:
     """The same of a plane; wraps are in the order of the joints."""
     cells, base = CellComplex(decompose(precise)), precise.plane.base
     found = []
-    rings = find_loops(cells, half_edges(cells))
-    for own, wraps, loops in zip(cells.parts.cells, cells.parts.wraps, rings, strict=True):
-        area = sum(area_of(cells, k) for k in own)
+    edges, part = half_edges(cells), cells.parts.of_cells()
+    loops = Counter(part[edges.cell[loop[0]]] for loop in find_loops(cells, edges))
+    for k, (own, wraps) in enumerate(zip(cells.parts.cells, cells.parts.wraps, strict=True)):
+        area = sum(area_of(cells, cell) for cell in own)
         one, other = wraps if base == 0 else wraps[::-1]
-        found.append((area, (bool(one), bool(other)), len(loops)))
+        found.append((area, (bool(one), bool(other)), loops[k]))
     return sorted(found, reverse=True)
 
 

@@ -14,10 +14,10 @@ machine precision.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
-from itertools import accumulate, chain, pairwise
+from itertools import chain, pairwise
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -105,13 +105,15 @@ def _twins(cells: CellComplex, kind: Ints, element: Ints) -> Ints:
     return twin
 
 
-def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[Ints]]:
-    """Return of each component the closed loops that bound it, the component on the left.
+def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[int]]:
+    """Return the closed loops that bound components, one component after the other.
 
-    Rows of half-edges. Where two cells are joined over an element of a line, each other's half-edge
-    is the way past it: what is left are the loops.
+    Rows of half-edges, the component on their left. Where two cells are joined over an element of a
+    line, each other's half-edge is the way past it: what is left are the loops.
     """
-    left = dict.fromkeys(_bounding(cells, edges).tolist())
+    chosen = np.array(list(chain(*cells.parts.cells)), dtype=np.int64)
+    _, rows = ranges(edges.cell.searchsorted(chosen), edges.cell.searchsorted(chosen + 1))
+    left = dict.fromkeys(rows[edges.twin[rows] < 0].tolist())
     after = _next_bounding(edges).tolist()
     loops = []
     while left:
@@ -122,14 +124,7 @@ def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[Ints]]:
             del left[row]
             row = after[row]
         loops.append(loop)
-    return _by_component(cells, edges, loops)
-
-
-def _bounding(cells: CellComplex, edges: HalfEdges) -> Ints:
-    """Return the half-edges that bound components, one component after the other."""
-    chosen = np.array(list(chain(*cells.parts.cells)), dtype=np.int64)
-    _, rows = ranges(edges.cell.searchsorted(chosen), edges.cell.searchsorted(chosen + 1))
-    return np.asarray(rows[edges.twin[rows] < 0])
+    return loops
 
 
 def _next_bounding(edges: HalfEdges) -> Ints:
@@ -139,15 +134,6 @@ def _next_bounding(edges: HalfEdges) -> Ints:
     while len(inner := which(bounding & (edges.twin[after] >= 0))):
         after[inner] = edges.after[edges.twin[after[inner]]]
     return after
-
-
-def _by_component(cells: CellComplex, edges: HalfEdges, loops: list[list[int]]) -> list[list[Ints]]:
-    """Sort loops by component."""
-    found: list[list[Ints]] = [[] for _ in cells.parts.cells]
-    owner = cells.parts.of_cells()
-    for loop in loops:
-        found[int(owner[edges.cell[loop[0]]])].append(np.array(loop))
-    return found
 
 
 FIBRE: Final = -3
@@ -423,22 +409,6 @@ Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, eq=False)
-class BoundaryLoop:
-    """A closed loop round a component, and where the component is shown.
-
-    Attributes
-    ----------
-    edges : ndarray of int, shape (n,)
-        Rows of the cells' half-edges.
-    shift : ndarray, shape (2,)
-        Added to base and lift values of all its cells, rad.
-    """
-
-    edges: Ints
-    shift: Floats
-
-
-@dataclass(frozen=True, eq=False)
 class _Laid:
     """Half-edges of all loops, one behind the other, one a row.
 
@@ -471,39 +441,28 @@ class Layout:
     cells : CellComplex
     edges : HalfEdges
         Those round the cells.
-    base : int
-        Which joint is the base.
-    names : sequence of str
-        One a form.
-    limits : sequence of two (str, str)
-        Names of the ends of each joint's range.
+    problem : Problem
+        Whose rows are those of the cells' plane.
     """
 
-    def __init__(
-        self,
-        cells: CellComplex,
-        edges: HalfEdges,
-        base: int,
-        names: Sequence[str],
-        limits: Sequence[tuple[str, str]],
-    ) -> None:
-        self.cells, self.edges, self.plane, self.base = cells, edges, cells.plane, base
-        contacts = cells.plane.contacts
-        self.names = [*names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
-        self.features = [*[""] * len(names), *contacts.names]
-        self.limits = [*limits[base], *limits[1 - base]]
+    def __init__(self, cells: CellComplex, edges: HalfEdges, problem: Problem) -> None:
+        self.cells, self.edges, self.plane = cells, edges, cells.plane
+        self.base, contacts = cells.plane.base, cells.plane.contacts
+        self.names = [*problem.names, *(contacts.boundaries[k] for k in contacts.pair.tolist())]
+        self.features = [*[""] * len(problem.names), *contacts.names]
+        self.limits = [*problem.limits[self.base], *problem.limits[1 - self.base]]
         self._numbers = {rows: k for k, rows in enumerate(cells.decomposition.names)}
 
     def arcs(
-        self, loops: Sequence[BoundaryLoop], windings: Ints
+        self, loops: list[list[int]], shifts: Floats
     ) -> list[tuple[tuple[Arc, ...], list[bool]]]:
         """Return the arcs of each loop, the component on their left, and which begin at a vertex.
 
-        Cells lie at their windings, (cells, 2): turns of base and lift.
+        Cells lie at their windings; `shifts`, (loops, 2), are added to base and lift values, rad.
         """
         if not loops:
             return []
-        laid = self._laid(loops, windings)
+        laid = self._laid(loops, shifts)
         changes = (laid.label != laid.label[laid.before]).any(axis=1)
         begin = which(laid.first | changes)
         pieces = self._pieces(laid, begin)
@@ -551,10 +510,10 @@ class Layout:
         also = sorted({(self.names[row], self.features[row]) for row in rows} - {own})
         return Arc(own[0], branch or None, pieces, span, own[1], form, tuple(also), vague)
 
-    def _laid(self, loops: Sequence[BoundaryLoop], windings: Ints) -> _Laid:
+    def _laid(self, loops: list[list[int]], shifts: Floats) -> _Laid:
         """Put all loops one behind the other, each from where an arc begins."""
-        rows = np.concatenate([loop.edges for loop in loops])
-        length = np.array([len(loop.edges) for loop in loops])
+        rows = np.concatenate(loops)
+        length = np.array([len(loop) for loop in loops])
         loop, start = np.arange(len(loops)).repeat(length), length.cumsum() - length
         label, number = self._labels(rows), np.arange(len(rows)) - start[loop]
         before = start[loop] + (number - 1) % length[loop]
@@ -564,8 +523,7 @@ class Layout:
         order = start[loop] + (number + shift[loop]) % length[loop]
         if self.base == 1:  # seen with the joints in their order, the loop runs backwards
             order = order[start[loop] + length[loop] - 1 - number]
-        winding = windings[self.edges.cell[rows]]
-        turns = TURN * winding + np.array([one.shift for one in loops])[loop]
+        turns = TURN * self.cells.parts.windings[self.edges.cell[rows]] + shifts[loop]
         after = start[loop] + (number + 1) % length[loop]
         return _Laid(rows[order], turns[order], number == 0, before, after, label[order])
 
@@ -921,57 +879,66 @@ def drawn(
     return np.where([ends is None for ends in problem.ranges], nearest_turn(q, 0), q)
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """A component before its boundary is laid out; base before lift."""
+def outlined(
+    problem: Problem, searched: Problem, cells: CellComplex, home: Floats
+) -> list[tuple[Component, list[int]]]:
+    """Return the components, each with its boundary, and the cells of each.
 
-    part: int
-    wraps: tuple[bool, bool]
-    area: float
-    middle: Floats
-    shift: Floats
-    contains_home: bool
+    The components with the home pose come first, the others by falling area.
 
-
-def measured(cells: CellComplex, problem: Problem, home: Floats, base: int) -> list[Found]:
-    """Measure every component, and choose the turns at which it is shown."""
-    moments = _cell_moments(cells)
-    at_home = {one.cell: one for one in closures(problem, cells, base, home)}
-    home = ordered(home, base)
+    Parameters
+    ----------
+    problem : Problem
+        What was asked.
+    searched : Problem
+        What is left of it for the search: its rows are those of the cells' plane.
+    home : ndarray, shape (2,)
+        A component that holds it is shown on its turns; of the others the centroid is near 0.
+    """
+    base, parts, part = cells.plane.base, cells.parts, cells.parts.of_cells()
+    areas, middles = _moments_of_parts(cells)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
-    parts = cells.parts
-    moments[:, 1:] += moments[:, :1] * TURN * parts.windings
-    first = list(accumulate(map(len, parts.cells[:-1]), initial=0))
-    sums = np.add.reduceat(moments[list(chain(*parts.cells))], first)
-    middles = sums[:, 1:] / np.where(sums[:, :1] > 0, sums[:, :1], 1.0)
-    nearest = (nearest_turn(middles, 0) - middles) * circles
+    bounded = ~np.array(parts.wraps, dtype=np.bool_).reshape(-1, 2).any(axis=1)
+    shifts = (nearest_turn(middles, 0) - middles) * circles * bounded[:, None]
+    at_home: dict[int, Placed] = {}
+    for one in {one.cell: one for one in closures(problem, cells, base, home)}.values():
+        at_home.setdefault(int(part[one.cell]), one)
+    for k, one in at_home.items():
+        shifts[k] = ordered(home, base) - one.place - TURN * parts.windings[one.cell]
+    edges = half_edges(cells)
+    loops = find_loops(cells, edges)
+    owner = np.array([part[edges.cell[loop[0]]] for loop in loops], dtype=np.int64)
+    arcs = Layout(cells, edges, searched).arcs(loops, shifts[owner])
     found = []
-    for k, wraps in enumerate(parts.wraps):
-        own = next((at_home[cell] for cell in at_home if cell in parts.cells[k]), None)
-        shift = np.zeros(2)
-        if own is not None:
-            shift = home - own.place - TURN * parts.windings[own.cell]
-        elif not any(wraps):
-            shift = nearest[k]
-        area = float(sums[k, 0])
-        found.append(Found(k, wraps, area, middles[k], shift, own is not None))
-    return found
+    for k, (wraps, own) in enumerate(zip(parts.wraps, parts.cells, strict=True)):
+        rings = [arcs[loop] for loop in which(owner == k)]
+        component = Component(
+            float(areas[k]),
+            ordered(middles[k] + shifts[k], base) if bounded[k] else None,
+            (wraps[base], wraps[1 - base]),
+            tuple(ring for ring, _ in rings),
+            tuple(vertex for ring, corners in rings for vertex in _vertices(ring, corners)),
+            k in at_home,
+            problem.area_unit,
+        )
+        found.append((component, own))
+    return sorted(found, key=lambda item: (not item[0].contains_home, -item[0].area))
 
 
-def bounded(
-    found: Found, base: int, loops: Sequence[tuple[tuple[Arc, ...], list[bool]]], unit: str
-) -> Component:
-    """Return a component with its boundary: loops of arcs, which of these begin at a vertex."""
-    centroid = None if any(found.wraps) else ordered(found.middle + found.shift, base)
-    wraps = found.wraps[base], found.wraps[1 - base]
-    vertices = tuple(
-        Vertex(arc.start, (before.boundary, arc.boundary), arc.vague)
-        for arcs, corners in loops
-        for before, arc, corner in zip(behind(arcs), arcs, corners, strict=True)
-        if corner
-    )
-    rings = tuple(arcs for arcs, _ in loops)
-    return Component(found.area, centroid, wraps, rings, vertices, found.contains_home, unit)
+def _vertices(ring: tuple[Arc, ...], corners: list[bool]) -> Iterator[Vertex]:
+    """Yield the vertices of a loop: the starts of those of its arcs that begin at one."""
+    for before, arc, corner in zip(behind(ring), ring, corners, strict=True):
+        if corner:
+            yield Vertex(arc.start, (before.boundary, arc.boundary), arc.vague)
+
+
+def _moments_of_parts(cells: CellComplex) -> tuple[Floats, Floats]:
+    """Return area (n,) and centroid (n, 2), base before lift, of each component."""
+    moments, parts = _cell_moments(cells), cells.parts
+    moments[:, 1:] += moments[:, :1] * TURN * parts.windings
+    starts = np.cumsum([0, *map(len, parts.cells)])[:-1]
+    sums = np.add.reduceat(moments[list(chain(*parts.cells))], starts) if len(starts) else moments
+    return sums[:, 0], sums[:, 1:] / np.where(sums[:, :1] > 0, sums[:, :1], 1.0)
 
 
 def _cell_moments(cells: CellComplex) -> Floats:

@@ -206,10 +206,25 @@ class Problem:
             origins=tuple(b for k, b in enumerate(self.origins) if k not in dropped),
         )
 
-    def blocks(self, k: int, value: float) -> bool:
-        """Tell whether a form with this value everywhere leaves no room; d_min = 0 asks none."""
-        asks_nothing = k < len(self.distances) and self.distances[k] == 0
-        return value < 0 or (value == 0 and not asks_nothing)
+    @cached_property
+    def blocked(self) -> tuple[str, ...]:
+        """Names of the forms that leave no room because they depend on neither joint.
+
+        Their value is negative, or zero; a pair that keeps no distance (d_min = 0) may touch.
+        """
+        kept = [*self.distances, *[None] * (len(self.names) - len(self.distances))]
+        lost = (
+            k for k, value in self.constants.items() if value < 0 or (not value and kept[k] != 0)
+        )
+        return tuple(self.names[k] for k in lost)
+
+    @cached_property
+    def searched(self) -> tuple[Problem, tuple[str, ...]]:
+        """What a search looks at: forms that a joint moves, and of many those that can bind.
+
+        With it the names of the forms that were left out because they bind nowhere.
+        """
+        return without_irrelevant(self.without(list(self.constants)))
 
     @cached_property
     def errors(self) -> Floats:

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib.util import find_spec
-from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -17,22 +16,11 @@ from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.region.cells import CellComplex, decompose, nothing_in
-from qbound.region.outline import (
-    BoundaryLoop,
-    Component,
-    Layout,
-    bounded,
-    closures,
-    drawn,
-    find_loops,
-    half_edges,
-    measured,
-    numbered,
-)
+from qbound.region.outline import Component, closures, drawn, numbered, outlined
 from qbound.region.pieces import INSIDE
 from qbound.region.precise import Precise, UndecidedError
-from qbound.region.problem import Problem, Rule, clearance_problem, without_irrelevant
-from qbound.region.verified import Found, faults
+from qbound.region.problem import Problem, Rule, clearance_problem
+from qbound.region.verified import faults
 from qbound.tolerances import UNIT
 from qbound.units import limited_joints, margin_text
 
@@ -673,30 +661,66 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     Notes
     -----
     A component is open, and what people see is its closure; touching in points or curves neither
-    joins components nor makes one. A form that depends on no joint is decided beforehand, and of
-    many forms those that can bound nothing are left out, by proof (`qbound.region.problem`).
+    joins components nor makes one.
+
+    A region is handed out only if it is right by its own account. Where balls decided anything, or
+    critical values nearly coincide, the region over the other joint must agree with it.
     """
     home = problem.home if home is None else home
     home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    constants = problem.constants
-    inner, irrelevant = without_irrelevant(problem.without(list(constants)))
-    blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
-    if blocked:
-        nothing = CellComplex(nothing_in(Precise.of(inner, base)))
-        because = tuple(blocked[:1])
-        return Region((), problem, nothing, base, {}, because, irrelevant, inner=inner)
-    asked = _Asked(problem, inner, home, irrelevant)
-    found, why = asked.verified(base)
-    if found is not None and not asked.is_delicate(found):
+    found = _verified(problem, home, base)
+    if not found.unresolved and not _is_delicate(found):
         return found
-    other, why_other = asked.verified(1 - base)
-    if found is None or other is None:
-        right = found or other
-        return asked.unresolved(base, [*dict.fromkeys(why + why_other)]) if right is None else right
-    differences = _differences(found, other)
-    return asked.unresolved(base, differences) if differences else found
+    other = _verified(problem, home, 1 - base)
+    if bool(found.unresolved) != bool(other.unresolved):
+        return other if found.unresolved else found
+    reasons = found.unresolved + other.unresolved or _differences(found, other)
+    return _unresolved(problem, base, reasons) if reasons else found
+
+
+def _verified(problem: Problem, home: Floats, base: int) -> Region:
+    """Return the region over a joint, if it is right by its own account, else one that says why.
+
+    One that is not right is computed again with more left to balls.
+    """
+    for caution in CAUTION:
+        try:
+            region = _over(problem, home, base, caution)
+            reasons = faults(region)
+        except UndecidedError as error:
+            reasons = [str(error)]
+        if not reasons:
+            return region
+    return _unresolved(problem, base, reasons)
+
+
+def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
+    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting."""
+    constraints, irrelevant = problem.searched  # eqs. 9-12; of many forms those that may bind
+    precise = Precise.of(constraints, base, caution)  # along the lift: Theorem 2
+    cells = CellComplex(nothing_in(precise) if problem.blocked else decompose(precise))
+    components = outlined(problem, constraints, cells, home)
+    owner = {k: i for i, (_, own) in enumerate(components) for k in own}
+    found = tuple(component for component, _ in components)
+    because = problem.blocked[:1] or (() if found else irreducible(constraints, base))
+    return Region(found, problem, cells, base, owner, because, irrelevant, inner=constraints)
+
+
+def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
+    """Return a region without components that says why it has none."""
+    inner, irrelevant = problem.searched
+    cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
+    return Region((), problem, cells, base, {}, (), irrelevant, why, inner)
+
+
+def _is_delicate(region: Region) -> bool:
+    """Tell whether balls decided anything, or critical values nearly coincide."""
+    lines = region.cells.abscissae
+    near = DELICATE * (lines[-1] - lines[0])
+    decided = region.cells.decomposition.precise.decided
+    return bool(decided or (np.diff(lines) < near).any())
 
 
 DELICATE = 1e-6
@@ -706,98 +730,28 @@ CAUTION = (1.0, 2.0**12)
 """By how much errors of doubles are overestimated: at first, and where a region was not right."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Asked:
-    """What a region is asked of: the problem, and what is left of it for the search."""
-
-    problem: Problem
-    inner: Problem
-    home: Floats
-    irrelevant: tuple[str, ...]
-
-    def verified(self, base: int) -> tuple[Region | None, tuple[str, ...]]:
-        """Return the region over a joint that is right by its own account; else why there is none.
-
-        One that is not is computed again with more left to balls.
-        """
-        reasons: tuple[str, ...] = ()
-        for caution in CAUTION:
-            try:
-                region = self._region(base, caution)
-            except UndecidedError as error:
-                reasons = (str(error),)
-                continue
-            found = Found(self.problem, self.inner, region.cells, region.found, region.owner)
-            reasons = tuple(faults(found))
-            if not reasons:
-                return region, ()
-        return None, reasons
-
-    def is_delicate(self, region: Region) -> bool:
-        """Tell whether balls decided anything, or critical values nearly coincide."""
-        lines = region.cells.abscissae
-        near = DELICATE * (lines[-1] - lines[0])
-        decided = region.cells.decomposition.precise.decided
-        return bool(decided or (np.diff(lines) < near).any())
-
-    def unresolved(self, base: int, reasons: Sequence[str]) -> Region:
-        """Return a region without components that says why it has none."""
-        cells = CellComplex(nothing_in(Precise.of(self.inner, base)))
-        return Region(
-            (),
-            self.problem,
-            cells,
-            base,
-            {},
-            irrelevant=self.irrelevant,
-            unresolved=tuple(reasons),
-            inner=self.inner,
-        )
-
-    def _region(self, base: int, caution: float) -> Region:
-        problem, inner = self.problem, self.inner
-        cells = CellComplex(decompose(Precise.of(inner, base, caution)))
-        if not len(cells.slabs):
-            because = irreducible(inner, base)
-            return Region((), problem, cells, base, {}, because, self.irrelevant, inner=inner)
-        found = measured(cells, problem, self.home, base)
-        edges = half_edges(cells)
-        rings = find_loops(cells, edges)
-        bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
-        layout = Layout(cells, edges, base, inner.names, inner.limits)
-        loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
-        unit = problem.area_unit
-        components = [
-            (bounded(f, base, list(islice(loops, len(own))), unit), cells.parts.cells[f.part])
-            for f, own in zip(found, bounding, strict=True)
-        ]
-        components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
-        owner = {k: i for i, (_, own) in enumerate(components) for k in own}
-        every = tuple(component for component, _ in components)
-        return Region(every, problem, cells, base, owner, irrelevant=self.irrelevant, inner=inner)
-
-
-def _differences(one: Region, other: Region) -> tuple[str, ...]:
+def _differences(one: Region, other: Region) -> list[str]:
     """Return what two regions of one problem, found over either joint, do not have in common."""
-    found = []
-    for what, *counts in zip(
-        ("components", "loops", "vertices"), _counts(one), _counts(other), strict=True
-    ):
-        if counts[0] != counts[1]:
-            found.append(f"{counts[0]} {what} over one joint, {counts[1]} over the other")
+    counts = [
+        (
+            len(region.components),
+            sum(len(component.loops) for component in region.components),
+            sum(len(component.vertices) for component in region.components),
+        )
+        for region in (one, other)
+    ]
+    found = [
+        f"{n} {what} over one joint, {m} over the other"
+        for what, n, m in zip(("components", "loops", "vertices"), *counts, strict=True)
+        if n != m
+    ]
     if not found and one.components:
         areas = np.array([sorted(c.area for c in region.components) for region in (one, other)])
         plane, off = one.cells.plane, float(np.ptp(areas, axis=0).max())
         rounding = 64 * UNIT * plane.base_unit * plane.lift_unit
         if off > SAME_AREA * max(one.area, other.area) + rounding:
             found.append(f"an area differs by {off:.2g} between the joints")
-    return tuple(found)
-
-
-def _counts(region: Region) -> tuple[int, int, int]:
-    """Return the numbers of components, loops and vertices."""
-    every = region.components
-    return len(every), sum(len(c.loops) for c in every), sum(len(c.vertices) for c in every)
+    return found
 
 
 SAME_AREA = 1e-9

@@ -6,20 +6,21 @@ margins, which knows robots and distances only; where its doubles do not decide,
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN
 from qbound.region.cells import CellComplex, apart, turned_root
-from qbound.region.outline import Component, numbered, ordered
+from qbound.region.outline import numbered, ordered
 from qbound.region.plane import which
 from qbound.region.precise import LEVELS, Precise, precision
-from qbound.region.problem import Problem
 from qbound.tolerances import ON_ARC, UNIT
+
+if TYPE_CHECKING:
+    from qbound.region.region import Region
 
 PLACES = (-1.2, -0.4, 0.3, 1.0)
 """Where arcs are looked at: angles of their parametrization, from -pi/2 to pi/2."""
@@ -37,35 +38,7 @@ CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
-    """What is verified.
-
-    Attributes
-    ----------
-    problem : Problem
-        What was asked.
-    inner : Problem
-        What is left of it for the search: its rows are those of the cells' plane.
-    cells : CellComplex
-    components : sequence of Component
-    owner : mapping of int to int
-        Component of each cell.
-    """
-
-    problem: Problem
-    inner: Problem
-    cells: CellComplex
-    components: Sequence[Component]
-    owner: Mapping[int, int]
-
-    @property
-    def base(self) -> int:
-        """Which joint is the base of the cells."""
-        return self.cells.plane.base
-
-
-def faults(found: Found) -> list[str]:
+def faults(found: Region) -> list[str]:
     """Return what is wrong with a region, a sentence each; none where it is right.
 
     Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
@@ -75,21 +48,23 @@ def faults(found: Found) -> list[str]:
     return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
 
 
-def _lost(found: Found) -> list[str]:
+def _lost(found: Region) -> list[str]:
     """Ask places all over the ranges: one that is free beyond rounding lies in a cell."""
+    if found.problem.blocked:  # what touches everywhere is feasible, and in no component
+        return []
     ends = [(-np.pi, np.pi) if r is None else r for r in found.problem.ranges]
     low, high = np.array(ends).T
     q = low + (high - low) * SPREAD_OUT
     evaluator = found.problem.evaluator
     free = evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=1)
-    part = numbered(found.problem, found.cells, found.base, dict(found.owner), q[free])
+    part = numbered(found.problem, found.cells, found.base, found.owner, q[free])
     missed = q[free][part < 0]
     return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
 
 
-def _off(found: Found) -> Iterator[str]:
+def _off(found: Region) -> Iterator[str]:
     """Yield the arcs and vertices that do not lie on their boundaries."""
-    arcs = [arc for part in found.components for loop in part.loops for arc in loop]
+    arcs = [arc for part in found.found for loop in part.loops for arc in loop]
     if not arcs:
         return
     column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
@@ -98,7 +73,7 @@ def _off(found: Found) -> Iterator[str]:
     begun = ordered(laid.start[first], laid.base)[:, None]
     q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), begun], axis=1)
     starts = {tuple(arc.start.tolist()) for arc in arcs}
-    for vertex in (vertex for part in found.components for vertex in part.vertices):
+    for vertex in (vertex for part in found.found for vertex in part.vertices):
         if tuple(vertex.q.tolist()) not in starts:
             yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
     limited = np.array([arc.row < 0 for arc in arcs])
@@ -122,7 +97,7 @@ def _off(found: Found) -> Iterator[str]:
         yield f"an arc of {arcs[k].boundary} runs where {name} is violated, at ({at})"
 
 
-def _to_limits(found: Found, q: Floats) -> Floats:
+def _to_limits(found: Region, q: Floats) -> Floats:
     """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
     plane, gaps = found.cells.plane, []
     units = plane.base_unit, plane.lift_unit
@@ -135,7 +110,7 @@ def _to_limits(found: Found, q: Floats) -> Floats:
 class _Cells:
     """What the cells of a region are asked: free in the middle, and not beyond their ends."""
 
-    def __init__(self, found: Found) -> None:
+    def __init__(self, found: Region) -> None:
         self.cells, self.plane, inner = found.cells, found.cells.plane, found.inner
         self.found = found.cells.decomposition
         evaluator = found.problem.evaluator
@@ -282,7 +257,7 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
     )
 
 
-def _loops(found: Found) -> list[str]:
+def _loops(found: Region) -> list[str]:
     """Compare the number of loops of each component with Euler's count of its cells.
 
     A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
@@ -292,19 +267,17 @@ def _loops(found: Found) -> list[str]:
     """
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
-    part[part >= len(found.components)] = -1
+    part[part >= len(found.found)] = -1
     wrong = [] if (part >= 0).all() else ["a cell is in no component"]
-    if len(found.components) != len(cells.parts.cells):
-        wrong.append(f"{len(found.components)} components, but {len(cells.parts.cells)} of cells")
-    count = np.bincount(
-        part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.components)
-    )
+    if len(found.found) != len(cells.parts.cells):
+        wrong.append(f"{len(found.found)} components, but {len(cells.parts.cells)} of cells")
+    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.found))
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
     for rows, change in ((joined, -1), (_between(cells), 1)):
         parts = part[elements.cell[0, rows]]
         np.add.at(count, parts[parts >= 0], change)
-    for k, component in enumerate(found.components[: len(count)]):
+    for k, component in enumerate(found.found[: len(count)]):
         wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
         if len(component.loops) not in wanted:
             wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
