@@ -1017,12 +1017,22 @@ class CellComplex:
         return [Placed(int(chosen[k]), np.array([t, v + turns[k]]), off[k]) for k in which(reached)]
 
     def _interval_at(self, chosen: Ints, start: Floats, end: Floats, t: float) -> Floats:
-        """Lower and upper root of cells at one base value; on a line what is meant is `ends`."""
+        """Lower and upper root of cells at one base value; on a line what is meant is `ends`.
+
+        Close to a line an angle whose cosine and sine are rounding there may jump by a turn: the
+        turn is that of the end.
+        """
         inset = SAME_POINT * (end - start)
         inside = np.minimum(np.maximum(t, start + inset), end - inset)
-        found, ends = self.interval(chosen, inside[:, None])[..., 0], self.ends[chosen]
-        found = np.where(t <= start + inset, ends[:, 0].T, found)
-        return np.where(t >= end - inset, ends[:, 1].T, found)
+        ends = self.ends[chosen].transpose(1, 2, 0)
+        found = self.plane.follow(self.roots[chosen].swapaxes(0, 1), inside[:, None])[..., 0]
+        if self.plane.lift_kind == "revolute":
+            near = TOUCH * self.plane.base_unit
+            for line, own in zip((start, end), ends, strict=True):
+                off = TURN * whole_turns(own - found)
+                found = found + np.where(np.abs(t - line) <= near, off, 0.0)
+        found = np.where(t <= start + inset, ends[0], [found[0], np.maximum(*found)])
+        return np.where(t >= end - inset, ends[1], found)
 
     def _ends(self) -> tuple[Floats, Floats]:
         """Lower and upper root of every cell at its left and its right line, and their errors.
@@ -1045,6 +1055,10 @@ class CellComplex:
             doubt = 8 * radius + 64 * UNIT * np.abs(t[:, ::4])
             near = np.where(inset[:, 1:2] > doubt, near, counted)
             at = at + TURN * whole_turns(near - at)
+        else:  # where a quadratic is affine, either branch may be the root that stays finite
+            other = self.plane.values(roots * np.array([1, -1, 1]), c[..., ::4])
+            affine = self.plane.blank(roots[..., 0], c[2:, ..., ::4], 2)
+            at = np.where(affine & (np.abs(other - near) < np.abs(at - near)), other, at)
         blank = self.plane.blank(roots[..., 0], c[..., ::4])
         if blank.any():
             at = np.where(blank, 3 * near - 3 * values[..., 2] + values[..., 3], at)

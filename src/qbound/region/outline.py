@@ -34,6 +34,7 @@ from qbound.region.plane import Plane, ranges, runs, which
 from qbound.region.precise import UndecidedError
 from qbound.region.problem import Problem
 from qbound.tolerances import (
+    AGREE,
     NEWTON_DONE,
     POLISHED,
     QUADRATURE,
@@ -194,11 +195,15 @@ class Pieces:
         values = (
             self.plane.follow(self.roots[curved], q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
         )
-        if self.plane.lift_kind == "revolute":  # an angle may jump by a turn at an end
-            reach = SAME_POINT * self.plane.base_unit
-            for end in (start[curved], self.end[curved][:, None]):
-                off = whole_turns(values - end[..., 1])
-                values -= TURN * np.where(np.abs(q[curved][..., 0] - end[..., 0]) <= reach, off, 0)
+        # At an end an angle may jump by a turn, and the root of a quadratic to its other branch.
+        reach = SAME_POINT * self.plane.base_unit
+        for end in (start[curved], self.end[curved][:, None]):
+            off = values - end[..., 1]
+            if self.plane.lift_kind == "revolute":
+                off = TURN * whole_turns(off)
+            else:
+                off[np.abs(off) <= AGREE * self.plane.lift_unit] = 0.0
+            values -= np.where(np.abs(q[curved][..., 0] - end[..., 0]) <= reach, off, 0)
         inside = np.abs(angle) < math.pi / 2  # the ends are given
         q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
         return ordered(q, self.base)

@@ -276,9 +276,12 @@ class Plane:
                 values[form == end.form] = value
         return np.asarray(values)
 
-    def blank(self, form: Ints, c: Floats) -> Bools:
-        """Tell where forms, (..., k), with coefficients (3, ..., k, n) vanish on whole fibres."""
-        size = self._column_sizes[:, form, None]
+    def blank(self, form: Ints, c: Floats, first: int = 0) -> Bools:
+        """Tell where forms, (..., k), with coefficients (3, ..., k, n) vanish on whole fibres.
+
+        Or where the coefficients from the one of number `first` on vanish, if only these are given.
+        """
+        size = self._column_sizes[first:, form, None]
         blank: Bools = np.asarray((np.abs(c) <= BLANK * size).all(axis=0))
         return blank & (size > 0).any(axis=0) if blank.any() else blank
 
