@@ -17,10 +17,9 @@ from qbound.forms.factors import basis, basis_and_slope, basis_slope
 from qbound.measures import nearest
 from qbound.model.frames import cross
 from qbound.region import critical, pieces
-from qbound.region.cells import critical_lines
+from qbound.region.cells import find_events
 from qbound.region.critical import Events, Finder, _Request
 from qbound.region.outline import CELL_NODES, NODES, _smooth_rules, legendre
-from qbound.region.pieces import find_pieces
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, runs
 from qbound.region.precise import Precise
 from qbound.region.problem import clearance_problem
@@ -124,8 +123,8 @@ def test_pieces_are_paired_the_same_in_blocks_of_any_size(monkeypatch):
     precise = Precise.of(clearance_problem(load_robot("two-links-on-a-table")), 0)
 
     def critical_values():
-        finder = Finder(precise.plane, precise)
-        return critical_lines(precise.plane, find_pieces(precise.plane, finder), finder).t
+        lines, _ = find_events(precise)
+        return lines.t
 
     whole = critical_values()
     monkeypatch.setattr(pieces, "PAIRS", 50)

@@ -177,15 +177,15 @@ def test_cells_that_are_parted_by_nothing_do_not_add_up(region):
 @pytest.mark.parametrize("drop", [0, 5, 11])
 @pytest.mark.parametrize("name", NAMES)
 def test_a_region_without_one_of_its_cells_is_not_handed_out(monkeypatch, name, drop):
-    whole = engine.decompose
+    whole = engine.find_cells
 
-    def fewer(precise):
-        found = whole(precise)
+    def fewer(lines, pieces):
+        found = whole(lines, pieces)
         kept = np.arange(len(found.slabs)) != drop
         rows = {key: getattr(found, key)[kept] for key in ("slabs", "roots", "sets")}
         return replace(found, **rows)
 
-    monkeypatch.setattr(engine, "decompose", fewer)
+    monkeypatch.setattr(engine, "find_cells", fewer)
     assert find_region(load_robot(name)).unresolved
 
 
@@ -229,25 +229,25 @@ def test_margins_and_feasibility_are_told_where_structure_is_unresolved(unresolv
 
 
 def test_what_could_not_be_decided_is_told_with_its_place(monkeypatch):
-    def undecided(precise):
+    def undecided(lines, pieces):
         raise UndecidedError("two lines near base value 0.25")
 
-    monkeypatch.setattr(engine, "decompose", undecided)
+    monkeypatch.setattr(engine, "find_cells", undecided)
     region = find_region(load_robot("minervabot-v2"))
     with pytest.raises(UnresolvedError, match=r"two lines near base value 0\.25"):
         _ = region.components
 
 
 def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
-    whole = engine.decompose
+    whole = engine.find_cells
 
-    def half(precise):
-        if precise.plane.base == 0:
+    def half(lines, pieces):
+        if lines.finder.plane.base == 0:
             raise UndecidedError("not over this joint")
-        return whole(precise)
+        return whole(lines, pieces)
 
     expected = find_region(load_robot("minervabot-v2"))
-    monkeypatch.setattr(engine, "decompose", half)
+    monkeypatch.setattr(engine, "find_cells", half)
     region = find_region(load_robot("minervabot-v2"))
     assert region.base == 1
     assert not region.unresolved

@@ -136,115 +136,106 @@ class Decomposition:
 
 
 def decompose(precise: Precise) -> Decomposition:
-    """Find all critical base values and all feasible cells of a plane.
+    """Find all events and all feasible cells of a plane.
 
     Raises
     ------
     UndecidedError
         If something of the structure could not be decided.
     """
-    plane = precise.plane
-    finder = Finder(plane, precise)
-    pieces = find_pieces(plane, finder)
-    lines = critical_lines(plane, pieces, finder)
-    standing = _standing(plane, lines, pieces, finder)
-    fibres = _Fibres(plane, lines, pieces, precise)
-    found = Decomposition(plane, lines, fibres.t, *fibres.cells(), standing)
-    return _without_idle_lines(found)
+    return find_cells(*find_events(precise))
 
 
 def nothing_in(precise: Precise) -> Decomposition:
     """Return a decomposition without cells."""
-    plane = precise.plane
-    lines = find_lines(Finder(plane, precise), NO_EVENTS)
-    none, roots = np.zeros(0, dtype=np.int64), np.zeros((0, 2, 3), dtype=np.int64)
-    inside, sets = np.zeros(len(lines.t) - 1), np.zeros((0, 2), dtype=np.int64)
-    return Decomposition(plane, lines, inside, none, roots, sets, [], {})
+    lines = find_lines(Finder(precise.plane, precise), NO_EVENTS)
+    none = np.zeros((0, 2, 3), dtype=np.int64)
+    inside = np.zeros(len(lines.t) - 1)
+    return Decomposition(precise.plane, lines, inside, none[:, 0, 0], none, none[:, :, 0], [], {})
 
 
 # --- critical base values -------------------------------------------------------------------------
 
 
-def critical_lines(plane: Plane, pieces: Pieces, finder: Finder) -> Lines:
-    """Return every base value at which the order of roots may change, with both ends of the range.
+def find_events(precise: Precise) -> tuple[Lines, Pieces]:
+    """Return every base value at which the order of roots may change, and the contacts of bodies.
 
-    Some are spurious, which costs time; none is missing, which would cost the answer.
+    The ends of the range are among them. Some are spurious, which costs time; none is missing,
+    which would cost the answer.
     """
-    every = pieces.events
-    found = [every, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
+    plane, finder = precise.plane, Finder(precise.plane, precise)
+    pieces = find_pieces(plane, finder)
+    found = [pieces.events, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
     if plane.contacts.pairs:
         found.append(finder.isolated(crossings(plane, pieces, finder))[1])
-    used = np.zeros(len(every), dtype=np.bool_)
-    used[pieces.lines] = True
     # All events stay, so that pieces know theirs; those that are no lines are left out of them.
-    events = Events.joined(found)
-    chosen = np.concatenate([which(used), len(every) + np.arange(len(events) - len(every))])
+    events, own = Events.joined(found), len(pieces.events)
+    chosen = np.concatenate([np.unique(pieces.lines), np.arange(own, len(events))])
     lines = find_lines(finder, events[chosen])
     of = np.full(len(events), -1)
     of[chosen] = lines.of
-    return replace(lines, of=of)
+    return replace(lines, of=of), pieces
+
+
+def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
+    """Return the feasible cells between critical lines.
+
+    Raises
+    ------
+    UndecidedError
+        If something of the structure could not be decided.
+    """
+    plane, fibres = lines.finder.plane, _Fibres(lines, pieces)
+    cells, standing = fibres.cells(), _standing(plane, lines, pieces)
+    return _without_idle_lines(Decomposition(plane, lines, fibres.t, *cells, standing))
 
 
 def _of_forms(plane: Plane, finder: Finder) -> list[Any]:
     """Return the events of forms that stand alone, and those at which two of them meet."""
-    table = plane.scaled[: plane.count]
-    lifts = table[:, :, 1:].any(axis=(1, 2))
-    fixed, moved = which(~lifts), which(lifts)
-    every = np.arange(len(moved))
-    i, j = np.nonzero(every[:, None] < every)
-    return [
-        *finder.fixed(fixed),
-        *finder.own(moved),
-        *finder.meetings(moved[i], moved[j]),
-    ]
+    lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
+    moved = which(lifts)
+    i, j = np.nonzero(moved[:, None] < moved)
+    meetings = finder.meetings(moved[i], moved[j])
+    return [*finder.fixed(which(~lifts)), *finder.own(moved), *meetings]
 
 
-def _standing(
-    plane: Plane, lines: Lines, pieces: Pieces, finder: Finder
-) -> dict[int, tuple[int, ...]]:
+def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:
     """Return for each line the rows that vanish on its whole fibre, where there are such."""
     found: dict[int, set[int]] = {}
-    last = len(lines.t) - 1
-    for event in pieces.walls.tolist():
-        if lines.of[event] >= 0:
-            found.setdefault(int(lines.of[event]), set()).add(int(pieces.events.what[event, 1]))
-    own = {NUMBER[kind] for kind in ("fold circle", "fold line", "first", "second")}
-    what, members = lines.events.what, lines.members
-    candidates = [
-        (line, int(what[k, 0]), int(what[k, 1]))
-        for line, inner in enumerate(members)
-        for k in inner
-        if what[k, 1] < plane.count and (what[k, 0] in own or what[k, 0] == NUMBER["constant"])
-    ]
+    for line, row in zip(lines.of[pieces.walls], pieces.events.what[pieces.walls, 1], strict=True):
+        if line >= 0:
+            found.setdefault(int(line), set()).add(int(row))
+    own = {NUMBER[kind] for kind in ("fold circle", "fold line", "first", "second", "constant")}
     lifts: Any = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
-    for line, _, row in candidates:
-        if row in found.get(line, ()):
-            continue
-        if not lifts[row] or _is_blank(plane, lines, line, row, finder.precise):
-            found.setdefault(line, set()).add(row)
+    what = lines.events.what.tolist()
+    for line, members in enumerate(lines.members):
+        for kind, row, _ in (what[k] for k in members):
+            if row >= plane.count or kind not in own or row in found.get(line, ()):
+                continue
+            if not lifts[row] or _is_blank(plane, lines, line, row):
+                found.setdefault(line, set()).add(row)
+    last = len(lines.t) - 1
     if plane.base_range is None and (0 in found or last in found):
-        both = found.get(0, set()) | found.get(last, set())
-        found[0] = found[last] = both
+        found[0] = found[last] = found.get(0, set()) | found.get(last, set())
     return {line: tuple(sorted(rows)) for line, rows in found.items()}
 
 
-def _is_blank(plane: Plane, lines: Lines, line: int, row: int, precise: Precise) -> bool:
+def _is_blank(plane: Plane, lines: Lines, line: int, row: int) -> bool:
     """Tell whether a form vanishes on a whole fibre."""
     c = plane.coefficients(np.array([row]), lines.t[line : line + 1][:, None])[:, 0, 0]
     scaled = np.abs(c) * plane.lift_unit ** np.arange(3)
     doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
-    if (scaled > doubt * max(1.0, plane.scaled_size[row])).any():
-        return False
-    return vanishes_on(lines, line, row, precise)
+    near = (scaled <= doubt * max(1.0, plane.scaled_size[row])).all()
+    return bool(near) and vanishes_on(lines, line, row)
 
 
-def vanishes_on(lines: Lines, line: int, row: int, precise: Precise) -> bool:
+def vanishes_on(lines: Lines, line: int, row: int) -> bool:
     """Tell in balls whether a row, also of a side condition, vanishes on the fibre over a line."""
+    precise = lines.finder.precise
     for bits in LEVELS:
         with precision(bits):
-            if not all(
-                x.contains(0) for x in precise.along_lift(row, lines.ball(line, bits), bits)
-            ):
+            over = precise.along_lift(row, lines.ball(line, bits), bits)
+            if not all(x.contains(0) for x in over):
                 return False
     return True
 
@@ -296,12 +287,14 @@ class _Fibres:
         Whether the lift closes: after a slab's last root comes its first, a turn on.
     """
 
-    def __init__(self, plane: Plane, lines: Lines, pieces: Pieces, precise: Precise) -> None:
-        self.plane, self.lines, self.pieces, self.precise = plane, lines, pieces, precise
-        self.circle = plane.lift_range is None
+    def __init__(self, lines: Lines, pieces: Pieces) -> None:
+        self.lines, self.pieces = lines, pieces
+        self.plane, self.precise = lines.finder.plane, lines.finder.precise
+        self.circle = self.plane.lift_range is None
         self._known: dict[Any, list[list[int]]] = {}
         self.t, self.exact = self._bases()
         self._gather()
+        self.curve = self._curves()
         self._order()
 
     def _bases(self) -> tuple[Floats, dict[int, Any]]:
@@ -363,36 +356,32 @@ class _Fibres:
     def _in_range(self, *rows: Any) -> Rows:
         """Put roots into the lift's range, on as many turns as it has, and its ends with them."""
         slab, values, errors, roots, piece = rows
-        plane, every = self.plane, np.arange(len(self.t))
-        low, high = plane.lift_ends
+        every, (low, high) = np.arange(len(self.t)), self.plane.lift_ends
         if self.circle:
             roots[:, 2] = turns_up_to(low, values).astype(np.int64)
             values = values + TURN * roots[:, 2]
             ends = [(which(np.bincount(slab, minlength=len(every)) == 0), low, LOWEST)]
         else:
-            first = last = np.zeros(len(values), dtype=np.int64)
-            if plane.lift_kind == "revolute":
+            first, last = np.zeros((2, len(values)), dtype=np.int64)
+            last += 1
+            if self.plane.lift_kind == "revolute":
                 first = turns_up_to(low - errors, values).astype(np.int64)
                 last = turns_up_to(high + errors, values).astype(np.int64)
-            else:
-                last = last + 1
             pick, turns = ranges(first, last)
+            values = values[pick] + TURN * turns
+            inside = (values > low - errors[pick]) & (values < high + errors[pick])
+            pick, turns, values = pick[inside], turns[inside], values[inside]
             slab, errors, roots, piece = (x[pick] for x in (slab, errors, roots, piece))
-            values, roots[:, 2] = values[pick] + TURN * turns, turns
-            inside = which((values > low - errors) & (values < high + errors))
-            slab, values, errors, roots, piece = (
-                x[inside] for x in (slab, values, errors, roots, piece)
-            )
+            roots[:, 2] = turns
             ends = [(every, low, LOWEST), (every, high, HIGHEST)]
         parts: list[Rows] = [(slab, values, errors, roots, piece)]
         for where, value, root in ends:
             n = len(where)
-            error = np.full(n, 2 * UNIT * abs(value))
             both = np.tile(root, (n, 1)).astype(np.int64)
+            error = np.full(n, 2 * UNIT * abs(value))
             parts.append((where, np.full(n, value), error, both, np.full(n, -1)))
-        found: list[Any] = [np.concatenate(x) for x in zip(*parts, strict=True)]
-        slab, values, errors, roots, piece = found
-        return slab, values, errors, roots, piece
+        found: Any = [np.concatenate(x) for x in zip(*parts, strict=True)]
+        return tuple(found)
 
     def _alive(self) -> tuple[Ints, Ints]:
         """Return the pieces over each slab, and the slab, in pairs."""
@@ -413,61 +402,18 @@ class _Fibres:
 
     def _order(self) -> None:
         """Give places of roots their numbers: doubles decide what they can, balls the rest."""
-        reach, least = self.values + self.errors, self.values - self.errors
-        n, curve = len(self.slab), self._curves()
-        close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
-        close[1:] = (self.slab[1:] == self.slab[:-1]) & (least[1:] <= reach[:-1])
-        self.group = (~close).cumsum() - 1
-        # Roots of one curve are one; where others are as near, balls decide.
-        doubtful = which(close & (curve != np.roll(curve, 1)))
-        first, last = runs(self.slab)
-        seams = which(reach[last] >= least[first] + TURN) if self.circle else doubtful[:0]
-        seams = seams[last[seams] > first[seams]]
-        if not len(doubtful) and not len(seams):
-            return
-        starts, ends = runs(self.group)
-        clusters = {
-            int(starts[g]): list(range(starts[g], ends[g] + 1))
-            for g in np.unique(self.group[doubtful]).tolist()
-        }
-        order, leader = list(range(n)), starts[self.group].tolist()
-        across: list[tuple[int, list[int], list[int]]] = []  # at the cut of a circle
-        for k in seams.tolist():
-            a, b = int(first[k]), int(last[k])
-            head = list(range(a, ends[self.group[a]] + 1))
-            tail = list(range(starts[self.group[b]], b + 1))
-            if tail[0] != a:
-                clusters.pop(head[0], None)
-                clusters.pop(tail[0], None)
-                across.append((a, head, tail))
-        for cluster in clusters.values():
-            flat = self._led(cluster, leader, {})
-            for spot, row in zip(cluster, flat, strict=True):
-                order[spot] = row
-        for a, head, tail in across:  # the tail stands a turn earlier, at the front
-            flat = self._led(tail + head, leader, dict.fromkeys(tail, -TURN))
-            self.values[tail] -= TURN
-            self.roots[tail, 2] -= 1
-            rest = order[a + len(head) : tail[0]]
-            order[a : tail[-1] + 1] = flat + rest
-        if not self.circle:
-            dropped = self._beyond_ends(order, leader)
-            order = [row for row in order if row not in dropped]
-        new = np.array(order)
-        led = np.array(leader)[new]
-        self._take(new)
-        change = np.ones(len(new), dtype=np.bool_)
-        change[1:] = led[1:] != led[:-1]
-        self.group = change.cumsum() - 1
-
-    def _led(self, cluster: list[int], leader: list[int], shift: dict[int, float]) -> list[int]:
-        """Return rows of a cluster in order, and write the first of those that are one for each."""
-        values = [float(self.values[row]) + shift.get(row, 0.0) for row in cluster]
-        groups = self._ranked(cluster, values)
-        for group in groups:
-            for row in group:
-                leader[row] = group[0]
-        return [row for group in groups for row in group]
+        order, group, turned = ranked(
+            self.slab, self.values, self.errors, self.circle, self._ranked
+        )
+        self.values[turned] -= TURN
+        self.roots[turned, 2] -= 1
+        if not self.circle and len(order):  # what lies beyond an end of the range
+            form, slab = self.roots[order, 0], self.slab[order]
+            low, high = (group[form == end.form][slab] for end in (LOWEST, HIGHEST))
+            kept = (low <= group) & (group <= high)
+            order, group = order[kept], group[kept]
+        self._take(order)
+        self.group = (np.diff(group, prepend=group[:1]) != 0).cumsum()
 
     def _curves(self) -> Ints:
         """Give the curves that roots follow numbers: features of one curve have one."""
@@ -477,46 +423,26 @@ class _Fibres:
         number = np.append(curves, 0)[np.clip(form - count, 0, len(curves))]
         return np.asarray(3 * np.where(form >= count, number, most + 2 + form) + branch)
 
-    def _beyond_ends(self, order: list[int], leader: list[int]) -> set[int]:
-        """Return rows that lie below the lower end of the lift's range, or above the upper one."""
-        dropped: set[int] = set()
-        place = {row: k for k, row in enumerate(order)}
-        slab = self.slab
-        lows = {int(slab[r]): r for r in which(self.roots[:, 0] == LOWEST.form).tolist()}
-        highs = {int(slab[r]): r for r in which(self.roots[:, 0] == HIGHEST.form).tolist()}
-        for row in order:
-            low, high = lows[int(slab[row])], highs[int(slab[row])]
-            below = place[row] < place[low] and leader[row] != leader[low]
-            if below or (place[row] > place[high] and leader[row] != leader[high]):
-                dropped.add(row)
-        return dropped
-
-    def _ranked(self, rows: Sequence[int], values: Sequence[float]) -> list[list[int]]:
+    def _ranked(self, rows: list[int], values: list[float]) -> list[list[int]]:
         """Return rows of one slab in their true order, those that are one together."""
+        curves = self.curve[rows].tolist()
+        if len(set(curves)) == 1:  # features of one curve have one root
+            return [rows]
         base = self.base(int(self.slab[rows[0]]))
-        near = dict(zip(rows, values, strict=True))
         # Roots that the base does not move are in one order over all slabs.
-        key = tuple((*self.roots[row, :2].tolist(), round(8 * near[row])) for row in rows)
-        if key not in self._known:
-            places = range(len(rows))
+        key = tuple(
+            (*self.roots[row, :2].tolist(), round(8 * near))
+            for row, near in zip(rows, values, strict=True)
+        )
+        found = self._known.get(key)
+        if found is None:
             groups = in_order(
-                places,
-                lambda k, bits: self.root(rows[k], base, bits, near[rows[k]]),
-                [self._curve(row) for row in rows],
+                range(len(rows)), lambda k, bits: self.root(rows[k], base, bits, values[k]), curves
             )
             found = [own for _, own in groups]
-            if not all(self.precise.is_still(form) for form, _, _ in key):
-                return [[rows[k] for k in own] for own in found]
-            self._known[key] = found
-        return [[rows[k] for k in own] for own in self._known[key]]
-
-    def _curve(self, row: int) -> tuple[int, int, int]:
-        """Name the curve that a root follows: features of one curve have one name."""
-        form, branch, _ = self.roots[row].tolist()
-        count = self.plane.count
-        if form >= count:
-            return 1, int(self.plane.contacts.curves[form - count]), branch
-        return 0, form, branch
+            if all(self.precise.is_still(form) for form, _, _ in key):
+                self._known[key] = found
+        return [[rows[k] for k in own] for own in found]
 
     def root(self, row: int, base: Any, bits: int, near: float) -> Any:
         """Return a root as a ball, on the turn that is near to a value."""
@@ -527,34 +453,26 @@ class _Fibres:
 
     def cells(self) -> tuple[Ints, Ints, Ints, list[tuple[int, ...]]]:
         """Return the feasible cells: slabs, both roots, and which rows coincide along these."""
-        start, _ = runs(self.group)
-        slab, values = self.slab[start], self.values[start]
-        n = len(start)
-        after, tops = np.arange(1, n + 1), np.full(n, np.nan)
-        tops[:-1] = values[1:]
-        first, last = runs(slab)
+        self.start, _ = runs(self.group)
+        slab = self.gap_slab = self.slab[self.start]
+        bottoms = self.bottoms = self.values[self.start]
+        n, (first, last) = len(slab), runs(slab)
+        self.after, self.tops = np.arange(1, n + 1), np.append(bottoms[1:], np.nan)
         gap = np.ones(n, dtype=np.bool_)  # whether there is one above
         if self.circle:
-            after[last], tops[last] = first, values[first] + TURN
+            self.after[last], self.tops[last] = first, bottoms[first] + TURN
         else:
             gap[last] = False
-        self.start, self.after, self.tops, self.gap_slab, self.bottoms = (
-            start,
-            after,
-            tops,
-            slab,
-            values,
-        )
         self.double = self._doubles()
         if self.plane.contacts.pairs:
             gap &= self._apart(gap, first, last)
         free = which(gap)
         free = free[self._positive(free)]
-        lower, upper = self._bounding(free, lower=True), self._bounding(after[free], lower=False)
+        above = self.after[free]
+        lower, upper = self._bounding(free, lower=True), self._bounding(above, lower=False)
         roots = np.stack([self.roots[lower[0]], self.roots[upper[0]]], axis=1)
-        roots[after[free] <= free, 1, 2] += 1  # past the cut of the circle
-        alone = roots[:, 1, 0] == LOWEST.form
-        roots[alone, 1] = HIGHEST
+        roots[above <= free, 1, 2] += 1  # past the cut of the circle
+        roots[roots[:, 1, 0] == LOWEST.form, 1] = HIGHEST
         return slab[free], roots, *_numbered(roots[:, :, 0], lower[1], upper[1])
 
     def _bounding(self, groups: Ints, *, lower: bool) -> tuple[Ints, dict[int, tuple[int, ...]]]:
@@ -1147,7 +1065,8 @@ class CellComplex:
         every: list[Any] = [np.concatenate(x) for x in zip(own, marks, strict=True)]
         order = np.lexsort([every[1], every[0]])
         sorted_ends = _Ends(*(x[order] for x in every))
-        rank, v = _Ranks(self.decomposition, sorted_ends, self.circle).ranked()
+        ranks = _Ranks(self.decomposition, sorted_ends, self.circle)
+        rank = ranks.rank
         first = np.full(rank.max(initial=-1) + 1, -1)
         first[rank[::-1]] = np.arange(len(rank))[::-1]
         number = (first >= 0).cumsum() - 1
@@ -1156,7 +1075,7 @@ class CellComplex:
         place[order] = number[rank]
         self._place: Ints = np.full((len(self.slabs), 2, 2), -1)
         self._place[kept] = place[: len(own.line)].reshape(-1, 2, 2)
-        cuts: list[Any] = [x[first] for x in sorted_ends._replace(v=v)]
+        cuts: list[Any] = [x[first] for x in sorted_ends._replace(v=ranks.v)]
         return _Ends(*cuts)
 
     def _cell_ends(self, kept: Ints) -> _Ends:
@@ -1197,7 +1116,7 @@ class CellComplex:
         marked = [
             (line, number)
             for line, number in marked
-            if not vanishes_on(found.critical, line, first + number, found.precise)
+            if not vanishes_on(found.critical, line, first + number)
         ]
         line, number = np.array(marked, dtype=np.int64).reshape(-1, 2).T
         t, radius = self.abscissae[line], found.critical.radius[line]
@@ -1299,74 +1218,35 @@ class CellComplex:
 class _Ranks:
     """The order of ends of cells on critical lines; ends that are one have one rank.
 
-    Parameters
+    Attributes
     ----------
-    found : Decomposition
-    ends : _Ends
-        By line and upwards.
-    circle : bool
-        Whether the lift closes.
+    rank : ndarray of int, shape (n,)
+        Ascends along each line from the lowest value; ends that are one with those a turn below,
+        across the cut of a circle, have the rank of these.
+    v : ndarray, shape (n,)
+        Values, one for ends that are one.
     """
 
     def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
-        self.found, self.circle, self.ends = found, circle, ends
-        self.line, self.v, self.error, self.side, self.root = ends
-
-    def ranked(self) -> tuple[Ints, Floats]:
-        """Return of each end the number of the first that is one with it, in order; and values.
-
-        Numbers ascend along each line from the lowest value; ends that are one with those a turn
-        below, across the cut of a circle, have the number of the first.
-        """
-        line, v, error, n = self.line, self.v.copy(), self.error, len(self.line)
-        rank = np.arange(n)
-        if not n:
-            return rank, v
-        close = np.zeros(n, dtype=np.bool_)
-        close[1:] = (line[1:] == line[:-1]) & ((v - error)[1:] <= (v + error)[:-1])
-        first, last = runs(line)
-        clusters = [list(range(a, b + 1)) for a, b in zip(*runs((~close).cumsum()), strict=True)]
-        clusters = [own for own in clusters if len(own) > 1]
-        seams = []
-        if self.circle:
-            wraps = (last > first) & ((v + error)[last] >= (v - error)[first] + TURN)
-            seams = [(int(first[k]), int(last[k])) for k in which(wraps)]
-        shift = dict[int, float]()
-        for a, b in seams:
-            tail = next((c for c in clusters if c[-1] == b), [b])
-            head = next((c for c in clusters if c[0] == a), [a])
-            if tail[0] == a:
-                continue
-            clusters = [c for c in clusters if c is not tail and c is not head]
-            clusters.append(tail + head)
-            shift |= dict.fromkeys(tail, -TURN)
-        position = np.arange(n, dtype=float)
-        for own in clusters:
-            groups = self._groups(own, [float(v[k]) + shift.get(k, 0.0) for k in own])
-            # Groups stand one behind the other between the rows before and behind the cluster.
-            low = min(k for k in own if k not in shift) - any(k in shift for k in own)
-            for g, group in enumerate(groups):
-                best = min(group, key=lambda k: error[k])
-                value = v[best] + shift.get(best, 0.0)
-                position[group] = low + (g + 1) / (len(groups) + 1)
-                v[group] = value
-        order = np.lexsort([position, line])
-        change = np.ones(n, dtype=np.bool_)
-        change[1:] = (np.diff(position[order]) != 0) | (np.diff(line[order]) != 0)
-        rank[order] = change.cumsum() - 1
-        return rank, v
+        self.found, self.ends, self.v = found, ends, ends.v.copy()
+        self.line, self.side, self.root = ends.line, ends.side, ends.root
+        order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups)
+        self.rank = np.empty_like(order)
+        self.rank[order] = group
 
     def _groups(self, own: list[int], values: list[float]) -> list[list[int]]:
         """Return ends of one line in their true order, those that are one together."""
-        if self._are_one(own):
-            return [own]
         near = dict(zip(own, values, strict=True))
 
         def ball(k: int, bits: int) -> Any:
             return self.ends.ball(self.found, k, near[k], bits)
 
         names = [(*self.root[k, :2].tolist(), int(self.side[k])) for k in own]
-        return [group for _, group in in_order(own, ball, names)]
+        one = self._are_one(own)
+        groups = [own] if one else [group for _, group in in_order(own, ball, names)]
+        for group in groups:
+            self.v[group] = near[min(group, key=lambda k: self.ends.error[k])]
+        return groups
 
     def _are_one(self, own: list[int]) -> bool:
         """Tell whether the line's events themselves say that ends are one.
@@ -1399,11 +1279,66 @@ class _Ranks:
 
     def _curve(self, form: int) -> tuple[int, int]:
         count, contacts = self.found.plane.count, self.found.plane.contacts
-        if form >= count + len(contacts.forms):
-            return 2, form
-        if form >= count:
-            return 1, int(self.found.plane.contacts.curves[form - count])
+        if count <= form < count + len(contacts.forms):
+            return 1, int(contacts.curves[form - count])
         return 0, form
+
+
+def ranked(
+    line: Ints,
+    v: Floats,
+    error: Floats,
+    circle: bool,
+    decide: Callable[[list[int], list[float]], list[list[int]]],
+) -> tuple[Ints, Ints, list[int]]:
+    """Put rows on lines in their true order: doubles decide what they can.
+
+    Parameters
+    ----------
+    line, v, error : ndarray, shape (n,)
+        Line, value and a bound of its error, by line and upwards.
+    circle : bool
+        Whether lines close: then the last rows of one may belong to its first, a turn earlier.
+    decide : callable
+        Of rows whose order doubles do not tell, and their values: these rows in order, those that
+        are one together.
+
+    Returns
+    -------
+    order, group : ndarray of int, shape (n,)
+        Rows in order, and a number for each in that order; one number for rows that are one.
+    turned : list of int
+        Rows that stand a turn earlier, at the beginning of their line.
+    """
+    n, low, high = len(line), v - error, v + error
+    close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
+    close[1:] = (line[1:] == line[:-1]) & (low[1:] <= high[:-1])
+    begin, end = runs((~close).cumsum())
+    clusters = {int(a): list(range(a, b + 1)) for a, b in zip(begin, end, strict=True) if a < b}
+    turned: list[int] = []
+    if circle:
+        first, last = runs(line)
+        for k in which((last > first) & (high[last] >= low[first] + TURN)).tolist():
+            a, b = int(first[k]), int(last[k])
+            start = int(begin[end.searchsorted(b)])
+            if start != a:
+                tail = clusters.pop(start, [b])
+                turned += tail
+                clusters[a] = tail + clusters.get(a, [a])
+    position, leader = np.arange(n, dtype=float), np.arange(n)
+    shift = dict.fromkeys(turned, TURN)
+    for a, own in clusters.items():
+        groups = decide(own, [float(v[k]) - shift.get(k, 0.0) for k in own])
+        for group in groups:
+            leader[group] = group[0]
+        # They stand between the rows before and behind: of rows a turn earlier before the first.
+        flat = [row for group in groups for row in group]
+        position[flat] = a - (own[0] in shift) + np.arange(1, len(flat) + 1) / (len(flat) + 1)
+    order = np.lexsort([position, line])
+    leader, line = leader[order], line[order]
+    change = np.ones(n, dtype=np.bool_)
+    change[1:] = (leader[1:] != leader[:-1]) | (line[1:] != line[:-1])
+    return order, change.cumsum() - 1, turned
 
 
 def _spread(

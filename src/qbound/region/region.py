@@ -15,7 +15,7 @@ from qbound.arrays import Bools, Floats
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.model.values import real_numbers
 from qbound.printable import printable
-from qbound.region.cells import CellComplex, decompose, nothing_in
+from qbound.region.cells import CellComplex, decompose, find_cells, find_events, nothing_in
 from qbound.region.outline import Component, closures, drawn, numbered, outlined
 from qbound.region.pieces import INSIDE
 from qbound.region.precise import Precise, UndecidedError
@@ -700,7 +700,12 @@ def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
     """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting."""
     constraints, irrelevant = problem.searched  # eqs. 9-12; of many forms those that may bind
     precise = Precise.of(constraints, base, caution)  # along the lift: Theorem 2
-    cells = CellComplex(nothing_in(precise) if problem.blocked else decompose(precise))
+    if problem.blocked:
+        decomposition = nothing_in(precise)
+    else:
+        events, contacts = find_events(precise)
+        decomposition = find_cells(events, contacts)
+    cells = CellComplex(decomposition)
     components = outlined(problem, constraints, cells, home)
     owner = {k: i for i, (_, own) in enumerate(components) for k in own}
     found = tuple(component for component, _ in components)
