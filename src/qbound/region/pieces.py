@@ -17,7 +17,7 @@ from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import basis
 from qbound.region.critical import NO_EVENTS, Events, Finder, shifted
-from qbound.region.plane import Plane, normalised, ranges, which
+from qbound.region.plane import Plane, normalised, ranges, ranked, which
 from qbound.region.precise import KINDS, Zero, in_order, midpoint, precision
 from qbound.tolerances import AGREE, BOX, NEAR, UNIT, WALL
 
@@ -266,39 +266,27 @@ class _Contacts:
         order = np.lexsort([found.t, of])
         order = order[inside[order]]
         of, found = of[order], found[order]
-        reach = found.t + found.radius
-        least = found.t - found.radius
-        close = (of[1:] == of[:-1]) & (least[1:] <= reach[:-1])
-        near_end = (least <= low) | (reach >= high)
-        # Of one feature two events may be one by their key: it vanishes with two side conditions.
-        doubtful = which(close)
-        dropped = np.zeros(len(of), dtype=np.bool_)
-        if not len(doubtful) and not near_end.any():
-            return of, found
-        every = np.arange(len(of))
-        swaps = every.copy()
-        k = 0
-        while k < len(doubtful):
-            a = doubtful[k]
-            b = a + 1
-            while k + 1 < len(doubtful) and doubtful[k + 1] == b:
-                k, b = k + 1, b + 1
-            rows = list(range(a, b + 1))
-            ranked = self._ranked(found, rows)
-            swaps[a : b + 1] = [r for group in ranked for r in group] + [
-                r for r in rows if not any(r in group for group in ranked)
-            ]
-            for group in ranked:
-                strict = [r for r in group if self._is_strict(found[[r]])[0]]
-                best = strict[0] if strict else group[0]
-                dropped[[r for r in group if r != best]] = True
-            gone = [r for r in rows if not any(r in group for group in ranked)]
-            dropped[gone] = True
-            k += 1
+        lost: list[int] = []  # what balls say is no event
+
+        def decide(rows: list[int], _: list[float]) -> list[list[int]]:
+            groups = self._ranked(found, rows)
+            lost.extend({*rows}.difference(*groups))
+            return groups
+
+        order, group, _ = ranked(of, found.t, found.radius, False, decide)
+        # Of events that are one the first that ends a piece stands for all.
+        order = order[np.lexsort([~self._is_strict(found)[order], group])]
+        order = order[np.unique(group, return_index=True)[1]]
         before = found.t.copy()
-        for row in which(near_end & ~dropped).tolist():
-            dropped[row] = not self._within(found, row)
-        kept = swaps[~dropped[swaps]]
+        near_end = (before - found.radius <= low) | (before + found.radius >= high)
+        kept = np.array(
+            [
+                row
+                for row in order[~np.isin(order, lost)].tolist()
+                if not near_end[row] or self._within(found, row)
+            ],
+            dtype=np.int64,
+        )
         # On a circle some lie a turn away now, at the other end of their feature's events.
         kept = kept[np.lexsort([np.sign(found.t - before)[kept], of[kept]])]
         return of[kept], found[kept]

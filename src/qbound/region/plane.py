@@ -7,7 +7,7 @@ quadratic formula) gives its roots.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -310,6 +310,65 @@ def runs(values: Ints) -> tuple[Ints, Ints]:
     new[1:-1] = values[1:] != values[:-1]
     edges = which(new)
     return edges[:-1], edges[1:] - 1
+
+
+def ranked(
+    line: Ints,
+    v: Floats,
+    error: Floats,
+    circle: bool,
+    decide: Callable[[list[int], list[float]], list[list[int]]],
+) -> tuple[Ints, Ints, list[int]]:
+    """Put rows on lines in their true order: doubles decide what they can.
+
+    Parameters
+    ----------
+    line, v, error : ndarray, shape (n,)
+        Line, value and a bound of its error, by line and upwards.
+    circle : bool
+        Whether lines close: then the last rows of one may belong to its first, a turn earlier.
+    decide : callable
+        Of rows whose order doubles do not tell, and their values: these rows in order, those that
+        are one together.
+
+    Returns
+    -------
+    order, group : ndarray of int, shape (n,)
+        Rows in order, and a number for each in that order; one number for rows that are one.
+    turned : list of int
+        Rows that stand a turn earlier, at the beginning of their line.
+    """
+    n, low, high = len(line), v - error, v + error
+    close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
+    close[1:] = (line[1:] == line[:-1]) & (low[1:] <= high[:-1])
+    begin, end = runs((~close).cumsum())
+    clusters = {int(a): list(range(a, b + 1)) for a, b in zip(begin, end, strict=True) if a < b}
+    turned: list[int] = []
+    if circle:
+        first, last = runs(line)
+        for k in which((last > first) & (high[last] >= low[first] + TURN)).tolist():
+            a, b = int(first[k]), int(last[k])
+            start = int(begin[end.searchsorted(b)])
+            if start != a:
+                tail = clusters.pop(start, [b])
+                turned += tail
+                clusters[a] = tail + clusters.get(a, [a])
+    if not clusters:
+        return np.arange(n), np.arange(n), turned
+    position, leader = np.arange(n, dtype=float), np.arange(n)
+    shift = dict.fromkeys(turned, TURN)
+    for a, own in clusters.items():
+        groups = decide(own, [float(v[k]) - shift.get(k, 0.0) for k in own])
+        for group in groups:
+            leader[group] = group[0]
+        # They stand between the rows before and behind: of rows a turn earlier before the first.
+        flat = [row for group in groups for row in group]
+        position[flat] = a - (own[0] in shift) + np.arange(1, len(flat) + 1) / (len(flat) + 1)
+    order = np.lexsort([position, line])
+    leader, line = leader[order], line[order]
+    change = np.ones(n, dtype=np.bool_)
+    change[1:] = (leader[1:] != leader[:-1]) | (line[1:] != line[:-1])
+    return order, change.cumsum() - 1, turned
 
 
 class Separation:
