@@ -196,10 +196,11 @@ class Pieces:
             self.plane.follow(self.roots[curved], q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
         )
         # At an end an angle may jump by a turn, and the root of a quadratic to its other branch.
-        reach = SAME_POINT * self.plane.base_unit
+        turns_round = self.plane.lift_kind == "revolute"
+        reach = (TOUCH if turns_round else SAME_POINT) * self.plane.base_unit
         for end in (start[curved], self.end[curved][:, None]):
             off = values - end[..., 1]
-            if self.plane.lift_kind == "revolute":
+            if turns_round:
                 off = TURN * whole_turns(off)
             else:
                 off[np.abs(off) <= AGREE * self.plane.lift_unit] = 0.0
