@@ -256,17 +256,20 @@ def vanishes_on(lines: Lines, line: int, row: int) -> bool:
 def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
     """Tell in balls whether a pair of bodies is apart at a configuration: a clause of it shows it.
 
-    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits; `beside` is
-    that of `Precise.sign`.
+    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits. With
+    `beside`, -1 or +1, it is told just before that base value, or just behind.
     """
     contacts, plane = precise.plane.contacts, precise.plane
     rows = which(contacts.pair == pair)
     first, side = plane.count, plane.count + len(contacts.forms)
 
+    def sign(row: int) -> int:
+        return precise.sides(row, t, v)[beside > 0] if beside else precise.sign(row, t, v)
+
     for clause in np.unique(contacts.clause[rows]):
-        own = rows[contacts.clause[rows] == clause]
-        if all(precise.sign(first + int(k), t, v, beside) > 0 for k in own) and all(
-            precise.sign(side + SIDES * int(k) + s, t, v, beside) >= 0
+        own = rows[contacts.clause[rows] == clause].tolist()
+        if all(sign(first + k) > 0 for k in own) and all(
+            sign(side + SIDES * k + s) >= 0
             for k in own
             if contacts.corners[k]
             for s in range(SIDES)
@@ -413,7 +416,7 @@ class _Fibres:
     def _order(self) -> None:
         """Give places of roots their numbers: doubles decide what they can, balls the rest."""
         order, group, turned = ranked(
-            self.slab, self.values, self.errors, self.circle, self._ranked
+            self.slab, self.values, self.errors, self.circle, self._ranked, self.curve
         )
         self.values[turned] -= TURN
         self.roots[turned, 2] -= 1

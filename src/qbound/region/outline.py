@@ -583,7 +583,7 @@ class Layout:
         """
         plane, found = self.plane, self.cells.decomposition
         line, precise = int(self.cells.elements.line[element]), found.precise
-        count, here, beyond = plane.count, *((-1, 1) if up else (1, -1))
+        count, beyond = plane.count, 1 if up else -1
 
         def t(bits: int) -> Any:
             return found.critical.ball(line, bits)
@@ -596,11 +596,7 @@ class Layout:
         ]
         if not touching:
             raise UndecidedError(f"which boundary stands at base value {float(t(64).mid()):.17g}")
-        turning = [
-            row
-            for row in touching
-            if precise.sign(row, t, v, beyond) < 0 < precise.sign(row, t, v, here)
-        ]
+        turning = [row for row in touching if precise.sides(row, t, v) == (beyond, -beyond)]
         pairs = {int(plane.contacts.pair[row - count]) for row in turning if row >= count}
         met = {pair for pair in pairs if not apart(precise, pair, t, v, beyond)}
         shut = [row for row in turning if row < count or plane.contacts.pair[row - count] in met]
@@ -848,6 +844,8 @@ def numbered(
     near = TOUCH * cells.plane.base_unit
     for cell, component in owner.items():
         here = order[first[cells.slabs[cell]] : first[cells.slabs[cell] + 1]]
+        if not len(here):
+            continue
         start, end = cells.spans([cell])[0]
         here = here[(start + near < t[here]) & (t[here] < end - near)]
         if len(here) and not cells.whole[cell]:

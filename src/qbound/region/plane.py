@@ -318,6 +318,7 @@ def ranked(
     error: Floats,
     circle: bool,
     decide: Callable[[list[int], list[float]], list[list[int]]],
+    name: Ints | None = None,
 ) -> tuple[Ints, Ints, list[int]]:
     """Put rows on lines in their true order: doubles decide what they can.
 
@@ -330,6 +331,8 @@ def ranked(
     decide : callable
         Of rows whose order doubles do not tell, and their values: these rows in order, those that
         are one together.
+    name : ndarray of int, shape (n,), optional
+        Rows of one name that doubles do not part are one.
 
     Returns
     -------
@@ -341,22 +344,24 @@ def ranked(
     n, low, high = len(line), v - error, v + error
     close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
     close[1:] = (line[1:] == line[:-1]) & (low[1:] <= high[:-1])
-    begin, end = runs((~close).cumsum())
-    clusters = {int(a): list(range(a, b + 1)) for a, b in zip(begin, end, strict=True) if a < b}
-    turned: list[int] = []
+    begin, number = which(~close), (~close).cumsum() - 1
+    end, leader, turned = np.append(begin[1:], n), begin[number], list[int]()
+    doubtful = close if name is None else close & (name != np.roll(name, 1))
+    clusters = {
+        int(begin[k]): list(range(begin[k], end[k])) for k in np.unique(number[doubtful]).tolist()
+    }
     if circle:
         first, last = runs(line)
         for k in which((last > first) & (high[last] >= low[first] + TURN)).tolist():
-            a, b = int(first[k]), int(last[k])
-            start = int(begin[end.searchsorted(b)])
-            if start != a:
-                tail = clusters.pop(start, [b])
+            a, z = number[first[k]], number[last[k]]
+            if a != z:
+                tail, head = (list(range(begin[c], end[c])) for c in (z, a))
+                clusters.pop(tail[0], None)
                 turned += tail
-                clusters[a] = tail + clusters.get(a, [a])
+                clusters[head[0]] = tail + head
     if not clusters:
-        return np.arange(n), np.arange(n), turned
-    position, leader = np.arange(n, dtype=float), np.arange(n)
-    shift = dict.fromkeys(turned, TURN)
+        return np.arange(n), number, turned
+    position, shift = np.arange(n, dtype=float), dict.fromkeys(turned, TURN)
     for a, own in clusters.items():
         groups = decide(own, [float(v[k]) - shift.get(k, 0.0) for k in own])
         for group in groups:

@@ -49,12 +49,12 @@ class UndecidedError(ArithmeticError):
 
 
 @contextmanager
-def precision(bits: int) -> Iterator[None]:
-    """Compute with this many bits, and with power series of the orders that are wanted here."""
+def precision(bits: int, orders: int = ORDERS) -> Iterator[None]:
+    """Compute with this many bits, and with power series of so many orders."""
     from flint import ctx
 
     before, cap = ctx.prec, ctx.cap
-    ctx.prec, ctx.cap = bits, ORDERS + 1
+    ctx.prec, ctx.cap = bits, orders + 1
     try:
         yield
     finally:
@@ -278,12 +278,10 @@ class Precise:
         c, (one, other) = self.along_lift(row, t, bits), _factors(self.plane.lift_kind, v)
         return c[0] + c[1] * one + c[2] * other
 
-    def sign(self, row: int, t: Any, v: Any, beside: int = 0) -> int:
+    def sign(self, row: int, t: Any, v: Any) -> int:
         """Return the sign of a row at a place; 0 where 1,024 bits do not tell it from zero.
 
-        Base and lift value are numbers, or functions of the number of bits. With `beside`, -1 or
-        +1, it is the sign just before that base value, or just behind: where the row vanishes, that
-        of its first derivative along the base that does not.
+        Base and lift value are numbers, or functions of the number of bits.
         """
         for bits in LEVELS:
             with precision(bits):
@@ -291,16 +289,28 @@ class Precise:
                 found = 0 if place is None else _sign(self.value(row, _at(t, bits), place, bits))
             if found:
                 return found
-        if not beside or place is None:
-            return 0
-        with precision(bits):
-            c, (one, other) = (
-                self.series(row, _at(t, bits), bits),
-                _factors(self.plane.lift_kind, place),
-            )
-            # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
-            signs = [_sign(c[0][k] + c[1][k] * one + c[2][k] * other) * beside**k for k in (1, 2)]
-        return next((sign for sign in signs if sign), 0)
+        return 0
+
+    def sides(self, row: int, t: Any, v: Any) -> tuple[int, int]:
+        """Return the signs of a row just before a base value, and just behind it; as `sign`.
+
+        Where the row vanishes they are those of its first derivative along the base that does not.
+        """
+        found, second = self.sign(row, t, v), 0
+        for bits in LEVELS if not found else ():
+            with precision(bits, orders=2):
+                place = _at(v, bits)
+                if place is None:
+                    continue
+                c, (one, other) = (
+                    self.series(row, _at(t, bits), bits),
+                    _factors(self.plane.lift_kind, place),
+                )
+                # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
+                first, second = (_sign(c[0][k] + c[1][k] * one + c[2][k] * other) for k in (1, 2))
+            if first:
+                return -first, first
+        return found or second, found or second
 
     def holds(self, feature: int, t: Any, v: Any) -> bool:
         """Tell whether no side condition of a feature is negative at a place, as `sign` has it."""
