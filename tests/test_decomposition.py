@@ -12,8 +12,7 @@ from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.region.cells import find_events
-from qbound.region.plane import Plane
-from qbound.region.precise import Precise, precision
+from qbound.region.plane import Plane, Precise, precision
 from support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, TORUS, TURN, forms
 from support.regions import pieces, problem_of
 

@@ -10,9 +10,8 @@ from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Problem, Region, clearance_problem, solve
 from qbound.region import region as engine
-from qbound.region.precise import UndecidedError
-from qbound.region.region import UnresolvedError
-from qbound.region.verified import faults
+from qbound.region.plane import UndecidedError
+from qbound.region.region import UnresolvedError, faults
 from support.forms import ROUND, RR, forms
 from support.regions import problem_of
 

@@ -13,8 +13,7 @@ from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
 from qbound.region.cells import CellComplex, decompose
 from qbound.region.outline import find_loops, half_edges
-from qbound.region.plane import Plane
-from qbound.region.precise import Precise
+from qbound.region.plane import Plane, Precise
 from support.forms import LIMITS, Moved, Piece, Ranges
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))

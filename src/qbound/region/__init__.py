@@ -2,14 +2,13 @@
 
 - `problem`: what is asked: forms, ranges, held joints, rule; of many forms those that matter;
 - `paper_rule`: the windows of Table 6 as ranges;
-- `plane`: forms over a base, their roots and signs, in doubles with bounds of their errors;
-- `precise`: what doubles do not decide, decided in balls; `exact`: its coefficients;
-- `critical`: where roots may meet; `polynomials`: roots of stacks of polynomials;
-- `pieces`: where bodies touch, and where such contacts cross;
+- `plane`: forms over a base, their roots and signs: in doubles with bounds of their errors, and in
+  balls where these do not decide;
+- `events`: base values at which roots may meet, appear or pass an end; contacts of bodies;
 - `cells`: cells in which all is free, and which of them are adjacent;
 - `outline`: components, and the labelled arcs and vertices that bound them;
-- `verified`: what is wrong with a region, before it is handed out;
-- `region`: the answer, and what it can be asked; `slices`: a row of such answers.
+- `region`: `find_region` step by step, the answer, and what is wrong with it before it is told;
+- `slices`: a row of such answers.
 """
 
 from qbound.boundary.margins import margins, violated

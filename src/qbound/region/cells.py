@@ -3,13 +3,13 @@
 A cylindrical decomposition. For a fixed value of one joint, the base, each form is a one-joint form
 in the other, the lift, and Theorem 2 (or the quadratic formula) gives its roots. How these roots
 lie to each other changes only at critical base values, and each kind of these is a root of one
-univariate polynomial (`critical`). Of bodies only contacts count (`pieces`): along the lift the
+univariate polynomial (`events`). Of bodies only contacts count (`Pieces`): along the lift the
 number of pairs in collision goes up or down by one at each. No grid, no sample, no starting guess.
 
 Two neighbouring cells are joined across a critical line only over an open interval on which every
 form is positive on that line. Cells that hang together are the components.
 
-Doubles decide where their error bounds allow it; balls decide the rest (`precise`).
+Doubles decide where their error bounds allow it; balls decide the rest (`plane.Precise`).
 """
 
 from __future__ import annotations
@@ -26,27 +26,35 @@ import numpy as np
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import SIDES
 from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
-from qbound.region.critical import NO_EVENTS, Events, Finder, Lines, find_lines
-from qbound.region.pieces import END, INSIDE, Pieces, crossings, find_pieces
+from qbound.region.events import (
+    END,
+    INSIDE,
+    NO_EVENTS,
+    Events,
+    Finder,
+    Lines,
+    Pieces,
+    crossings,
+    find_lines,
+    find_pieces,
+)
 from qbound.region.plane import (
     HIGHEST,
+    LEVELS,
     LOWEST,
+    NUMBER,
     Plane,
+    Precise,
     Root,
     Separation,
-    ranges,
-    ranked,
-    runs,
-    which,
-)
-from qbound.region.precise import (
-    LEVELS,
-    NUMBER,
-    Precise,
     UndecidedError,
     in_order,
     midpoint,
     precision,
+    ranges,
+    ranked,
+    runs,
+    which,
 )
 from qbound.tolerances import BEYOND_JUMP, SAME_POINT, TOUCH, UNCHANGED, UNIT
 
@@ -180,7 +188,7 @@ def find_events(precise: Precise) -> tuple[Lines, Pieces]:
         found.append(finder.isolated(crossings(plane, pieces, finder))[1])
     # All events stay, so that pieces know theirs; those that are no lines are left out of them.
     events, own = Events.joined(found), len(pieces.events)
-    chosen = np.concatenate([np.unique(pieces.lines), np.arange(own, len(events))])
+    chosen = np.concatenate([pieces.lines, np.arange(own, len(events))])
     lines = find_lines(finder, events[chosen])
     of = np.full(len(events), -1)
     of[chosen] = lines.of

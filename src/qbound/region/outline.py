@@ -30,8 +30,7 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.model.values import real_numbers
 from qbound.printable import printable
 from qbound.region.cells import CellComplex, Placed, apart
-from qbound.region.plane import Plane, ranges, runs, which
-from qbound.region.precise import UndecidedError
+from qbound.region.plane import Plane, UndecidedError, ranges, runs, which
 from qbound.region.problem import Problem
 from qbound.tolerances import (
     AGREE,
