@@ -48,6 +48,7 @@ from qbound.region.plane import (
     Root,
     Separation,
     UndecidedError,
+    flint,
     in_order,
     midpoint,
     precision,
@@ -335,10 +336,8 @@ class _Fibres:
 
     def base(self, slab: int) -> Any:
         """Return the exact base value of a slab."""
-        from flint import arb
-
         found = self.exact.get(slab)
-        return arb(float(self.t[slab])) if found is None else found
+        return flint.arb(float(self.t[slab])) if found is None else found
 
     def _gather(self) -> None:
         """Find the roots in the lift's range and its ends; on a circle without roots, its cut."""
@@ -695,17 +694,15 @@ def turned_root(
     precise: Precise, form: int, branch: int, base: Any, bits: int, near: float, side: int = 0
 ) -> Any:
     """Return a root as a ball, on the turn that is near to a value."""
-    from flint import arb
-
     with precision(bits):
         found = precise.root(form, branch, base, bits, side)
         if found is None:
             if bits < LEVELS[-1]:
-                return arb(near, 1e-3)
+                return flint.arb(near, 1e-3)
             raise UndecidedError(f"a root near base value {float(base.mid()):.17g}")
         if form >= 0 and precise.plane.lift_kind == "revolute":
             turns = round((near - float(found.mid())) / TURN)
-            found = found + 2 * turns * arb.pi()
+            found = found + 2 * turns * flint.arb.pi()
     return found
 
 

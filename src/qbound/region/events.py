@@ -34,6 +34,7 @@ from qbound.region.plane import (
     Precise,
     UndecidedError,
     Zero,
+    flint,
     in_order,
     midpoint,
     normalised,
@@ -632,8 +633,6 @@ class Lines:
 
     def ball(self, line: int, bits: int) -> Any:
         """Return a line's base value to nearly so many bits."""
-        from flint import arb
-
         precise = self.finder.precise
         if line not in self.known:
             last = len(self.t) - 1
@@ -651,7 +650,7 @@ class Lines:
                         break
             if found is None:  # no event after all: any place between its neighbours serves
                 value = float(self.t[line])
-                found = Zero(None, 0, lambda: arb(value))
+                found = Zero(None, 0, lambda: flint.arb(value))
             self.known[line] = found
         return precise.refined(self.known[line], bits)
 
@@ -739,9 +738,7 @@ def _clusters(t: Floats, radius: Floats) -> list[list[int]]:
 
 def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
     """Return a zero of a circle's base some turns later."""
-    from flint import arb, ctx
-
-    return Zero(None, 0, lambda: precise.refined(zero, ctx.prec) + 2 * turns * arb.pi())
+    return Zero(None, 0, lambda: precise.refined(zero, flint.ctx.prec) + 2 * turns * flint.arb.pi())
 
 
 def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
@@ -1166,12 +1163,10 @@ class _Contacts:
 
     def _decided(self, feature: int, branch: int, at: Any) -> bool:
         """Tell in balls whether a root of a feature is a contact at a base value."""
-        from flint import arb
-
         plane, precise = self.plane, self.finder.precise
         row = plane.count + feature
         with precision(1024):
-            t = arb(at)
+            t = flint.arb(at)
         if precise.real(row, lambda bits: t) < 0:
             return False
         if plane.lift_kind == "prismatic" and plane.affine[row] and branch:

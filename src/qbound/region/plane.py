@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,10 +32,25 @@ from qbound.model.robot import Robot
 from qbound.region.problem import Problem
 from qbound.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, TOUCH, UNIT, ZERO_AMPLITUDE
 
-if TYPE_CHECKING:
-    from flint import arb, arb_series
-
 Made = TypeVar("Made")
+
+Ball = Any
+"""An `arb`."""
+
+
+class _Flint:
+    """python-flint, imported when balls are first needed: a command without them starts sooner."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a name of the module, and keep it."""
+        import flint
+
+        setattr(self, name, getattr(flint, name))
+        return getattr(flint, name)
+
+
+flint: Final[Any] = _Flint()
+
 
 BITS = 1280
 """Precision of what is no rational; what is left after a few hundred operations is 1,152 bits."""
@@ -78,7 +93,7 @@ class ExactRows:
         """
         return self._once("feature", k, self._contacts.feature)
 
-    def range(self, joint: int) -> tuple[arb, arb] | None:
+    def range(self, joint: int) -> tuple[Ball, Ball] | None:
         """Return the ends of the range of free joint 0 or 1; None if it turns all the way round.
 
         Limits are those of the file. An end of a window of the paper's rule is a root in closed
@@ -112,9 +127,7 @@ class ExactRows:
     @cached_property
     def _free_robot(self) -> Robot:
         """The robot with exact numbers, without the joints that are held."""
-        from flint import arb
-
-        held = {j: arb(value) for j, value in self._problem.held.items()}
+        held = {j: flint.arb(value) for j, value in self._problem.held.items()}
         robot = self._numbers.robot
         return frozen(robot, held) if held else robot
 
@@ -123,25 +136,23 @@ class ExactRows:
         problem = self._problem
         return ExactContacts(self._robot, problem.held, problem.bodies, problem.contacts)
 
-    def _range(self, joint: int) -> tuple[arb, arb] | None:
-        from flint import arb
-
+    def _range(self, joint: int) -> tuple[Ball, Ball] | None:
         problem = self._problem
         ends = problem.ranges[joint]
         if ends is None:
             return None
-        low, high = (arb(rational(end)) for end in ends)
+        low, high = (flint.arb(rational(end)) for end in ends)
         exact = None if problem.robot is None else self._written_range(problem.joints[joint])
         if exact is None:
             return low, high
         paper = problem.rule == "paper"  # a root that is nearly double is known to half its digits
         one, other = (
-            x if abs(float(x) - own) <= (TOUCH if paper else ROUNDING * abs(own)) else arb(own)
-            for x, own in zip(exact, map(float, ends), strict=True)
+            x if abs(float(x) - own) <= (TOUCH if paper else ROUNDING * abs(own)) else given
+            for x, own, given in zip(exact, map(float, ends), (low, high), strict=True)
         )
         return one, other
 
-    def _written_range(self, joint: int) -> tuple[arb, arb] | None:
+    def _written_range(self, joint: int) -> tuple[Ball, Ball] | None:
         """Return the ends that the problem's rule has for a joint of the robot."""
         limits: Any = self._numbers.joint(self._robot.joints[joint]).limits
         if self._problem.rule == "paper":
@@ -162,8 +173,6 @@ def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     these; they are of one curve where their rationals are the same up to a positive factor. Then
     nothing that they have in common need be told apart.
     """
-    from flint import fmpq
-
     rows, contacts = ExactRows(problem), problem.contacts
     curves, first = np.unique(contacts.curves, return_index=True)
     if not len(first):
@@ -176,17 +185,15 @@ def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     number, known = np.arange(len(first)), dict[Any, int]()
     for k in np.flatnonzero(count[alike] > 1).tolist():
         exact = rows.feature(int(first[k]))[0].reshape(-1)
-        if all(isinstance(x, fmpq | int) for x in exact) and exact[place[k]] != 0:
-            form = tuple(fmpq(x) / abs(exact[place[k]]) for x in exact)
+        if all(isinstance(x, flint.fmpq | int) for x in exact) and exact[place[k]] != 0:
+            form = tuple(flint.fmpq(x) / abs(exact[place[k]]) for x in exact)
             number[k] = known.setdefault((int(alike[k]), form), k)
     merged = curves[number][np.searchsorted(curves, contacts.curves)]
     return rows, replace(contacts, curves=merged)
 
 
 def _precision() -> AbstractContextManager[None]:
-    from flint import ctx
-
-    context: AbstractContextManager[None] = ctx.workprec(BITS)
+    context: AbstractContextManager[None] = flint.ctx.workprec(BITS)
     return context
 
 
@@ -654,9 +661,6 @@ def _discriminant(c0: Floats, c1: Floats, c2: Floats) -> Floats:
     return np.where(np.abs(square - product) <= TANGENT * size, 0.0, square - product)
 
 
-Ball = Any
-"""An `arb`."""
-
 LEVELS: Final = (128, 1024)
 """Bits that are tried in turn."""
 
@@ -674,14 +678,12 @@ class UndecidedError(ArithmeticError):
 @contextmanager
 def precision(bits: int, orders: int = ORDERS) -> Iterator[None]:
     """Compute with this many bits, and with power series of so many orders."""
-    from flint import ctx
-
-    before, cap = ctx.prec, ctx.cap
-    ctx.prec, ctx.cap = bits, orders + 1
+    before, cap = flint.ctx.prec, flint.ctx.cap
+    flint.ctx.prec, flint.ctx.cap = bits, orders + 1
     try:
         yield
     finally:
-        ctx.prec, ctx.cap = before, cap
+        flint.ctx.prec, flint.ctx.cap = before, cap
 
 
 # --- events ---------------------------------------------------------------------------------------
@@ -840,12 +842,10 @@ class Precise:
 
     def table(self, row: int, bits: int) -> list[list[Ball]]:
         """Return coefficients, base before lift, as balls."""
-        from flint import arb
-
         found = self._tables.get((row, bits))
         if found is None:
             exact = self._exact_table(row)
-            found = [[arb(x) for x in line] for line in exact]
+            found = [[flint.arb(x) for x in line] for line in exact]
             self._tables[row, bits] = found
         return found
 
@@ -870,29 +870,26 @@ class Precise:
 
     def ends(self, joint: str) -> tuple[Ball, Ball]:
         """Return the exact ends of the range of "base" or "lift"; of a circle those of a turn."""
-        from flint import arb
-
         index = self.plane.base if joint == "base" else 1 - self.plane.base
         found = self.rows.range(index)
-        return (-arb.pi(), arb.pi()) if found is None else found
+        return (-flint.arb.pi(), flint.arb.pi()) if found is None else found
 
     def along_lift(self, row: int, t: Ball, bits: int) -> list[Ball]:
         """Return a row's three coefficients along the lift over a base value."""
         return _combined(self.table(row, bits), *_factors(self.plane.base_kind, t))
 
-    def series(self, row: int, t: Ball, bits: int) -> list[arb_series]:
+    def series(self, row: int, t: Ball, bits: int) -> list[Ball]:
         """Return these as power series about a base value."""
-        from flint import arb_series, ctx
-
-        if ctx.cap > 2:
-            return [arb_series(x) for x in self.along_lift(row, arb_series([t, 1]), bits)]
+        if flint.ctx.cap > 2:
+            near = flint.arb_series([t, 1])
+            return [flint.arb_series(x) for x in self.along_lift(row, near, bits)]
         # Of a value and a slope nothing is a product of series.
         kind, lines = self.plane.base_kind, self.table(row, bits)
         one, other = _factors(kind, t)
         values = _combined(lines, one, other)
         step = (-other, one) if kind == "revolute" else (1, 2 * t)
         slopes = _combined([_NOTHING, *lines[1:]], *step)
-        return [arb_series([*pair]) for pair in zip(values, slopes, strict=True)]
+        return [flint.arb_series([*pair]) for pair in zip(values, slopes, strict=True)]
 
     def value(self, row: int, t: Ball, v: Ball, bits: int) -> Ball:
         """Return the value of a row at base and lift."""
@@ -946,22 +943,19 @@ class Precise:
 
     def taylor(self, event: tuple[int, int, int], t: Ball, bits: int, n: int) -> list[Ball]:
         """Return the first n derivatives of an event at t, each over its factorial."""
-        from flint import arb, arb_series, ctx
-
         kind, i, j = event
         name = NAMES[kind]
-        cap, ctx.cap = ctx.cap, n
+        cap, flint.ctx.cap = flint.ctx.cap, n
         try:
             a, b = self.series(i, t, bits), None
             if name in ("lower end", "upper end"):
                 end = self.ends("lift")[name == "upper end"]
-                b = [arb(1), *_factors(self.plane.lift_kind, end)]
+                b = [flint.arb(1), *_factors(self.plane.lift_kind, end)]
             elif KINDS[name].degrees[1]:
                 b = self.series(j, t, bits)
             found = KINDS[name].formula(a, b, lambda x, y: x * y)
-            found = arb_series(found)
         finally:
-            ctx.cap = cap
+            flint.ctx.cap = cap
         return [found[k] for k in range(n)]
 
     def vanishes(self, event: tuple[int, int, int]) -> bool:
@@ -973,11 +967,9 @@ class Precise:
         key = ("vanishes", *event)
         if key not in self._zeros:
             with precision(LEVELS[-1]):
-                from flint import arb
-
                 low, high = self.plane.ends
                 count = 4 * sum(KINDS[NAMES[event[0]]].degrees) + 1
-                places = [arb(low + (high - low) * (k + 0.37) / count) for k in range(count)]
+                places = [flint.arb(low + (high - low) * (k + 0.37) / count) for k in range(count)]
                 every = all(self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places)
             self._zeros[key] = [] if every else [Zero(event, 0, 0)]
         return not self._zeros[key]
@@ -986,16 +978,12 @@ class Precise:
         self, event: tuple[int, int, int], low: float, high: float, bits: int
     ) -> list[Zero] | None:
         """Return the zeros of an event within an interval; None where it is zero all over it."""
-        from flint import arb
-
         self.decided += 1
         with precision(bits):
-            whole = arb((low + high) / 2, (high - low) / 2)
+            whole = flint.arb((low + high) / 2, (high - low) / 2)
             return self._in(event, whole, bits)
 
     def _in(self, event: tuple[int, int, int], whole: Ball, bits: int) -> list[Zero] | None:
-        from flint import arb
-
         found, open_ = list[Zero](), [(whole, 0)]
         while open_:
             part, depth = open_.pop()
@@ -1005,10 +993,10 @@ class Precise:
                 continue
             if depth == HALVINGS:
                 return None
-            middle, half = arb(part.mid()), arb(part.rad()) / 2
+            middle, half = part.mid(), part.rad() / 2
             radius = half.upper()
             for side in (middle - half, middle + half):
-                open_.append((arb(side.mid(), radius), depth + 1))
+                open_.append((flint.arb(side.mid(), radius), depth + 1))
         return _apart(found)
 
     def _monotone(
@@ -1049,12 +1037,10 @@ class Precise:
 
         Taylor's polynomial, its last term with the derivative over the whole ball.
         """
-        from flint import arb
-
         n = 2 * ORDERS
-        middle = self.taylor(event, arb(part.mid()), bits, n)
+        middle = self.taylor(event, part.mid(), bits, n)
         last = self.taylor(event, part, bits, n + 1)[n]
-        step, found = arb(0, part.rad()), []
+        step, found = flint.arb(0, part.rad()), []
         for k in range(ORDERS):
             value = last * math.comb(n, k)
             for j in reversed(range(k, n)):
@@ -1066,15 +1052,13 @@ class Precise:
         self, event: tuple[int, int, int], k: int, a: Ball, b: Ball, sign: int, bits: int
     ) -> Ball:
         """Return the zero of a monotone derivative between two places of opposite sign."""
-        from flint import arb
-
-        low, high = arb(a.upper()), arb(b.lower())
+        low, high = a.upper(), b.lower()
         if low > high:
-            low, high = arb(a.mid()), arb(b.mid())
+            low, high = a.mid(), b.mid()
         for _ in range(4 * bits):
             box = low.union(high)
             slope = (k + 1) * self.taylor(event, box, bits, k + 2)[k + 1]
-            middle = arb(box.mid())
+            middle = box.mid()
             value = self.taylor(event, middle, bits, k + 1)[k]
             if _sign(slope):
                 new = (
@@ -1082,15 +1066,15 @@ class Precise:
                     if ((middle - value / slope).overlaps(box))
                     else middle
                 )
-                if arb(new.rad()) * 2 < arb(box.rad()):
-                    low, high = arb(new.lower()), arb(new.upper())
+                if new.rad() * 2 < box.rad():
+                    low, high = new.lower(), new.upper()
                     continue
                 if _sign(value) == 0:
                     return new
             here = _sign(value)
             if not here:  # the zero itself, perhaps: look on both sides of it
-                off = arb(box.rad()) / 2
-                left, right = arb((middle - off).mid()), arb((middle + off).mid())
+                off = box.rad() / 2
+                left, right = (middle - off).mid(), (middle + off).mid()
                 begins = _sign(self.taylor(event, left, bits, k + 1)[k]) == sign
                 ends = _sign(self.taylor(event, right, bits, k + 1)[k]) == -sign
                 if not (begins or ends):
@@ -1098,17 +1082,15 @@ class Precise:
                 low, high = left if begins else low, right if ends else high
                 continue
             low, high = (middle, high) if here == sign else (low, middle)
-            if arb(high - low) < arb(2) ** (8 - bits):
+            if high - low < flint.arb(2) ** (8 - bits):
                 return low.union(high)
         return low.union(high)
 
     def refined(self, zero: Zero, bits: int) -> Ball:
         """Return a zero to nearly this many bits."""
-        from flint import arb
-
         if zero.event is None:
             with precision(bits):
-                return zero.ball() if callable(zero.ball) else arb(zero.ball)
+                return zero.ball() if callable(zero.ball) else flint.arb(zero.ball)
         key = (id(zero), bits)
         if key not in self._zeros:
             known = (self._zeros.get((id(zero), fewer)) for fewer in reversed(LEVELS))
@@ -1118,25 +1100,23 @@ class Precise:
 
     def _newton(self, zero: Zero, start: Ball, bits: int) -> Ball:
         """Return the zero in a ball about it, to nearly so many bits."""
-        from flint import arb
-
         event, k = zero.event, zero.order
         assert event is not None
         with precision(bits + 32):
-            box = arb(start)
-            least = arb(2) ** -bits * self.plane.base_unit
+            box = flint.arb(start)
+            least = flint.arb(2) ** -bits * self.plane.base_unit
             for _ in range(200):
-                if arb(box.rad()) < least:
+                if box.rad() < least:
                     break
                 slope = (k + 1) * self.taylor(event, box, bits + 32, k + 2)[k + 1]
                 if not _sign(slope):
                     break
-                middle = arb(box.mid())
+                middle = box.mid()
                 step = middle - self.taylor(event, middle, bits + 32, k + 1)[k] / slope
                 if not step.overlaps(box):
                     break
                 new = step.intersection(box)
-                if not arb(new.rad()) * 2 < arb(box.rad()):
+                if not new.rad() * 2 < box.rad():
                     return new
                 box = new
             return box
@@ -1170,19 +1150,18 @@ class Precise:
         return self._on_line(c, branch)
 
     def _on_circle(self, c: Sequence[Ball], branch: int) -> Ball | None:
-        from flint import arb
-
         c0, c1, c2 = c
         square = c1 * c1 + c2 * c2
         if not square > 0:
             return None
         rest = square - c0 * c0
-        height = arb(0) if rest < 0 else rest.nonnegative_part().sqrt()
+        height = flint.arb(0) if rest < 0 else rest.nonnegative_part().sqrt()
         if rest.contains(0):
             height = _around_root(rest)
         # Beside the negative axis the angle is taken from the other one, which has no cut there.
-        theta = arb.atan2(c2, c1) if not c1 < 0 else arb.atan2(-c2, -c1) + _half_turn(c2)
-        alpha = arb.atan2(height, -c0) if not c0 > 0 else arb.pi() - arb.atan2(height, c0)
+        angle, pi = flint.arb.atan2, flint.arb.pi()
+        theta = angle(c2, c1) if not c1 < 0 else angle(-c2, -c1) + (-pi if c2 < 0 else pi)
+        alpha = angle(height, -c0) if not c0 > 0 else pi - angle(height, c0)
         return theta + branch * alpha
 
     def _on_line(self, c: Sequence[Ball], branch: int) -> Ball | None:
@@ -1237,28 +1216,17 @@ def _factors(kind: str, t: Any) -> tuple[Any, Any]:
 
 def _at(x: Any, bits: int) -> Ball:
     """Return a number, or a function of the number of bits, as a ball."""
-    from flint import arb
-
-    return x(bits) if callable(x) else arb(x)
+    return x(bits) if callable(x) else flint.arb(x)
 
 
 def _sign(x: Ball) -> int:
     return 1 if x > 0 else -1 if x < 0 else 0
 
 
-def _half_turn(c2: Ball) -> Ball:
-    """Return half a turn, to the side that leaves an angle between minus and plus half a turn."""
-    from flint import arb
-
-    return -arb.pi() if c2 < 0 else arb.pi()
-
-
 def _around_root(rest: Ball) -> Ball:
     """Return the square root of a ball that holds zero: from 0 to that of its upper end."""
-    from flint import arb
-
-    top = arb(rest.upper()).nonnegative_part().sqrt()
-    return arb(0).union(top)
+    top = rest.upper().nonnegative_part().sqrt()
+    return flint.arb(0).union(top)
 
 
 def _apart(zeros: list[Zero]) -> list[Zero]:
@@ -1324,9 +1292,7 @@ class _Exactly:
 
 def midpoint(a: Ball, b: Ball) -> Ball:
     """Return an exact number between two balls."""
-    from flint import arb
-
-    return arb(((a + b) / 2).mid())
+    return flint.arb(((a + b) / 2).mid())
 
 
 def to_float(x: Ball) -> float:

@@ -27,7 +27,7 @@ from qbound.region.cells import (
 )
 from qbound.region.events import INSIDE
 from qbound.region.outline import Component, closures, drawn, numbered, ordered, outlined
-from qbound.region.plane import LEVELS, Precise, UndecidedError, precision, which
+from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import ON_ARC, UNIT
 from qbound.units import limited_joints, margin_text
@@ -950,14 +950,12 @@ class _Cells:
 
     def _exactly(self, k: int, t: float, start: float, end: float) -> Any:
         """Return an exact base value inside a cell's slab."""
-        from flint import arb
-
         lines, slab = self.found.critical, int(self.cells.slabs[k])
         if end - start > 1e3 * UNIT * max(abs(start), abs(end)):
-            return arb(t)
+            return flint.arb(t)
         with precision(LEVELS[-1]):
             ends = [lines.ball(line, LEVELS[-1]) for line in (slab, slab + 1)]
-            return arb((sum(ends) / 2).mid())
+            return flint.arb((sum(ends) / 2).mid())
 
     def _is_free(self, k: int, t: float, start: float, end: float) -> bool:
         """Tell in balls whether a cell's middle is free."""
@@ -980,10 +978,8 @@ class _Cells:
         precise, base = self.found.precise, self._exactly(k, t, start, end)
 
         def beyond(bits: int) -> Any:
-            from flint import arb
-
             with precision(bits):
-                step = arb(2) ** -min(bits // 4, 100) * self.plane.lift_unit
+                step = flint.arb(2) ** -min(bits // 4, 100) * self.plane.lift_unit
                 return self._root(k, side, base, bits) + (step if side else -step)
 
         count, contacts = self.plane.count, self.plane.contacts
