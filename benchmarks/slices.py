@@ -17,7 +17,7 @@ import numpy as np
 from qbound import find_region, load_robot
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import Pair, Point, Revolute, Robot
-from qbound.region import Region, relevant
+from qbound.region import Region, problem
 
 QUARTER = np.pi / 2
 UR5 = [  # published kinematics: origin, roll pitch yaw, axis; balls: from, to, radius, count
@@ -92,12 +92,12 @@ def main() -> None:
                 held = {j: float(x) for j, x in enumerate(q) if j not in free}
                 took, region = timed(robot, held)
                 times.append(took)
-                varying = len(region.problem.names) - len(region.problem.constants())
+                varying = len(region.problem.names) - len(region.problem.constants)
                 kept.append(varying - len(region.irrelevant))
                 if k == 0 and options.all_forms:
-                    relevant.FEW, few = 10**9, relevant.FEW
+                    problem.MANY, many = 10**9, problem.MANY
                     whole.append(timed(robot, held)[0])
-                    relevant.FEW = few
+                    problem.MANY = many
         sizes = f"{len(robot.used)} | {len(times)} | {median(times):.2f} | {max(times):.2f}"
         slow = f"{median(whole):.2f}, {max(whole):.1f} at most" if whole else ""
         print(f"| {robot.name} | {sizes} | {max(kept)} | {slow} |")

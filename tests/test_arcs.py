@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from shapely import LineString, Point
 
 from qbound import find_region, load_robot
-from qbound.region.arcs import integrate
+from qbound.region.outline import integrate
 from support.regions import inside_limits, relative
 from support.robots import random_robot
 

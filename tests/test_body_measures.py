@@ -22,11 +22,10 @@ from qbound.measures.star import exact_scale, inner_polygon
 from qbound.model.robot import Body, Disc
 from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import boundaries, least_margin
-from qbound.paths.route import plan_route
-from qbound.paths.traversal import traverse
+from qbound.paths.traversal import plan_route, traverse
 from qbound.region import clearance_problem
 from qbound.workspace.areas import find_workspace
-from qbound.workspace.fibres import find_fibres
+from qbound.workspace.layers import find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import planar_arm, postures
 from support.scenes import configurations, random_scene

@@ -56,8 +56,10 @@ def unresolved(monkeypatch):
     """Over neither joint a region is found that verifies itself."""
     from qbound.region import region
 
-    found = {0: (None, REASONS[:1]), 1: (None, REASONS[1:])}
-    monkeypatch.setattr(region._Asked, "verified", lambda _, base: found[base])
+    def reason(problem, home, base):
+        return region._unresolved(problem, base, [REASONS[base]])
+
+    monkeypatch.setattr(region, "_verified", reason)
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
-from qbound.region.critical import Finder
-from qbound.region.decomposition import critical_lines
-from qbound.region.pieces import find_pieces
-from qbound.region.plane import Plane
-from qbound.region.precise import Precise, precision
+from qbound.region.cells import find_events
+from qbound.region.plane import Plane, Precise, precision
 from support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, TORUS, TURN, forms
 from support.regions import pieces, problem_of
 
@@ -28,8 +25,8 @@ def values_at(plane: Plane, t, v) -> np.ndarray:
 
 def lines_of(precise: Precise):
     """All critical lines of a plane, also those at which nothing changes."""
-    finder = Finder(precise.plane, precise)
-    return critical_lines(precise.plane, find_pieces(precise.plane, finder), finder)
+    lines, _ = find_events(precise)
+    return lines
 
 
 def critical_values(stack, ranges, base: int) -> np.ndarray:

@@ -20,7 +20,7 @@ from qbound.model.robot import Capsule, Disc, HalfSpace, Polygon
 from qbound.model.robotfile import parse_robot
 from qbound.proofs.exact import exact_robot
 from qbound.region import Problem, clearance_problem, paper_rule
-from qbound.region.exact import BITS, ExactRows
+from qbound.region.plane import BITS, ExactRows
 from support import arms_in_planes
 from support.arms import palletizer, three_joints
 from support.forms import LIMITS, RR

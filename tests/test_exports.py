@@ -26,7 +26,7 @@ from qbound.proofs.points import joint_decimal, limits_as_decimals, read_points
 from qbound.proofs.reports import paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
-from qbound.workspace.report import workspace_report
+from qbound.workspace.areas import workspace_report
 from support.exact import stated
 from support.forms import RR
 

@@ -16,14 +16,11 @@ from qbound.cli import COMMANDS, command_line, command_parsers, main
 from qbound.forms.factors import basis, basis_and_slope, basis_slope
 from qbound.measures import nearest
 from qbound.model.frames import cross
-from qbound.region import critical, pieces
-from qbound.region.arcs import NODES, legendre
-from qbound.region.components import CELL_NODES, _smooth_rules
-from qbound.region.critical import Events, Finder, _Request
-from qbound.region.decomposition import critical_lines
-from qbound.region.pieces import find_pieces
-from qbound.region.plane import HIGHEST, LOWEST, Plane, Root, runs
-from qbound.region.precise import Precise
+from qbound.region import events
+from qbound.region.cells import find_events
+from qbound.region.events import Events, Finder, _Request
+from qbound.region.outline import CELL_NODES, NODES, _smooth_rules, legendre
+from qbound.region.plane import HIGHEST, LOWEST, Plane, Precise, Root, runs
 from qbound.region.problem import clearance_problem
 from support.forms import ROUND, RR, forms
 from support.regions import problem_of
@@ -86,7 +83,7 @@ def test_a_loop_begins_at_its_lowest_vertex_and_vertices_are_where_labels_change
 def test_products_of_polynomials_few_or_many(count):
     rng = np.random.default_rng(0)
     p, q = (rng.normal(size=(count, n, 2)) @ [1, 1j] for n in (3, 5))
-    found = critical._times(p, q)
+    found = events._times(p, q)
     for one, other, product in list(zip(p, q, found, strict=True))[:5]:
         assert_allclose(product, np.convolve(one, other), atol=1e-13)
 
@@ -125,11 +122,11 @@ def test_pieces_are_paired_the_same_in_blocks_of_any_size(monkeypatch):
     precise = Precise.of(clearance_problem(load_robot("two-links-on-a-table")), 0)
 
     def critical_values():
-        finder = Finder(precise.plane, precise)
-        return critical_lines(precise.plane, find_pieces(precise.plane, finder), finder).t
+        lines, _ = find_events(precise)
+        return lines.t
 
     whole = critical_values()
-    monkeypatch.setattr(pieces, "PAIRS", 50)
+    monkeypatch.setattr(events, "PAIRS", 50)
     assert (critical_values() == whole).all()
 
 

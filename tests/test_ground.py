@@ -1313,11 +1313,11 @@ def run_installed(
 WRONG_IMPORTS = [
     ("qbound.forms.harmonic", "qbound.model.robot", "algebra that knows kinematics"),
     ("qbound.model.frames", "qbound.forms.circle", "kinematics that knows algebra"),
-    ("qbound.boundary.functions", "qbound.region.arcs", "a call upward"),
+    ("qbound.boundary.functions", "qbound.region.outline", "a call upward"),
     ("qbound.model.robot", "qbound.boundary.functions", "a call upward"),
     ("qbound.measures.scaling", "qbound.figures.pictures", "a call upward"),
     ("qbound.sampling", "qbound.forms.circle", "no fair opponent"),
-    ("qbound.sampling", "qbound.region.arcs", "no fair opponent"),
+    ("qbound.sampling", "qbound.region.outline", "no fair opponent"),
     ("qbound.region.paper_rule", "lizarraga2025.printed", "a library that reads the paper"),
     ("qbound.cli.region", "lizarraga2025.ledger.entries", "a library that reads the paper"),
     ("lizarraga2025.printed", "qbound.geometry.polygon", "data that computes"),

@@ -6,12 +6,14 @@ here is where. Areas are known in closed form.
 
 from fractions import Fraction
 from math import asinh, cos, pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
+from qbound import load_robot
 from qbound.forms.circle import circle_roots
 from qbound.measures.nearest import moments, nearest_boundary
 from qbound.region.region import Problem, clearance_problem, solve
@@ -228,3 +230,28 @@ def test_the_nearest_point_may_lie_beyond_the_box_of_the_drawn_points(height) ->
     assert found.boundary == "f0"
     assert found.distance == pytest.approx(height, abs=1e-12)
     assert_allclose(found.q, top, atol=1e-9)
+
+
+@both_bases
+def test_a_configuration_close_to_a_line_is_in_the_component_behind_it(base) -> None:
+    """On the line an obstacle's corner is at the elbow, and the angle of its contact is any."""
+    file = Path(__file__).parent / "once_wrong" / "bare-segments-in-line.toml"
+    region = solve(clearance_problem(load_robot(file)), base=base)
+    for off in 10.0 ** -np.arange(6, 15):
+        q = [pi - off, -1.0]
+        assert region.contains(q)
+        assert region.component_of(q) is not None, off
+
+
+@both_bases
+@pytest.mark.parametrize(("constant", "reach"), [(0.3, 1.0), (0.3, 3.0), (0.5, 1.0), (-0.4, 3.0)])
+def test_where_a_quadratic_is_affine_an_arc_is_on_the_root_that_stays(
+    constant, reach, base
+) -> None:
+    """The other root of cos(q1) q2^2 + q2 + constant passes infinity where q1 is a right angle."""
+    stack = forms(RP, {"12": 1, "01": 1, "00": constant})
+    region = solve(stated(stack, (None, (-reach, reach))), base=base)
+    for arc in (arc for part in region.components for loop in part.loops for arc in loop):
+        if arc.form is not None:
+            q = np.concatenate([arc.points, arc.at(np.linspace(0, 1, 97))])
+            assert_allclose(arc.form(q), 0, atol=1e-12)

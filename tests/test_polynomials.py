@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from qbound.region.polynomials import FAR, polynomial_roots
+from qbound.region.events import FAR, polynomial_roots
 
 ROUNDING = 2.0**-50
 CIRCLES = [False, True]

@@ -13,10 +13,9 @@ from qbound import load_robot
 from qbound.boundary.contacts import SIDES
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import clearance_problem, solve
-from qbound.region.critical import NO_EVENTS, Events, Finder, find_lines
-from qbound.region.decomposition import decompose
-from qbound.region.plane import Plane
-from qbound.region.precise import LEVELS, NUMBER, Precise, in_order, precision
+from qbound.region.cells import decompose
+from qbound.region.events import NO_EVENTS, Events, Finder, find_lines
+from qbound.region.plane import LEVELS, NUMBER, Plane, Precise, in_order, precision
 from support.forms import PP, RP, RR, SQUARE, forms
 from support.regions import problem_of
 from support.scenes import drawn_scene

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm
-from qbound.region import Problem, relevant, solve
-from qbound.region.relevant import box_bounds, relevant_forms, without_irrelevant
+from qbound.region import Problem, solve
+from qbound.region.problem import box_bounds, relevant_forms, without_irrelevant
 from support.regions import SIDES, plate
 
 TURNS, SLIDES = ("revolute", "revolute"), ("prismatic", "prismatic")
@@ -95,10 +97,10 @@ def test_values_lie_within_the_bounds_of_their_boxes(kinds):
 
 
 def both_ways(problem: Problem, monkeypatch):
-    monkeypatch.setattr(relevant, "FEW", 10**9)
+    monkeypatch.setattr("qbound.region.problem.MANY", 10**9)
     whole = solve(problem)
-    monkeypatch.setattr(relevant, "FEW", 0)
-    return whole, solve(problem)
+    monkeypatch.setattr("qbound.region.problem.MANY", 0)
+    return whole, solve(replace(problem))
 
 
 def assert_same(whole, found):
@@ -136,7 +138,7 @@ def test_a_hole_inside_a_hole_is_left_out_and_one_that_fills_a_gap_is_not(monkey
 
 def test_an_empty_region_names_one_form_that_is_negative_throughout(monkeypatch):
     problem = plate((0.0, 0.0, 1.0), (3.0, 2.0, 0.5), (1.0, 1.0, 50.0), (2.0, 2.0, 40.0))
-    monkeypatch.setattr(relevant, "FEW", 0)
+    monkeypatch.setattr("qbound.region.problem.MANY", 0)
     region = solve(problem)
     assert region.components == ()
     assert len(region.empty_because) == 1
@@ -151,7 +153,7 @@ def test_nothing_is_left_out_of_few_forms():
 
 
 def test_where_all_forms_are_irrelevant_the_whole_range_is_free(monkeypatch):
-    monkeypatch.setattr(relevant, "FEW", 0)
+    monkeypatch.setattr("qbound.region.problem.MANY", 0)
     region = solve(plate((50.0, 50.0, 1.0), (60.0, 50.0, 1.0)))
     assert_allclose(region.area, 48.0)
     assert region.irrelevant == ("hole 0", "hole 1")

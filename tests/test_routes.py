@@ -14,13 +14,13 @@ from shapely.geometry import Polygon
 
 from qbound import find_region, load_robot
 from qbound.export.routes import route_csv, route_document, route_lines
-from qbound.paths.report import report
-from qbound.paths.route import (
+from qbound.paths.encounters import report
+from qbound.paths.trajectory import lasting
+from qbound.paths.traversal import (
     nth_component,
     plan_route,
+    reach,
 )
-from qbound.paths.trajectory import lasting
-from qbound.paths.traversal import reach
 from qbound.sampling import keeps_clear
 
 MINERVA = load_robot("minervabot-v2")

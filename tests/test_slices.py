@@ -162,7 +162,7 @@ def test_a_row_of_other_slices_is_refused(arm, row):
 
 
 def test_walls_that_are_irrelevant_are_not_among_those_of_the_page(arm, monkeypatch):
-    monkeypatch.setattr("qbound.region.relevant.FEW", 0)
+    monkeypatch.setattr("qbound.region.problem.MANY", 0)
     region = find_region(arm, HELD)
     data = explorer_data(region)
     named = [data["boundaries"][k]["name"] for k in data["walls"] or []]

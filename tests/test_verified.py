@@ -10,9 +10,8 @@ from qbound import find_region, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.region import Problem, Region, clearance_problem, solve
 from qbound.region import region as engine
-from qbound.region.precise import UndecidedError
-from qbound.region.region import UnresolvedError
-from qbound.region.verified import faults
+from qbound.region.plane import UndecidedError
+from qbound.region.region import UnresolvedError, faults
 from support.forms import ROUND, RR, forms
 from support.regions import problem_of
 
@@ -177,15 +176,15 @@ def test_cells_that_are_parted_by_nothing_do_not_add_up(region):
 @pytest.mark.parametrize("drop", [0, 5, 11])
 @pytest.mark.parametrize("name", NAMES)
 def test_a_region_without_one_of_its_cells_is_not_handed_out(monkeypatch, name, drop):
-    whole = engine.decompose
+    whole = engine.find_cells
 
-    def fewer(precise):
-        found = whole(precise)
+    def fewer(lines, pieces):
+        found = whole(lines, pieces)
         kept = np.arange(len(found.slabs)) != drop
         rows = {key: getattr(found, key)[kept] for key in ("slabs", "roots", "sets")}
         return replace(found, **rows)
 
-    monkeypatch.setattr(engine, "decompose", fewer)
+    monkeypatch.setattr(engine, "find_cells", fewer)
     assert find_region(load_robot(name)).unresolved
 
 
@@ -229,25 +228,25 @@ def test_margins_and_feasibility_are_told_where_structure_is_unresolved(unresolv
 
 
 def test_what_could_not_be_decided_is_told_with_its_place(monkeypatch):
-    def undecided(precise):
+    def undecided(lines, pieces):
         raise UndecidedError("two lines near base value 0.25")
 
-    monkeypatch.setattr(engine, "decompose", undecided)
+    monkeypatch.setattr(engine, "find_cells", undecided)
     region = find_region(load_robot("minervabot-v2"))
     with pytest.raises(UnresolvedError, match=r"two lines near base value 0\.25"):
         _ = region.components
 
 
 def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
-    whole = engine.decompose
+    whole = engine.find_cells
 
-    def half(precise):
-        if precise.plane.base == 0:
+    def half(lines, pieces):
+        if lines.finder.plane.base == 0:
             raise UndecidedError("not over this joint")
-        return whole(precise)
+        return whole(lines, pieces)
 
     expected = find_region(load_robot("minervabot-v2"))
-    monkeypatch.setattr(engine, "decompose", half)
+    monkeypatch.setattr(engine, "find_cells", half)
     region = find_region(load_robot("minervabot-v2"))
     assert region.base == 1
     assert not region.unresolved
@@ -269,14 +268,14 @@ def test_one_that_is_wrong_in_doubles_is_computed_again_with_more_in_balls(monke
 
 def test_regions_that_differ_between_the_joints_are_unresolved(monkeypatch):
     """A component is lost over one joint of a delicate problem."""
-    built = engine._Asked._region
+    built = engine._over
 
-    def fewer(self, base, caution):
-        region = built(self, base, caution)
+    def fewer(problem, home, base, caution):
+        region = built(problem, home, base, caution)
         return replace(region, found=region.found[: 5 - base])
 
-    monkeypatch.setattr(engine._Asked, "_region", fewer)
-    monkeypatch.setattr(engine._Asked, "is_delicate", lambda self, region: True)
+    monkeypatch.setattr(engine, "_over", fewer)
+    monkeypatch.setattr(engine, "_is_delicate", lambda region: True)
     monkeypatch.setattr(engine, "faults", lambda region: [])
     region = find_region(load_robot("minervabot-v2"))
     assert "5 components over one joint, 4 over the other" in region.unresolved

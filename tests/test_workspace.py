@@ -27,8 +27,7 @@ from qbound.region import (
 )
 from qbound.workspace import layers
 from qbound.workspace.areas import area_by_green, find_workspace, overlap
-from qbound.workspace.fibres import find_fibres
-from qbound.workspace.image_crossings import crossing_distances
+from qbound.workspace.layers import crossing_distances, find_fibres
 from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
 from support.robots import in_centimetres, mirror, random_robot, turned
@@ -402,12 +401,14 @@ def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
     """A region that verifies itself over the first joint only has other cells."""
     from qbound.region import region
 
-    verified = region._Asked.verified
+    verified = region._verified
 
-    def only_over_the_first(asked, base):
-        return (None, ("not decided",)) if base == 1 else verified(asked, base)
+    def only_over_the_first(problem, home, base):
+        if base == 1:
+            return region._unresolved(problem, base, ["not decided"])
+        return verified(problem, home, base)
 
-    monkeypatch.setattr(region._Asked, "verified", only_over_the_first)
+    monkeypatch.setattr(region, "_verified", only_over_the_first)
     problem = clearance_problem(MINERVA)
     assert len(solve(problem, base=1).components) == 5
     with pytest.raises(UnresolvedError, match="second joint"):

@@ -21,7 +21,7 @@ from scenes import robot
 
 from qbound import Region, Robot, find_region
 from qbound.model.robot import BodyPair, HalfSpace, Pair
-from qbound.region.arcs import integrate
+from qbound.region.outline import integrate
 from qbound.units import limited_joints
 
 Floats = NDArray[np.float64]

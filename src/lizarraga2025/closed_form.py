@@ -21,7 +21,7 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import tangent_corners
 from qbound.model.robot import HalfSpace, Robot
-from qbound.region.arcs import legendre
+from qbound.region.outline import legendre
 from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
 from qbound.tolerances import ON_BOUNDARY
 

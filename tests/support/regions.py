@@ -1,5 +1,6 @@
 """What must hold of every region: its arcs, its area and pieces on a grid, either joint as base."""
 
+from collections import Counter
 from math import pi
 
 import numpy as np
@@ -10,11 +11,9 @@ from scipy.sparse.csgraph import connected_components
 
 from qbound.forms.harmonic import HarmonicForm, basis, basis_slope
 from qbound.region import Problem, Region
-from qbound.region.cells import CellComplex
-from qbound.region.decomposition import decompose
-from qbound.region.halfedges import find_loops, half_edges
-from qbound.region.plane import Plane
-from qbound.region.precise import Precise
+from qbound.region.cells import CellComplex, decompose
+from qbound.region.outline import find_loops, half_edges
+from qbound.region.plane import Plane, Precise
 from support.forms import LIMITS, Moved, Piece, Ranges
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
@@ -205,11 +204,12 @@ def pieces_of(precise: Precise) -> list[Piece]:
     """The same of a plane; wraps are in the order of the joints."""
     cells, base = CellComplex(decompose(precise)), precise.plane.base
     found = []
-    rings = find_loops(cells, half_edges(cells))
-    for own, wraps, loops in zip(cells.parts.cells, cells.parts.wraps, rings, strict=True):
-        area = sum(area_of(cells, k) for k in own)
+    edges, part = half_edges(cells), cells.parts.of_cells()
+    loops = Counter(part[edges.cell[loop[0]]] for loop in find_loops(cells, edges))
+    for k, (own, wraps) in enumerate(zip(cells.parts.cells, cells.parts.wraps, strict=True)):
+        area = sum(area_of(cells, cell) for cell in own)
         one, other = wraps if base == 0 else wraps[::-1]
-        found.append((area, (bool(one), bool(other)), len(loops)))
+        found.append((area, (bool(one), bool(other)), loops[k]))
     return sorted(found, reverse=True)
 
 

@@ -22,7 +22,7 @@ from qbound.cli.terminal import say
 from qbound.cli.values import configuration, held
 from qbound.model.robot import Robot
 from qbound.paths.encounters import plane_of_motion
-from qbound.paths.route import nth_component
+from qbound.paths.traversal import nth_component
 
 
 def add_to(commands: Any) -> None:

@@ -20,8 +20,7 @@ from qbound.export.formats import json_text
 from qbound.export.routes import infeasible_line, route_csv, route_document, route_lines
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
-from qbound.paths.report import PathReport, report
-from qbound.paths.route import Route, plan_route
+from qbound.paths.encounters import PathReport, report
 from qbound.paths.trajectory import (
     Trajectory,
     joint_speeds,
@@ -30,6 +29,7 @@ from qbound.paths.trajectory import (
     stretched,
     timed,
 )
+from qbound.paths.traversal import Route, plan_route
 
 
 def add_to(commands: Any) -> None:

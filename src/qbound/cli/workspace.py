@@ -20,7 +20,7 @@ from qbound.cli.values import held, place, pose
 from qbound.export.formats import json_text
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.region import NoHomeError
-from qbound.workspace.report import WorkspaceReport, workspace_report
+from qbound.workspace.areas import WorkspaceReport, workspace_report
 
 
 def add_to(commands: Any) -> None:

@@ -24,7 +24,7 @@ from qbound.measures.bodies import outline_in_frame
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot
 from qbound.region import Component, Region, Slices
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.version import __version__
 

@@ -8,7 +8,7 @@ from typing import Any
 from qbound.export.configuration import feature_content
 from qbound.export.formats import heading
 from qbound.region import Component, NoHomeError, Region, Slices, UnresolvedError, Vertex
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 

@@ -8,10 +8,9 @@ from typing import Any
 
 from qbound.arrays import Floats
 from qbound.export.formats import csv_text, pose_columns, pose_heading
-from qbound.paths.encounters import Crossing, Margin, ParameterPoint
-from qbound.paths.report import PathReport
-from qbound.paths.route import Route
+from qbound.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
 from qbound.paths.trajectory import Trajectory, row_times
+from qbound.paths.traversal import Route
 from qbound.tolerances import ON_BOUNDARY
 from qbound.units import amount, counted, joint_text
 

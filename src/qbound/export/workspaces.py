@@ -10,9 +10,8 @@ from qbound.export.formats import heading
 from qbound.model.robot import Robot
 from qbound.tolerances import ROUNDED_AREA
 from qbound.units import amount, joint_text
-from qbound.workspace.areas import Aspect
+from qbound.workspace.areas import Aspect, PlaceReport, WorkspaceReport
 from qbound.workspace.passage import Passage
-from qbound.workspace.report import PlaceReport, WorkspaceReport
 
 
 def workspace_document(found: WorkspaceReport) -> dict[str, Any]:

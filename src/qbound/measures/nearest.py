@@ -20,7 +20,7 @@ from qbound.forms.factors import basis_and_slope
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.values import real_numbers
 from qbound.region import Component, Problem, Region
-from qbound.region.arcs import Arc, integrate
+from qbound.region.outline import Arc, integrate
 
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""

@@ -1,28 +1,220 @@
-"""Scaling a polygon about a point until it is safe, and how far is far enough.
+"""How far a polygon or a region may be scaled about a point until it is safe.
 
 Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
-the scale found is covered by triangles on each of which every form is shown to be positive, and of
-bodies all forms of one of the tests that part them (`conditions`).
+the scale found is covered by triangles on each of which every form is shown to be positive.
+
+Of bodies clauses are shown. Two convex parts are apart exactly if one of their clauses holds: all
+corners of one part lie beyond an edge of the other, or two corners are the nearest places and far
+enough apart. So a configuration is feasible if every condition has a clause in which every form is
+positive. This only compares values, so that it turns lower bounds of the forms into proofs, and
+safe steps of forms into safe steps of bodies.
+
+The least distance of two bodies over a polygon is found by halving simplices. A signed distance is
+the maximum over features: for an edge the least height of the other core's corners, for two corners
+that are the nearest places their distance. Bounds of the forms bound each of these from below over
+a simplex. So no simplex that contains the least value is left out.
+
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arrays import Floats
-from qbound.boundary.contacts import NO_CONTACTS, Contacts
+from qbound.arrays import Floats, Ints
+from qbound.boundary.body_contacts import body_contacts
+from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.boundary.functions import clearance, margin_of
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.parts import bounded_bodies, bounds_bodies
+from qbound.boundary.separation import Separation, largest_speeds
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.simplices import halved
-from qbound.measures.conditions import Conditions, conditions
-from qbound.measures.worst_bodies import least_margin_over
-from qbound.model.robot import Boundary, Robot
+from qbound.geometry.simplices import edges, halved
+from qbound.model.robot import BodyPair, Boundary, Robot
 from qbound.tolerances import PROVED_SCALE, TANGENT
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """Forms of two joints, one a row, and what they are together.
+
+    Attributes
+    ----------
+    forms : HarmonicForm, shape (rows,)
+    clauses : ndarray of int, shape (clauses,)
+        First row of each clause.
+    starts : ndarray of int, shape (conditions,)
+        First clause of each condition.
+    """
+
+    forms: HarmonicForm
+    clauses: Ints
+    starts: Ints
+
+    @cached_property
+    def clause_of(self) -> Ints:
+        """The clause of each row, shape (rows,)."""
+        sizes = np.diff(np.append(self.clauses, len(self.forms.coefficients)))
+        return np.repeat(np.arange(len(self.clauses)), sizes)
+
+    @cached_property
+    def condition_of(self) -> Ints:
+        """The condition of each row, shape (rows,)."""
+        return np.searchsorted(self.starts, self.clause_of, side="right") - 1
+
+    def __len__(self) -> int:
+        """Return the number of conditions: of forms, then of pairs of parts."""
+        return len(self.starts)
+
+    def together(self, values: Floats) -> Floats:
+        """Return the least of each clause, of these the most of each condition.
+
+        Shape (..., rows) to (..., conditions).
+        """
+        least = np.minimum.reduceat(values, self.clauses, axis=-1)
+        return np.asarray(np.maximum.reduceat(least, self.starts, axis=-1))
+
+    def worst(self, values: Floats) -> tuple[Ints, Ints]:
+        """Return the condition that is least, and the row that decides it; (n, rows) to (n,)."""
+        if not len(self):
+            none = np.full(len(values), -1)
+            return none, none
+        least = np.minimum.reduceat(values, self.clauses, axis=1)
+        together = np.maximum.reduceat(least, self.starts, axis=1)
+        condition = together.argmin(axis=1)
+        value = together[np.arange(len(values)), condition, None]
+        decides = (values == value) & (least[:, self.clause_of] == value)
+        decides &= self.condition_of == condition[:, None]
+        return condition, decides.argmax(axis=1)
+
+
+def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditions:
+    """Gather conditions: one a form, in their order, then one for each pair of convex parts.
+
+    Parameters
+    ----------
+    forms : HarmonicForm, shape (m,)
+        Of two joints, as `Problem.forms` has them. A stack of none still says what the joints are,
+        which the tables of the contacts do not.
+    contacts : Contacts, optional
+        Features of bodies that are to keep apart, of the same two joints.
+
+    Raises
+    ------
+    ValueError
+        If the forms are no stack, or not of two joints.
+    """
+    if len(forms.kinds) != 2 or len(forms.shape) != 1:
+        raise ValueError(
+            f"wanted a stack of forms of two joints, such as Problem.forms; found the shape"
+            f" {forms.shape} and {len(forms.kinds)} joints"
+        )
+    own = forms.coefficients
+    m, features = len(own), len(contacts.forms)
+    # Of edges no side conditions are needed; of corners a constant 1 stands where there is none.
+    silent = (contacts.sides.reshape(-1, SIDES, 9) == np.eye(9)[0]).all(axis=-1)
+    said = contacts.corners[:, None] & ~silent
+    feature, side = np.nonzero(said)
+    of = np.concatenate([np.arange(m), m + np.arange(features), m + feature])
+    rows = np.concatenate([own, contacts.forms, contacts.sides[feature, side]])
+    order = np.argsort(of, kind="stable")
+    clause = np.concatenate([np.arange(m), m + contacts.clause])[of[order]]
+    condition = np.concatenate([np.arange(m), m + contacts.pair])[of[order]]
+    first = np.flatnonzero(np.diff(clause, prepend=-1))
+    starts = np.flatnonzero(np.diff(condition[first], prepend=-1))
+    return Conditions(HarmonicForm(rows[order], forms.kinds), first, starts)
+
+
+MOST_CELLS = 200_000
+"""Simplices looked at before what is left is said to be undecided."""
+
+
+def least_margin_over(
+    robot: Robot, boundary: Boundary, cells: Floats, tolerance: float = 1e-6
+) -> tuple[float, Floats]:
+    """Return the least margin of a boundary about bodies over simplices, and where.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (N, k, 2)
+        Corners, rad or length.
+    tolerance : float
+        Beside the largest length that the margin is made of: no margin is lower by more. Where two
+        features decide, bounds are of first order, and less would cost too many simplices.
+
+    Raises
+    ------
+    ArithmeticError
+        If that takes more simplices than there may be.
+    """
+    exact, speeds = Separation(robot, None, [boundary]), largest_speeds(robot, boundary)
+    size = float(speeds @ np.abs(cells).reshape(-1, 2).max(axis=0)) + float(speeds.max())
+    bound = _Bound(robot, boundary, size)
+    slack, best, where, looked = tolerance * size, np.inf, cells[0, 0], 0
+    while len(cells):
+        looked += len(cells)
+        if looked > MOST_CELLS:
+            raise ArithmeticError(f"{boundary.name}: {MOST_CELLS} simplices do not settle it")
+        centres = cells.mean(axis=1)
+        values = exact.margins(centres)[:, 0]
+        corners = exact.margins(cells)[..., 0]
+        for value, place in ((values, centres), (corners, cells)):
+            at = np.unravel_index(value.argmin(), value.shape)
+            if value[at] < best:
+                best, where = float(value[at]), place[at]
+        # First by speeds, then by what costs more.
+        reach = np.abs((cells - centres[:, None]) @ np.diag(speeds)).sum(axis=2).max(axis=1)
+        cells = cells[values - reach < best - slack]
+        cells = cells[bound(cells) < best - slack]
+        steps = np.abs(edges(cells)) @ speeds
+        cells = halved(cells, steps.argmax(axis=1))
+    return best, np.asarray(where)
+
+
+class _Bound:
+    """The lower bound over simplices.
+
+    More is asked than the boundary does: with a distance to keep corners are features, too.
+    """
+
+    def __init__(self, robot: Robot, boundary: Boundary, more: float) -> None:
+        asked = boundary.with_extra_clearance(more)
+        contacts = body_contacts(robot, {}, [asked])
+        self.more = more
+        self.conditions = conditions(HarmonicForm(np.zeros((0, 3, 3)), robot.kinds), contacts)
+        self.clauses = self.conditions.clauses
+        self.squared = _squared(robot, asked, contacts, self.conditions.forms)
+        of_corners = np.maximum.reduceat(self.squared, self.clauses) > 0
+        sizes = np.diff(np.append(self.clauses, len(self.squared)))
+        self.sides = np.repeat(of_corners, sizes) & (self.squared == 0)
+
+    def __call__(self, cells: Floats) -> Floats:
+        if not len(cells):
+            return np.zeros(0)
+        low, kept, starts = second_order(self.conditions.forms, cells), self.squared, self.clauses
+        lengths = np.where(kept > 0, np.sqrt(np.maximum(low + kept**2, 0)) - kept, low)
+        # Two corners that are not everywhere the nearest places say nothing.
+        held = np.minimum.reduceat(np.where(self.sides, low, np.inf), starts, axis=1) >= 0
+        least = np.minimum.reduceat(np.where(self.sides, np.inf, lengths), starts, axis=1)
+        least = np.where(held, least, -np.inf)
+        pairs = np.maximum.reduceat(least, self.conditions.starts, axis=1)
+        return np.asarray(pairs.min(axis=1) + self.more)
+
+
+def _squared(robot: Robot, asked: Boundary, contacts: Contacts, rows: HarmonicForm) -> Floats:
+    """Return for each row the length whose square was taken from a square, 0 where it is none."""
+    kept = np.zeros(len(rows.coefficients))
+    if isinstance(asked, BodyPair):
+        radii = [body.parts[0].radius for body in bounded_bodies(robot, asked)]
+        # Rows are the features, each two corners followed by its side conditions.
+        forms = {form.tobytes() for form in contacts.forms[contacts.corners]}
+        squares = [row.tobytes() in forms for row in rows.coefficients]
+        kept[squares] = sum(radii) + asked.clearance
+    return kept
+
 
 ROUNDS, PLACES = 14, 33
 MOST_TRIANGLES = 2_000_000

@@ -18,10 +18,9 @@ from qbound.arrays import Floats
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.bisection import last_before
 from qbound.geometry.polylines import tangent_corners
-from qbound.measures.conditions import conditions
-from qbound.measures.scaling import first_exit, violation
+from qbound.measures.scaling import conditions, first_exit, violation
 from qbound.region import Component, Problem
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 from qbound.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
 
 PLACES, ROUNDS = 129, 12

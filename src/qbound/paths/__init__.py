@@ -3,6 +3,5 @@
 - `traversal`: vertices or arcs in an order, the joint path and the tool's;
 - `encounters`: crossings of a path with itself or with the singular curve, and its margins;
 - `asymmetry`: distance of a path of the tool from the mirror image of another;
-- `trajectory`: the path in time;
-- `route`: vertices or arcs by number; `report`: crossings, margins and singular poses of a route.
+- `trajectory`: the path in time.
 """

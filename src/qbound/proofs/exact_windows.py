@@ -6,7 +6,7 @@ from qbound.model.robot import HalfSpace, Robot
 from qbound.proofs.balls import arb, ball, precision, turns
 from qbound.proofs.exact import BITS, ExactProblem, exact_state
 from qbound.region import paper_rule
-from qbound.region.exact import window_end
+from qbound.region.paper_rule import window_end
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:

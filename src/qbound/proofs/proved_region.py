@@ -44,7 +44,7 @@ from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, roo
 from qbound.proofs.structure import prove_structure
 from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Component, Region
-from qbound.region.arcs import Arc
+from qbound.region.outline import Arc
 
 Anchor = tuple[int | None, Balls]
 

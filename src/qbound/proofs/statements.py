@@ -24,8 +24,7 @@ from qbound.model.robot import Robot
 from qbound.proofs import unrolled
 from qbound.proofs.triangulation import triangulate
 from qbound.region import Component, find_region, margins
-from qbound.region.arcs import Arc
-from qbound.region.loops import behind
+from qbound.region.outline import Arc, behind
 from qbound.region.problem import Problem, clearance_problem
 
 Statement = dict[str, Any]

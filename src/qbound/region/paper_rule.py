@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,7 @@ from qbound.forms.circle import circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.printable import printable
+from qbound.region.plane import Ball, flint
 from qbound.region.problem import Problem, state
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -185,3 +186,53 @@ def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
                 f"{printable(boundary.name)}: the paper's rule has no bounds for a {found}"
             )
     return [boundary for boundary in used if isinstance(boundary, kind)]
+
+
+# --- exact ends -----------------------------------------------------------------------------------
+
+
+def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Ball, Ball]:
+    """Return the highest lower end and the lowest upper end of a joint's windows and limits.
+
+    Of ends that are not certainly apart the first one stands for both.
+
+    Parameters
+    ----------
+    robot : Robot
+        With floats: it tells which windows there are and which turn each takes.
+    exact : Robot
+        The same robot with exact numbers.
+    limits : pair of balls, optional
+        Of the joint.
+    """
+    own = [window for window in windows(robot) if window.joint == joint]
+    upper = [window_end(exact, window) for window in own]
+    lower = [end - 2 * flint.arb.pi() for end in upper]
+    if limits is not None:
+        lower, upper = [*lower, limits[0]], [*upper, limits[1]]
+    low, high = lower[0], upper[0]
+    for one, other in zip(lower, upper, strict=True):
+        low, high = (one if one > low else low), (other if other < high else high)
+    return low, high
+
+
+def window_end(exact: Robot, window: Window) -> Ball:
+    r"""Return the upper end of a window as a ball: the root :math:`\theta + \alpha` (eq. 39).
+
+    Raises
+    ------
+    ValueError
+        If it is not certain that the component reaches zero.
+    """
+    pair: Any = exact.boundary(window.boundary)
+    component = pair_vector(exact, pair)[window.component - 1]
+    c, a, b = component.along(window.joint, [flint.arb(0)] * len(exact.joints))
+    square = flint.arb(a * a + b * b - c * c)
+    if not square >= 0:
+        text = "it is not proved that this component reaches zero"
+        raise ValueError(f"{printable(window.boundary)}: {text}")
+    half = square.sqrt()
+    found: Ball = flint.arb.atan2(a * half - b * c, -a * c - b * half)
+    turns = round((window.upper - float(found)) / (2 * np.pi))
+    end: Ball = found + 2 * turns * flint.arb.pi()
+    return end

@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib.util import find_spec
-from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from qbound.arrays import Bools, Floats
+from qbound.arrays import Bools, Floats, Ints
+from qbound.forms.angles import TURN
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
 from qbound.model.values import real_numbers
 from qbound.printable import printable
-from qbound.region.cells import CellComplex
-from qbound.region.components import Component, bounded, closures, drawn, measured, numbered
-from qbound.region.decomposition import decompose, nothing_in
-from qbound.region.emptiness import irreducible
-from qbound.region.halfedges import find_loops, half_edges
-from qbound.region.loops import BoundaryLoop, Layout
-from qbound.region.precise import Precise, UndecidedError
+from qbound.region.cells import (
+    CellComplex,
+    apart,
+    decompose,
+    find_cells,
+    find_events,
+    nothing_in,
+    turned_root,
+)
+from qbound.region.events import INSIDE
+from qbound.region.outline import Component, closures, drawn, numbered, ordered, outlined
+from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
 from qbound.region.problem import Problem, Rule, clearance_problem
-from qbound.region.relevant import without_irrelevant
-from qbound.region.verified import Found, faults
-from qbound.tolerances import UNIT
+from qbound.tolerances import ON_ARC, UNIT
 from qbound.units import limited_joints, margin_text
 
 if TYPE_CHECKING:
@@ -34,6 +37,94 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
 
     from qbound.measures.nearest import BoundaryPoint
+
+TRIED = 1000
+"""Random places at the start."""
+
+
+def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
+    """Return boundaries that leave no room together, but would if any one of them were dropped.
+
+    Parameters
+    ----------
+    problem : Problem
+        Whose region is empty, without forms that depend on neither joint.
+    base : int
+        Which joint is the base of the cells.
+
+    Returns
+    -------
+    tuple of str
+        Empty where no boundary is to blame: a range has no width.
+    """
+    names = _names(problem)
+    if not len(names):
+        return ()  # a range has no width
+    rows = _violated(problem, _random_places(problem))
+    rows = rows[rows.any(axis=1)]
+    while True:
+        chosen = _greedy_cover(rows)
+        place = _free_place(_only(problem, names[chosen]), base)
+        if place is None:
+            break
+        # What was chosen is free there, although doubles may say that it touches.
+        row = _violated(problem, place[None]) & ~chosen
+        if not row.any():  # so near to contact only the cells of all decide
+            chosen[:] = True
+            break
+        rows = np.concatenate([rows, row])
+    for k in np.flatnonzero(chosen).tolist():
+        without = chosen & (np.arange(len(chosen)) != k)
+        needed = (~rows[:, without].any(axis=1)).any()
+        if not needed and _free_place(_only(problem, names[without]), base) is None:
+            chosen = without
+    return tuple(names[chosen].tolist())
+
+
+def _names(problem: Problem) -> NDArray[np.object_]:
+    """Return the names of all boundaries, forms first."""
+    return np.array([*problem.names, *(body.name for body in problem.bodies)], dtype=object)
+
+
+def _random_places(problem: Problem) -> Floats:
+    ends = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges])
+    return np.random.default_rng(0).uniform(ends[:, 0], ends[:, 1], (TRIED, 2))
+
+
+def _violated(problem: Problem, q: Floats) -> Bools:
+    """Tell which boundaries are violated at places, or touch, shape (n, boundaries)."""
+    found = dict(zip(problem.evaluator.names, problem.evaluator.margins(q).T, strict=True))
+    return np.stack([found[name] <= 0 for name in _names(problem)], axis=-1)
+
+
+def _greedy_cover(rows: Bools) -> Bools:
+    """Choose columns so that each row has one of them, each time the one that most rows have."""
+    chosen, left = np.zeros(rows.shape[1], dtype=np.bool_), rows
+    while len(left):
+        best = int(left.sum(axis=0).argmax())
+        chosen[best], left = True, left[~left[:, best]]
+    return chosen
+
+
+def _only(problem: Problem, kept: Iterable[str]) -> Problem:
+    """Return the problem with some of its boundaries."""
+    wanted = set(kept)
+    problem = problem.without([k for k, name in enumerate(problem.names) if name not in wanted])
+    return problem.without_bodies([b.name for b in problem.bodies if b.name not in wanted])
+
+
+def _free_place(problem: Problem, base: int) -> Floats | None:
+    """Return a place inside a cell, off its middles; None where there is no cell."""
+    precise = Precise.of(problem, base)
+    plane, found = precise.plane, decompose(precise)
+    if not found.cells:
+        return None
+    # Of the cells over the widest slab, the first.
+    slab, lower, upper = max(found.cells, key=lambda cell: np.diff(found.lines)[cell.slab])
+    t = found.lines[slab] + INSIDE * (found.lines[slab + 1] - found.lines[slab])
+    low, high = (float(plane.follow([root], np.array([[t]]))[0, 0]) for root in (lower, upper))
+    v = low + INSIDE * (high - low)
+    return np.array([t, v] if base == 0 else [v, t])
 
 
 class UnresolvedError(ValueError):
@@ -77,7 +168,7 @@ class Region:
 
     Notes
     -----
-    A region is handed out only after it has verified itself (`qbound.region.verified`).
+    A region is handed out only after it has verified itself (`faults`).
 
     Examples
     --------
@@ -578,30 +669,71 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     Notes
     -----
     A component is open, and what people see is its closure; touching in points or curves neither
-    joins components nor makes one. A form that depends on no joint is decided beforehand, and of
-    many forms those that can bound nothing are left out, by proof (`qbound.region.relevant`).
+    joins components nor makes one.
+
+    A region is handed out only if it is right by its own account. Where balls decided anything, or
+    critical values nearly coincide, the region over the other joint must agree with it.
     """
     home = problem.home if home is None else home
     home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    constants = problem.constants
-    inner, irrelevant = without_irrelevant(problem.without(list(constants)))
-    blocked = [problem.names[k] for k, value in constants.items() if problem.blocks(k, value)]
-    if blocked:
-        nothing = CellComplex(nothing_in(Precise.of(inner, base)))
-        because = tuple(blocked[:1])
-        return Region((), problem, nothing, base, {}, because, irrelevant, inner=inner)
-    asked = _Asked(problem, inner, home, irrelevant)
-    found, why = asked.verified(base)
-    if found is not None and not asked.is_delicate(found):
+    found = _verified(problem, home, base)
+    if not found.unresolved and not _is_delicate(found):
         return found
-    other, why_other = asked.verified(1 - base)
-    if found is None or other is None:
-        right = found or other
-        return asked.unresolved(base, [*dict.fromkeys(why + why_other)]) if right is None else right
-    differences = _differences(found, other)
-    return asked.unresolved(base, differences) if differences else found
+    other = _verified(problem, home, 1 - base)
+    if bool(found.unresolved) != bool(other.unresolved):
+        return other if found.unresolved else found
+    reasons = found.unresolved + other.unresolved or _differences(found, other)
+    return _unresolved(problem, base, reasons) if reasons else found
+
+
+def _verified(problem: Problem, home: Floats, base: int) -> Region:
+    """Return the region over a joint, if it is right by its own account, else one that says why.
+
+    One that is not right is computed again with more left to balls.
+    """
+    for caution in CAUTION:
+        try:
+            region = _over(problem, home, base, caution)
+            reasons = faults(region)
+        except UndecidedError as error:
+            reasons = [str(error)]
+        if not reasons:
+            return region
+    return _unresolved(problem, base, reasons)
+
+
+def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
+    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting."""
+    constraints, irrelevant = problem.searched  # eqs. 9-12; of many forms those that may bind
+    precise = Precise.of(constraints, base, caution)  # along the lift: Theorem 2
+    if problem.blocked:
+        decomposition = nothing_in(precise)
+    else:
+        events, contacts = find_events(precise)
+        decomposition = find_cells(events, contacts)
+    cells = CellComplex(decomposition)
+    components = outlined(problem, constraints, cells, home)
+    owner = {k: i for i, (_, own) in enumerate(components) for k in own}
+    found = tuple(component for component, _ in components)
+    because = problem.blocked[:1] or (() if found else irreducible(constraints, base))
+    return Region(found, problem, cells, base, owner, because, irrelevant, inner=constraints)
+
+
+def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
+    """Return a region without components that says why it has none."""
+    inner, irrelevant = problem.searched
+    cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
+    return Region((), problem, cells, base, {}, (), irrelevant, why, inner)
+
+
+def _is_delicate(region: Region) -> bool:
+    """Tell whether balls decided anything, or critical values nearly coincide."""
+    lines = region.cells.abscissae
+    near = DELICATE * (lines[-1] - lines[0])
+    decided = region.cells.decomposition.precise.decided
+    return bool(decided or (np.diff(lines) < near).any())
 
 
 DELICATE = 1e-6
@@ -611,98 +743,28 @@ CAUTION = (1.0, 2.0**12)
 """By how much errors of doubles are overestimated: at first, and where a region was not right."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Asked:
-    """What a region is asked of: the problem, and what is left of it for the search."""
-
-    problem: Problem
-    inner: Problem
-    home: Floats
-    irrelevant: tuple[str, ...]
-
-    def verified(self, base: int) -> tuple[Region | None, tuple[str, ...]]:
-        """Return the region over a joint that is right by its own account; else why there is none.
-
-        One that is not is computed again with more left to balls.
-        """
-        reasons: tuple[str, ...] = ()
-        for caution in CAUTION:
-            try:
-                region = self._region(base, caution)
-            except UndecidedError as error:
-                reasons = (str(error),)
-                continue
-            found = Found(self.problem, self.inner, region.cells, region.found, region.owner)
-            reasons = tuple(faults(found))
-            if not reasons:
-                return region, ()
-        return None, reasons
-
-    def is_delicate(self, region: Region) -> bool:
-        """Tell whether balls decided anything, or critical values nearly coincide."""
-        lines = region.cells.abscissae
-        near = DELICATE * (lines[-1] - lines[0])
-        decided = region.cells.decomposition.precise.decided
-        return bool(decided or (np.diff(lines) < near).any())
-
-    def unresolved(self, base: int, reasons: Sequence[str]) -> Region:
-        """Return a region without components that says why it has none."""
-        cells = CellComplex(nothing_in(Precise.of(self.inner, base)))
-        return Region(
-            (),
-            self.problem,
-            cells,
-            base,
-            {},
-            irrelevant=self.irrelevant,
-            unresolved=tuple(reasons),
-            inner=self.inner,
-        )
-
-    def _region(self, base: int, caution: float) -> Region:
-        problem, inner = self.problem, self.inner
-        cells = CellComplex(decompose(Precise.of(inner, base, caution)))
-        if not len(cells.slabs):
-            because = irreducible(inner, base)
-            return Region((), problem, cells, base, {}, because, self.irrelevant, inner=inner)
-        found = measured(cells, problem, self.home, base)
-        edges = half_edges(cells)
-        rings = find_loops(cells, edges)
-        bounding = [[BoundaryLoop(rows, f.shift) for rows in rings[f.part]] for f in found]
-        layout = Layout(cells, edges, base, inner.names, inner.limits)
-        loops = iter(layout.arcs(list(chain(*bounding)), cells.parts.windings))
-        unit = problem.area_unit
-        components = [
-            (bounded(f, base, list(islice(loops, len(own))), unit), cells.parts.cells[f.part])
-            for f, own in zip(found, bounding, strict=True)
-        ]
-        components.sort(key=lambda item: (not item[0].contains_home, -item[0].area))
-        owner = {k: i for i, (_, own) in enumerate(components) for k in own}
-        every = tuple(component for component, _ in components)
-        return Region(every, problem, cells, base, owner, irrelevant=self.irrelevant, inner=inner)
-
-
-def _differences(one: Region, other: Region) -> tuple[str, ...]:
+def _differences(one: Region, other: Region) -> list[str]:
     """Return what two regions of one problem, found over either joint, do not have in common."""
-    found = []
-    for what, *counts in zip(
-        ("components", "loops", "vertices"), _counts(one), _counts(other), strict=True
-    ):
-        if counts[0] != counts[1]:
-            found.append(f"{counts[0]} {what} over one joint, {counts[1]} over the other")
+    counts = [
+        (
+            len(region.components),
+            sum(len(component.loops) for component in region.components),
+            sum(len(component.vertices) for component in region.components),
+        )
+        for region in (one, other)
+    ]
+    found = [
+        f"{n} {what} over one joint, {m} over the other"
+        for what, n, m in zip(("components", "loops", "vertices"), *counts, strict=True)
+        if n != m
+    ]
     if not found and one.components:
         areas = np.array([sorted(c.area for c in region.components) for region in (one, other)])
         plane, off = one.cells.plane, float(np.ptp(areas, axis=0).max())
         rounding = 64 * UNIT * plane.base_unit * plane.lift_unit
         if off > SAME_AREA * max(one.area, other.area) + rounding:
             found.append(f"an area differs by {off:.2g} between the joints")
-    return tuple(found)
-
-
-def _counts(region: Region) -> tuple[int, int, int]:
-    """Return the numbers of components, loops and vertices."""
-    every = region.components
-    return len(every), sum(len(c.loops) for c in every), sum(len(c.vertices) for c in every)
+    return found
 
 
 SAME_AREA = 1e-9
@@ -719,3 +781,275 @@ def _why_no_home(region: Region) -> str:
     lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
+
+
+PLACES = (-1.2, -0.4, 0.3, 1.0)
+"""Where arcs are looked at: angles of their parametrization, from -pi/2 to pi/2."""
+
+BESIDE = (1e-6, 1e-9, 1e-12)
+"""How far beside an arc it is asked what lies there, in units of a joint; then balls are asked."""
+
+SPREAD_OUT = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
+"""Places in the unit square that are spread evenly (Roberts's sequence), shape (64, 2)."""
+
+CLEAR = 64.0
+"""A margin beyond so many times its rounding has a sign."""
+
+
+def faults(found: Region) -> list[str]:
+    """Return what is wrong with a region, a sentence each; none where it is right.
+
+    Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
+    middle and its boundaries are violated just beyond, and whether loops are as many as Euler's
+    count of the cells allows.
+    """
+    return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
+
+
+def _lost(found: Region) -> list[str]:
+    """Ask places all over the ranges: one that is free beyond rounding lies in a cell."""
+    if found.problem.blocked:  # what touches everywhere is feasible, and in no component
+        return []
+    ends = [(-np.pi, np.pi) if r is None else r for r in found.problem.ranges]
+    low, high = np.array(ends).T
+    q = low + (high - low) * SPREAD_OUT
+    evaluator = found.problem.evaluator
+    free = evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=1)
+    part = numbered(found.problem, found.cells, found.base, found.owner, q[free])
+    missed = q[free][part < 0]
+    return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
+
+
+def _off(found: Region) -> Iterator[str]:
+    """Yield the arcs and vertices that do not lie on their boundaries."""
+    arcs = [arc for part in found.found for loop in part.loops for arc in loop]
+    if not arcs:
+        return
+    column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
+    laid = arcs[0].laid  # all arcs are laid behind one another
+    first, end = np.array([arc.span for arc in arcs]).T
+    begun = ordered(laid.start[first], laid.base)[:, None]
+    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), begun], axis=1)
+    starts = {tuple(arc.start.tolist()) for arc in arcs}
+    for vertex in (vertex for part in found.found for vertex in part.vertices):
+        if tuple(vertex.q.tolist()) not in starts:
+            yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
+    limited = np.array([arc.row < 0 for arc in arcs])
+    rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
+    evaluator = found.problem.evaluator
+    within = ON_ARC * evaluator.sizes
+    held, more = (evaluator.at_least(q, least) for least in (-within, np.nextafter(within, np.inf)))
+    off = np.take_along_axis(~held | more, rows[:, None, None], axis=2)[..., 0]
+    if limited.any():
+        off[limited] = _to_limits(found, q[limited]) > ON_ARC
+    for k, place in np.argwhere(off).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+        if limited[k]:
+            by = float(_to_limits(found, q[k, place]))
+        else:
+            by = abs(float(evaluator.margins(q[k, place])[rows[k]]))
+        yield f"an arc of {arcs[k].boundary} is {by:.2g} off it at ({at})"
+    for k, place, column_number in np.argwhere(~held).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+        name = evaluator.names[column_number]
+        yield f"an arc of {arcs[k].boundary} runs where {name} is violated, at ({at})"
+
+
+def _to_limits(found: Region, q: Floats) -> Floats:
+    """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
+    plane, gaps = found.cells.plane, []
+    units = plane.base_unit, plane.lift_unit
+    for j, limits in enumerate(found.problem.ranges):
+        unit = units[0] if j == found.base else units[1]
+        gaps += [(q[..., j] - end) / unit for end in limits or ()]
+    return np.asarray(np.abs(gaps).min(axis=0))
+
+
+class _Cells:
+    """What the cells of a region are asked: free in the middle, and not beyond their ends."""
+
+    def __init__(self, found: Region) -> None:
+        self.cells, self.plane, inner = found.cells, found.cells.plane, found.inner
+        self.found = found.cells.decomposition
+        evaluator = found.problem.evaluator
+        self.evaluator, self.doubt = evaluator, CLEAR * evaluator.margin_rounding
+        self.column = {name: k for k, name in enumerate(evaluator.names)}
+        self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
+
+    def faults(self) -> list[str]:
+        """Return what is wrong."""
+        cells = self.cells
+        every = np.arange(len(cells.slabs))
+        if not len(every):
+            return []
+        start, end = cells.spans(every).T
+        t = start + INSIDE * (end - start)
+        low, high = cells.interval(every, t[:, None])[..., 0]
+        middle = low + INSIDE * (high - low)
+        found, q = list[str](), self._ordered(t, middle)
+        vague = which(~self.evaluator.at_least(q, self.doubt).all(axis=1))
+        kept = self.evaluator.at_least(q[vague], -self.doubt)
+        for k, held in zip(vague.tolist(), kept, strict=True):
+            if not (held.all() and self._is_free(k, t[k], start[k], end[k])):
+                found.append(f"a cell about {self._place(t[k], middle[k])} is not free")
+        for side, value, sense in ((0, low, -1.0), (1, high, 1.0)):
+            rows = which(cells.roots[:, side, 0] >= 0)
+            names = [self.found.names[s] for s in self.found.sets[rows, side].tolist()]
+            shut = self._shut(names, t[rows], value[rows], np.zeros(len(rows)), sense)
+            for k in rows[~shut].tolist():
+                if not self._is_shut(k, side, t[k], start[k], end[k]):
+                    place = self._place(t[k], value[k])
+                    found.append(f"beyond a cell's end at {place} nothing is violated")
+        return found + self._standing()
+
+    def _standing(self) -> list[str]:
+        """Look on both sides of what stands on a fibre."""
+        cells, elements = self.cells, self.cells.elements
+        found = []
+        for side, sense in ((0, 1.0), (1, -1.0)):
+            rows = which(~elements.joined & (elements.cell[side] >= 0))
+            line = elements.line[rows]
+            t = cells.abscissae[line]
+            ends = np.asarray(self.plane.ends)
+            if self.plane.base_range is not None:
+                kept = ~np.isin(t, ends)
+                rows, line, t = rows[kept], line[kept], t[kept]
+            v = (elements.low[rows] + elements.high[rows]) / 2
+            standing = [self.found.standing.get(k, ()) for k in line.tolist()]
+            other = elements.cell[1 - side][rows] >= 0  # it only touches: free on both sides
+            shut = self._shut(standing, t, v, np.full(len(rows), sense), 0.0) | other
+            for k in which(~shut).tolist():
+                if not standing[k]:
+                    found.append(f"nothing bounds a cell at {self._place(t[k], v[k])}")
+        return found
+
+    def _ordered(self, t: Floats, v: Floats) -> Floats:
+        return ordered(np.stack([t, v], axis=1), self.plane.base)
+
+    def _place(self, t: float, v: float) -> str:
+        one, other = (t, v) if self.plane.base == 0 else (v, t)
+        return f"({one:.9g}, {other:.9g})"
+
+    def _shut(
+        self, rows: list[tuple[int, ...]], t: Floats, v: Floats, along: Floats, up: float
+    ) -> Bools:
+        """Tell where some row's boundary is violated a little beside places, beyond rounding."""
+        shut = np.zeros(len(rows), dtype=np.bool_)
+        for step in BESIDE:
+            left = which(~shut)
+            if not len(left):
+                break
+            base = t[left] + step * self.plane.base_unit * along[left]
+            q = self._ordered(base, v[left] + step * self.plane.lift_unit * up)
+            violated = ~self.evaluator.at_least(q, -self.doubt)
+            for k, own in zip(left.tolist(), violated, strict=True):
+                shut[k] = any(own[self.column[self.names[row]]] for row in rows[k])
+        return shut
+
+    # --- in balls -------------------------------------------------------------------------------
+
+    def _exactly(self, k: int, t: float, start: float, end: float) -> Any:
+        """Return an exact base value inside a cell's slab."""
+        lines, slab = self.found.critical, int(self.cells.slabs[k])
+        if end - start > 1e3 * UNIT * max(abs(start), abs(end)):
+            return flint.arb(t)
+        with precision(LEVELS[-1]):
+            ends = [lines.ball(line, LEVELS[-1]) for line in (slab, slab + 1)]
+            return flint.arb((sum(ends) / 2).mid())
+
+    def _is_free(self, k: int, t: float, start: float, end: float) -> bool:
+        """Tell in balls whether a cell's middle is free."""
+        precise, base = self.found.precise, self._exactly(k, t, start, end)
+
+        def middle(bits: int) -> Any:
+            low, high = (self._root(k, side, base, bits) for side in (0, 1))
+            with precision(bits):
+                return low + (high - low) * 3 / 7
+
+        return _free(precise, base, middle)
+
+    def _root(self, k: int, side: int, base: Any, bits: int) -> Any:
+        form, branch, _ = self.cells.roots[k, side].tolist()
+        near = self.cells.interval([k], np.array([[float(base.mid())]]))[side, 0, 0]
+        return turned_root(self.found.precise, form, branch, base, bits, float(near))
+
+    def _is_shut(self, k: int, side: int, t: float, start: float, end: float) -> bool:
+        """Tell in balls whether a cell's boundary is violated just beyond one of its ends."""
+        precise, base = self.found.precise, self._exactly(k, t, start, end)
+
+        def beyond(bits: int) -> Any:
+            with precision(bits):
+                step = flint.arb(2) ** -min(bits // 4, 100) * self.plane.lift_unit
+                return self._root(k, side, base, bits) + (step if side else -step)
+
+        count, contacts = self.plane.count, self.plane.contacts
+        for row in self.found.names[int(self.found.sets[k, side])]:
+            if row < count:
+                if precise.sign(row, base, beyond) < 0:
+                    return True
+            elif not apart(precise, int(contacts.pair[row - count]), base, beyond):
+                return True
+        return self._goes_on(k, side, base)
+
+    def _goes_on(self, k: int, side: int, base: Any) -> bool:
+        """Tell whether another cell begins where a cell ends: a curve is only touched there."""
+        cells, t = self.cells, np.array([[float(base.mid())]])
+        own = which(cells.slabs == cells.slabs[k])
+        ends = cells.interval(own, np.broadcast_to(t, (len(own), 1)))[..., 0]
+        here = ends[side, own == k][0]
+        gap = ends[1 - side] - here
+        if cells.circle:
+            gap -= TURN * np.round(gap / TURN)
+        return bool((np.abs(gap) <= BESIDE[0] * self.plane.lift_unit).any())
+
+
+def _free(precise: Precise, base: Any, place: Any) -> bool:
+    """Tell in balls whether every form is positive at a place and all bodies are apart."""
+    plane = precise.plane
+    return all(precise.sign(row, base, place) > 0 for row in range(plane.count)) and all(
+        apart(precise, pair, base, place) for pair in range(plane.contacts.pairs)
+    )
+
+
+def _loops(found: Region) -> list[str]:
+    """Compare the number of loops of each component with Euler's count of its cells.
+
+    A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
+    where they are whole circles, and a point between two elements that join the same cells 1. In a
+    plane or on a cylinder as many loops bound it as 2 less that count; on a torus, of which it is
+    all but some holes, 2 less.
+    """
+    cells, owner = found.cells, found.owner
+    part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
+    part[part >= len(found.found)] = -1
+    wrong = [] if (part >= 0).all() else ["a cell is in no component"]
+    if len(found.found) != len(cells.parts.cells):
+        wrong.append(f"{len(found.found)} components, but {len(cells.parts.cells)} of cells")
+    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.found))
+    elements = cells.elements
+    joined = which(elements.joined & ~cells.is_circle)
+    for rows, change in ((joined, -1), (_between(cells), 1)):
+        parts = part[elements.cell[0, rows]]
+        np.add.at(count, parts[parts >= 0], change)
+    for k, component in enumerate(found.found[: len(count)]):
+        wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
+        if len(component.loops) not in wanted:
+            wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
+    return wrong
+
+
+def _between(cells: CellComplex) -> Ints:
+    """Return the elements whose upper end lies between it and the next, both joining one pair."""
+    elements = cells.elements
+    n = len(elements.line)
+    if not n:
+        return np.zeros(0, dtype=np.int64)
+    following = np.arange(1, n + 1)
+    new = np.append(elements.line[1:] != elements.line[:-1], True)
+    first = np.append(True, new[:-1])
+    last = which(new)
+    following[last] = which(first) if cells.circle else last
+    same = (elements.cell == elements.cell[:, following]).all(axis=0)
+    alone = following == np.arange(n)
+    # Of a circle that is one element nothing lies between: it has no end.
+    return which(same & elements.joined & elements.joined[following] & ~alone)

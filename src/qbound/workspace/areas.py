@@ -6,10 +6,13 @@ the places that the arm reaches are intervals: the fibres of the region moved al
 (or length), one set a posture. The lengths of their union and intersection, times abs(det J),
 integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
 samples.
+
+A report gathers what is asked of a workspace: areas, the postures of places, a passage.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -17,12 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
-from qbound.region import Component, NoHomeError, Problem
-from qbound.region.arcs import Arc, integrate
-from qbound.workspace.cover import Cover
-from qbound.workspace.fibres import Fibres, find_fibres
-from qbound.workspace.layers import Layers, Ranges
-from qbound.workspace.planar import PlanarArm, Posture, postures
+from qbound.region import Component, NoHomeError, Problem, Region
+from qbound.region.outline import Arc, integrate
+from qbound.workspace.layers import Cover, Fibres, Layers, Ranges, find_fibres
+from qbound.workspace.passage import Passage, find_passage
+from qbound.workspace.planar import PlanarArm, Posture, planar_arm, postures
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""
@@ -241,3 +243,80 @@ def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> F
     if arm.singularity is None:
         return find_fibres(problem, home)
     return find_fibres(problem.with_form(SINGULAR, side * arm.singular.coefficients), home)
+
+
+@dataclass(frozen=True, eq=False)
+class PlaceReport:
+    """A place of the plane and what reaches it.
+
+    Attributes
+    ----------
+    place : tuple of two float
+        Length.
+    postures : list of (Posture, int or None)
+        With the component of each; None where it is not safe.
+    safe : int
+        Number of safe postures: 0, 1 or 2.
+    """
+
+    place: tuple[float, float]
+    postures: list[tuple[Posture, int | None]]
+    safe: int
+
+
+@dataclass(frozen=True, eq=False)
+class WorkspaceReport:
+    """The workspace of the home component with what was asked of it.
+
+    Attributes
+    ----------
+    workspace : Workspace
+    safe_and_unsafe : float
+        Area of the places that are reached both safely and unsafely; length squared.
+    places : list of PlaceReport
+    passage : Passage or None
+        None where none was asked for.
+    """
+
+    workspace: Workspace
+    safe_and_unsafe: float
+    places: list[PlaceReport]
+    passage: Passage | None
+
+    @property
+    def all_safe(self) -> bool:
+        """Whether every place is reached safely and the passage, if any, is possible."""
+        return all(at.safe for at in self.places) and (not self.passage or self.passage.possible)
+
+
+def workspace_report(
+    region: Region,
+    places: Sequence[tuple[float, float]] = (),
+    poses: Sequence[ArrayLike] = (),
+) -> WorkspaceReport:
+    """Find the workspace of the home component, postures of places, a passage between two poses.
+
+    Parameters
+    ----------
+    places : sequence of (float, float)
+        In the plane of motion; length.
+    poses : sequence of two array_like, shape (2,), or none
+        Start and goal of a passage; rad or length.
+
+    Raises
+    ------
+    NoHomeError
+        If the home pose is in no component.
+    ValueError
+        If the tool leaves its plane: a ``NoPlanarWorkspaceError``.
+    """
+    robot, problem = region.robot, region.problem
+    arm, home = planar_arm(robot, problem.held), robot.home[list(problem.joints)]
+    one, other = (robot.joints[j].limits for j in problem.joints)
+    workspace = find_workspace(arm, problem, home)
+    return WorkspaceReport(
+        workspace,
+        overlap(arm, problem, home, (one, other)),
+        [PlaceReport(at, workspace.postures(at), workspace.safe_postures(at)) for at in places],
+        find_passage(workspace.region, *poses) if poses else None,
+    )

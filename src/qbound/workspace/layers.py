@@ -1,31 +1,327 @@
-"""What an arm covers on each circle or line along which its first joint moves the tool.
+"""The feasible values of the first joint, laid over each other on the circles or lines of the tool.
 
-A distance u of the second joint from the singularity names the circle (`planar`). On it the safe
-places of one posture are the fibre of the region, moved along by the phase of the tool; what is
-between them is reached, too, but not safely. Laid over each other, the intervals of all postures
-tell how long a part of the circle is reached in one posture, in both, safely or not.
+The region is a set of intervals of the first joint, one for each value of the second: its fibres.
+The first joint moves the tool along a circle or a line, so each fibre covers intervals of it. The
+ends of all intervals cut the circle into pieces; an interval holds a piece or it does not. The
+lengths of unions and intersections are sums over pieces. Their order changes only at critical
+distances from the singularity, among them the crossings of the images of two postures' boundaries.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import pairwise
+from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev, polynomial
+from numpy.typing import ArrayLike, NDArray
 
-from qbound.arrays import Floats
-from qbound.forms.angles import nearest_turn
-from qbound.forms.harmonic import HarmonicForm
-from qbound.region import Problem
-from qbound.region.arcs import NODES, converged, legendre
-from qbound.tolerances import CHORD, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL
-from qbound.workspace.cover import UNSAFE, Cover, Interval, cover
-from qbound.workspace.fibres import Fibres
-from qbound.workspace.image_crossings import crossing_distances
+from qbound.arrays import Bools, Complexes, Floats
+from qbound.forms.angles import TURN, nearest_turn
+from qbound.forms.harmonic import HarmonicForm, basis
+from qbound.region import Problem, Region, UnresolvedError, solve
+from qbound.region.outline import NODES, converged, legendre
+from qbound.tolerances import CHORD, NEAR_CIRCLE, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, turns_within
+
+UNSAFE: Final = -1
+"""In place of an aspect: configurations that are in none."""
+
+
+class Interval(NamedTuple):
+    """Places along n circles or lines that one posture reaches.
+
+    Attributes
+    ----------
+    side : int
+        Sign of det J.
+    aspect : int
+        Index of the aspect on that side that reaches them safely, or `UNSAFE`.
+    low, high : ndarray, shape (n,)
+        Ends, angle or length; continuous from one circle to the next.
+    """
+
+    side: int
+    aspect: int
+    low: Floats
+    high: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Cover:
+    """Pieces of n circles or lines, and the intervals that hold them.
+
+    Attributes
+    ----------
+    start : ndarray, shape (n,)
+        Place from which the ends are counted.
+    ends : ndarray, shape (e + 1, n)
+        Ends of the pieces, ascending.
+    inside : ndarray of bool, shape (k, e, n)
+        Which of the k intervals hold each piece.
+    width : ndarray, shape (k, n)
+        Of each interval; more than a full turn where it overlaps itself.
+    side, aspect : ndarray of int, shape (k,)
+        Of each interval.
+    """
+
+    start: Floats
+    ends: Floats
+    inside: Bools
+    width: Floats
+    side: NDArray[np.int64]
+    aspect: NDArray[np.int64]
+
+    @property
+    def safe(self) -> Bools:
+        """Tell which intervals are safe, shape (k,)."""
+        return np.asarray(self.aspect != UNSAFE)
+
+    def by(self, side: int, aspect: int | None = None) -> Bools:
+        """Tell which intervals have one sign of det J, and belong to one aspect or to any."""
+        of_aspect = self.safe if aspect is None else self.aspect == aspect
+        return np.asarray(of_aspect & (self.side == side))
+
+    def held(self, chosen: Bools) -> Bools:
+        """Tell which pieces any of some intervals holds, shape (e, n)."""
+        return np.asarray(self.inside[chosen].any(axis=0))
+
+    def length(self, pieces: Bools) -> Floats:
+        """Add up the lengths of some pieces, shape (n,)."""
+        return np.asarray((np.diff(self.ends, axis=0) * pieces).sum(axis=0))
+
+    def reached(self, chosen: Bools) -> Floats:
+        """Return the length of the union of some intervals, shape (n,)."""
+        return self.length(self.held(chosen))
+
+    def swept(self, chosen: Bools) -> Floats:
+        """Return the sum of the widths of some intervals, full turns included, shape (n,)."""
+        return np.asarray(self.width[chosen].sum(axis=0))
+
+
+def cover(intervals: Sequence[Interval], n: int, period: float | None) -> Cover:
+    """Lay intervals over each other on n circles of a period, or on n lines (None).
+
+    The order of ends may be different at the first circle and the last only if they coincide.
+    """
+    # What has no width has no end either: a fibre that is a whole circle leaves such a gap.
+    kept = [i for i in intervals if (i.high - i.low).max() > NEGLIGIBLE]
+    if not kept:
+        nothing = np.zeros(0, dtype=np.int64)
+        none = np.zeros((0, n))
+        return Cover(np.zeros(n), np.zeros((1, n)), np.zeros((0, 0, n), bool), none, *2 * [nothing])
+    side, aspect = (
+        np.array(column) for column in zip(*((i.side, i.aspect) for i in kept), strict=True)
+    )
+    low, high = np.array([i.low for i in kept]), np.array([i.high for i in kept])
+    laid = _on_lines(low, high) if period is None else _on_circles(low, high, period)
+    return Cover(*laid, np.maximum(high - low, 0), side, aspect)
+
+
+def _on_lines(low: Floats, high: Floats) -> tuple[Floats, Floats, Bools]:
+    """Return start, ends and which interval holds which piece."""
+    ends = np.sort(np.concatenate([low, high]), axis=0)
+    middles = (ends[:-1] + ends[1:]) / 2
+    inside = (low[:, None] < middles) & (middles < high[:, None])
+    return np.zeros(low.shape[1]), ends, inside
+
+
+def _on_circles(low: Floats, high: Floats, period: float) -> tuple[Floats, Floats, Bools]:
+    """Return start, ends and which interval holds which piece.
+
+    The circle is cut at an end of an interval, so that no other end moves across the cut; an
+    interval that is the whole circle has no end.
+    """
+    width = np.maximum(high - low, 0)
+    whole = width[:, low.shape[1] // 2] >= period - TOUCH
+    start = low[int(whole.argmin())]
+    low = np.where(whole[:, None], 0, _first_turn(low - start, period))
+    high = low + np.where(whole[:, None], period, width)
+    around = np.array([np.zeros_like(start), np.full_like(start, period)])
+    ends = np.sort(np.concatenate([low, _first_turn(high, period), around]), axis=0)
+    middles = (ends[:-1] + ends[1:]) / 2
+    inside = (low[:, None] < middles) & (middles < high[:, None])
+    return start, ends, inside | (middles + period < high[:, None])
+
+
+def _first_turn(ends: Floats, period: float) -> Floats:
+    """Shift ends by full turns, continuous along n, to where their middle is in the first turn.
+
+    An end that coincides with the cut stays beside it, on whichever side rounding puts it.
+    """
+    ends = np.unwrap(ends, axis=1, period=period)
+    middle = ends[:, [ends.shape[1] // 2]]
+    return np.asarray(ends - period * np.floor((middle + TOUCH) / period))
+
+
+@dataclass(frozen=True, eq=False)
+class Fibres(Region):
+    """A region whose cells have the second joint as their base."""
+
+    @property
+    def lines(self) -> Floats:
+        """Values of the second joint between which the fibres keep their form."""
+        return np.asarray(self.cells.abscissae)
+
+    def over(self, q2: float) -> tuple[float, list[int]]:
+        """Return the cells over a value of the second joint, by rising first joint.
+
+        Returns
+        -------
+        shift : float
+            Full turns to subtract from the second joint to come into the cells' own range.
+        cells : list of int
+        """
+        low = self.lines[0]
+        turns = math.floor((q2 - low) / TURN) if self.problem.ranges[1] is None else 0
+        slab = int(np.searchsorted(self.lines, q2 - TURN * turns)) - 1
+        return TURN * turns, [k for k, cell in enumerate(self.cells.cells) if cell.slab == slab]
+
+    def intervals(self, cells: list[int], q2: Floats) -> Floats:
+        """Return the ends of cells' intervals of the first joint over their slab, (2, k, n)."""
+        return self.cells.interval(cells, np.broadcast_to(q2, (len(cells), len(q2))))
+
+    def inside(self, component: int) -> Floats:
+        """Return a configuration well inside a component: the middle of its widest cell."""
+        own = [k for k, owner in self.owner.items() if owner == component]
+        spans = self.cells.spans(own)
+        middles = spans.mean(axis=1, keepdims=True)
+        low, high = self.cells.interval(own, middles)[..., 0]
+        widest = np.minimum(high - low, np.diff(spans)[:, 0]).argmax()
+        return np.array([(low + high)[widest] / 2, middles[widest, 0]])
+
+
+def find_fibres(problem: Problem, home: ArrayLike) -> Fibres:
+    """Decompose a problem over its second joint; arguments as `qbound.region.region.solve`.
+
+    Raises
+    ------
+    UnresolvedError
+        If the structure could be decided over the first joint only.
+    """
+    region = solve(problem, home, base=1)
+    if region.base != 1:
+        raise UnresolvedError("the fibres over the second joint could not be decided")
+    return Fibres(**vars(region))
+
+
+SAMPLES: Final = 32
+"""Values of u that determine a resultant; its degree is 8 in cos u and sin u (second joint
+revolute), or 12 in u (prismatic)."""
+
+
+def crossing_distances(
+    arm: PlanarArm, forms: HarmonicForm, ends: Sequence[float], farthest: float
+) -> Floats:
+    """Return every distance u from the singularity at which both postures' boundaries may cross.
+
+    Some are spurious, which costs time. Boundaries that coincide for every u, as walls for the tool
+    itself do, give none.
+
+    Parameters
+    ----------
+    forms : HarmonicForm, shape (m,)
+        Of the two joints.
+    ends : sequence of float
+        Ends of the first joint's range, boundaries too.
+    farthest : float
+        Largest u of interest; rad or length.
+    """
+    if arm.singularity is None:
+        return np.zeros(0)
+    u = farthest * _nodes(arm) if arm.kinds[1] == "prismatic" else _nodes(arm)
+    table = _first_joint_forms(arm, forms, ends)
+    one, other = (_along(arm, table, side, u) for side in (1, -1))
+    # The pair (j, i) is the pair (i, j) at -u, which swaps the postures.
+    i, j = np.triu_indices(len(table))
+    resultant = _circle_resultant if arm.period else _line_resultant
+    squared = np.abs(basis(arm.kinds[1], arm.second(1, u)) @ arm.v) ** 2
+    values = resultant(one[i], other[j], squared / squared.max())
+    found = [np.zeros(0), *(_roots(arm, row) for row in values)]
+    distances = np.abs(np.concatenate(found))
+    if arm.kinds[1] == "prismatic":
+        distances = farthest * distances
+    return np.asarray(distances[distances < farthest])
+
+
+def _nodes(arm: PlanarArm) -> Floats:
+    """Return the values of u, or of u by the farthest, from which a resultant is interpolated."""
+    if arm.kinds[1] == "revolute":
+        return np.arange(SAMPLES) * math.tau / SAMPLES
+    return chebyshev.chebpts1(SAMPLES)
+
+
+def _first_joint_forms(arm: PlanarArm, forms: HarmonicForm, ends: Sequence[float]) -> Floats:
+    """Return the forms that depend on the first joint, and one for each end of its range.
+
+    Shape (m, 3, 3): coefficients in the second joint, then in the first.
+    """
+    table = np.swapaxes(np.asarray(forms.coefficients, dtype=float), 1, 2)
+    table = table[table[:, :, 1:].any(axis=(1, 2))]
+    limits = np.zeros((len(ends), 3, 3))
+    for form, end in zip(limits, ends, strict=True):
+        # sin(q1 - end), which is zero half a turn away too, or q1 - end
+        form[0] = (0, -math.sin(end), math.cos(end)) if arm.period else (-end, 1, 0)
+    return np.concatenate([table, limits])
+
+
+def _along(arm: PlanarArm, table: Floats, side: int, u: Floats) -> Complexes:
+    """Return each form's coefficients in the place along the circle or line, shape (m, 2 or 3, n).
+
+    Circle: c0 and the complex amplitude times abs(v). Line: the powers 1, x, x^2.
+    """
+    columns = basis(arm.kinds[1], arm.second(side, u))
+    c0, c1, c2 = np.moveaxis(np.einsum("nb,mbl->lmn", columns, table), 0, 0)
+    v = columns @ arm.v
+    if arm.period:  # q1 = along - arg v
+        stacked = np.stack([c0 + 0j, (c1 + 1j * c2) * v / np.abs(v).max()], axis=1)
+    else:  # q1 = along - Re v
+        x = v.real
+        stacked = np.stack([c0 - c1 * x + c2 * x * x, c1 - 2 * c2 * x, c2], axis=1) + 0j
+    return np.asarray(stacked / np.abs(stacked).max(axis=(1, 2), keepdims=True))
+
+
+def _circle_resultant(a: Complexes, b: Complexes, squared: Floats) -> Floats:
+    """Vanish where two forms c0 abs(v) + Re(amplitude exp(-i along)) share a root."""
+    determinant = (a[:, 1].conj() * b[:, 1]).imag
+    ends = ~np.any((a[:, 0] != 0) | (b[:, 0] != 0), axis=1)
+    numerator = np.abs(a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]) ** 2
+    # Two ends of the range have c0 = 0: the square would double their roots.
+    return np.asarray(
+        np.where(ends[:, None], determinant, squared * numerator - determinant * determinant)
+    )
+
+
+def _line_resultant(a: Complexes, b: Complexes, _: Floats) -> Floats:
+    """Vanish where two forms of degree 1 or 2 in the place along a line share a root."""
+    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a.real, 1, 0), np.moveaxis(b.real, 1, 0)
+    p, q = a1 * b0 - a0 * b1, a2 * b0 - a0 * b2
+    affine = ~np.any((a2 != 0) | (b2 != 0), axis=1)
+    return np.asarray(np.where(affine[:, None], p, q * q - (a2 * b1 - a1 * b2) * p))
+
+
+def _roots(arm: PlanarArm, values: Floats) -> Floats:
+    """Return the real roots of a polynomial given by its values at the nodes."""
+    if np.abs(values).max() <= NEGLIGIBLE:  # the boundaries coincide
+        return np.zeros(0)
+    if arm.kinds[1] == "prismatic":
+        c = _trimmed(chebyshev.chebfit(_nodes(arm), values, SAMPLES - 1))
+        x = chebyshev.chebroots(c)
+        return np.asarray(x.real[np.abs(x.imag) <= NEAR_CIRCLE])
+    c = np.fft.fftshift(np.fft.fft(values)) / SAMPLES
+    z = polynomial.polyroots(_trimmed(_trimmed(c)[::-1])[::-1])
+    return np.asarray(np.angle(z[np.abs(np.abs(z) - 1) <= NEAR_CIRCLE]))
+
+
+def _trimmed(c: NDArray[Any]) -> NDArray[Any]:
+    """Drop coefficients at the upper end that are rounding of zero."""
+    kept = np.flatnonzero(np.abs(c) > NEGLIGIBLE * np.abs(c).max())
+    return c[: kept[-1] + 1]
+
 
 Ranges = tuple[Range, Range]
 Slab = tuple[float, float]

@@ -15,8 +15,8 @@ from qbound.arrays import Floats
 from qbound.geometry import polygon
 from qbound.geometry.bisection import last_before
 from qbound.region import Component
-from qbound.region.arcs import Arc
-from qbound.workspace.fibres import Fibres
+from qbound.region.outline import Arc
+from qbound.workspace.layers import Fibres
 from qbound.workspace.planar import turns_within
 
 Loop = tuple[Arc, ...]
@@ -67,7 +67,7 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
     Parameters
     ----------
     region : Fibres
-        Of `qbound.workspace.fibres.find_fibres`; that of one side of the singular curve
+        Of `qbound.workspace.layers.find_fibres`; that of one side of the singular curve
         (`Workspace.covers.sides`) asks for a path that does not cross the curve.
     start, goal : array_like, shape (2,)
         rad or length. Joints without limits may turn on: full turns do not count.
