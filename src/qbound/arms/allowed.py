@@ -138,8 +138,8 @@ def allowed_collisions(
     post short never
     long short never
     """
-    exact = exact_robot(robot)
     plain = robot if isinstance(robot, Robot) else load_robot(robot)
+    exact = exact_robot(plain)
     pairs = list(combinations(links(exact), 2))
     found: list[LinkContact] = []
     for one, other in pairs:

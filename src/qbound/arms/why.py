@@ -24,10 +24,10 @@ from qbound.arrays import Floats
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot, robot_text, written_text
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, certify, no_certificate
+from qbound.proofs.certify import Certificate, Subject, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
 from qbound.proofs.no_path import certify_disconnected, certify_no_path
@@ -191,18 +191,15 @@ def why(
     >>> found.answer, found.separation, found.certificate.verdict.value
     ('separated', None, 'proved')
     """
-    if isinstance(source, Robot):
-        text, robot = written_text(source), source
-    else:
-        text, _ = robot_text(source)
-        robot = load_robot(source)
+    robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
+    subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
         with during("a proof that an end is infeasible"):
-            return _infeasible(text, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
+            return _infeasible(subject, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
     with during("ranges that nothing passes"):
-        asked = _Asked(source, text, robot, ends, hold, seed, separations(source))
+        asked = _Asked(subject, robot, ends, hold, seed, separations(robot))
     tried = []
     for what, attempt in _ATTEMPTS.items():
         with during(what):
@@ -218,6 +215,7 @@ def why_bytes(robot: Robot) -> int:
 
     Examples
     --------
+    >>> from qbound import load_robot
     >>> why_bytes(load_robot("ur5")) // 10**6  # megabytes
     27
     """
@@ -229,8 +227,7 @@ def why_bytes(robot: Robot) -> int:
 class _Asked:
     """What is asked, and what is blocked."""
 
-    source: str | Path | Robot
-    text: str
+    subject: Subject
     robot: Robot
     ends: Floats
     hold: bool
@@ -262,7 +259,7 @@ class _Asked:
             If its bodies are not exactly in one plane, or an outline has no convex parts.
         """
         try:
-            return exact_problem(exact_robot(self.source), self._held)
+            return exact_problem(exact_robot(self.robot), self._held)
         except ValueError as error:
             raise Unproved(str(error)) from None
 
@@ -299,13 +296,13 @@ def differing(ends: Floats) -> list[int]:
 
 
 def _infeasible(
-    text: str, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
+    subject: Subject, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
 ) -> Why:
     """Certify the worst of what is violated."""
     refuted = None
     if not no_certificate(robot):
         point = statements.points_of(robot, ends)[bad[0][0]]
-        certificate = certify(text, statements.box(point, point))
+        certificate = certify(subject, statements.box(point, point))
         refuted = certificate if certificate.verdict is Verdict.REFUTED else None
     return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
 
@@ -320,7 +317,7 @@ def _separated(asked: _Asked) -> Why | str:
     proved = None
     if not no_certificate(asked.robot):
         ranges = [_widest(block) for block in parted.blocks]
-        certificate = certify_no_path(asked.text, asked.ends[0], asked.ends[1], ranges)
+        certificate = certify_no_path(asked.subject, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
     return asked.answer("separated", separation=parted, certificate=proved)
 
@@ -365,7 +362,7 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
             return None
         least = float(least_margins(asked.robot, path)[1].min())
         return asked.answer("connected", path=path, least=least, held=held)
-    proved = _proved(asked.text, asked.robot, path)
+    proved = _proved(asked.subject, asked.robot, path)
     if proved is None:
         return None
     corners, margin, least, certificate = proved
@@ -379,14 +376,16 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
     )
 
 
-def _proved(text: str, robot: Robot, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
+def _proved(
+    subject: Subject, robot: Robot, path: Floats
+) -> tuple[Floats, str, float, Certificate] | None:
     """Certify a path: its corners as they are written, the margin, what was seen, the file."""
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
     likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
     for margin in dict.fromkeys((likely, "0")):
-        certificate = certify(text, statements.path(points, margin))
+        certificate = certify(subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
     return None
@@ -503,7 +502,7 @@ def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
     if no_certificate(asked.robot):
         return None
-    certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
+    certificate = certify_disconnected(asked.subject, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
 
 

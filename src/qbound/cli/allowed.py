@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
         shown = shown or progress("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(options.robot, cells=options.cells, tell=tell)
+    found = allowed_collisions(robot, cells=options.cells, tell=tell)
     document = (options.json, lambda: json_text(allowed_document(robot, found)))
     srdf = (options.disabled, lambda: srdf_text(robot, found, neighbours=options.adjacent))
     deliver([document, srdf], allowed_lines(robot, found))

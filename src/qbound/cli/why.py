@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     if options.svg is not None:
         check_targets([options.svg], kinds=("svg",))
     start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
-    found = why(options.robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    found = why(robot, start, goal, seed=options.seed, hold=options.hold, during=working)
     outputs: list[Output] = [
         (options.json, lambda: json_text(why_document(found))),
         (options.svg, lambda: why_picture(found)),

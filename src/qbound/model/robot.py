@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
 from qbound.model.values import joint_values
+
+if TYPE_CHECKING:
+    from qbound.model.source import Source
 
 __all__ = [
     "JOINT_TYPES",
@@ -80,8 +83,8 @@ class Robot:
     >>> len(arm.boundaries), len(arm.used)
     (0, 8)
 
-    What it was read from, the text of a file or its content, is kept in `source` and not compared:
-    exact numbers are looked up there (`qbound.model.exact`).
+    What it was read from is kept in `source` and not compared: exact numbers are looked up there
+    (`qbound.model.exact`).
     """
 
     name: str
@@ -97,7 +100,7 @@ class Robot:
     collisions: bool = False
     clearance: float = 0.0
     allowed: tuple[frozenset[str], ...] = ()
-    source: str | Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         """Fit a line: name, joints with their kinds, number of boundaries, of pairs of bodies."""
