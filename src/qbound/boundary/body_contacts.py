@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-import numpy as np
-
 from qbound.boundary.contacts import (
     Contacts,
     Core,
@@ -19,6 +17,7 @@ from qbound.boundary.contacts import (
     pose,
 )
 from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
+from qbound.boundary.poses import flat_steps
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 
 Found = tuple[str, Features, tuple[int, int]]
@@ -53,7 +52,7 @@ def body_contacts(
     found: list[Found] = []
     for boundary in about:
         bodies = bounded_bodies(robot, boundary)
-        depths = [robot.depth(body.frame) for body in bodies]
+        depths = [robot.steps_to(body.frame) for body in bodies]
         if isinstance(boundary, BodyPair):
             found += _of_pair(robot, boundary, bodies, between(min(depths), max(depths)))
         elif isinstance(boundary, HalfSpace):
@@ -62,17 +61,18 @@ def body_contacts(
 
 
 def _moves(robot: Robot, held: Mapping[int, float]) -> list[Move]:
-    """Return every joint as it moves in the plane, in the axes at all joint values 0."""
-    plane, free = robot.plane, robot.free(held)
+    """Return every step as it moves in the plane, in the axes at all joint values 0."""
+    free = robot.free(held)
+    flat = zip(robot.steps, robot.plane.senses, flat_steps(robot), strict=True)
     return [
         Move(
-            origin=plane.flat(joint.parent, joint.origin),
+            origin=origin,
             turn=sense,
-            along=np.zeros(2) if sense else plane.flat(joint.parent, joint.mount @ joint.axis),
-            free=free.index(j) if j in free else None,
-            value=held.get(j, 0.0),
+            along=along,
+            free=free.index(step.joint) if step.joint in free else None,
+            value=held.get(step.joint, 0.0),
         )
-        for j, (joint, sense) in enumerate(zip(robot.joints, plane.senses, strict=True))
+        for step, sense, (origin, along) in flat
     ]
 
 
@@ -80,10 +80,10 @@ def _of_pair(
     robot: Robot, boundary: BodyPair, bodies: Sequence[Body], moved: Pose
 ) -> Iterator[Found]:
     """Yield the features of the parts of two bodies, seen from the one nearer to the base."""
-    swapped = robot.depth(bodies[0].frame) > robot.depth(bodies[1].frame)
+    swapped = robot.steps_to(bodies[0].frame) > robot.steps_to(bodies[1].frame)
     ordered = bodies[::-1] if swapped else bodies
     near, far = (_cores(robot, body) for body in ordered)
-    depths = robot.depth(ordered[0].frame), robot.depth(ordered[1].frame)
+    depths = robot.steps_to(ordered[0].frame), robot.steps_to(ordered[1].frame)
     for (one, radius), (other, other_radius) in product(near, far):
         keep = radius + other_radius + boundary.clearance
         yield boundary.name, features(one, other, moved, keep, swapped=swapped), depths
@@ -96,7 +96,7 @@ def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose) -> Iterator[Fo
     level = wall.offset - off * float(wall.normal @ robot.plane.normal)
     for core, radius in _cores(robot, body):
         for one in heights(core, moved, normal, level + radius):
-            yield wall.name, one, (0, robot.depth(body.frame))
+            yield wall.name, one, (0, robot.steps_to(body.frame))
 
 
 def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:

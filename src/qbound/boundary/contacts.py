@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.errors import Sizes, coefficient_errors
+from qbound.forms.harmonic import Kind, times_function
 from qbound.tolerances import ROUNDING
 
 Tables = tuple[Floats, Floats, Floats, Floats]
@@ -34,12 +35,12 @@ SIDES = 4
 
 @dataclass(frozen=True)
 class Move:
-    """A joint in the plane of motion, as tables see it.
+    """A step of the chain in the plane of motion, as tables see it.
 
     Attributes
     ----------
     origin : ndarray, shape (2,)
-        From the parent's frame to the joint's, at joint value 0; length.
+        From the frame before to the step's, at joint value 0; length.
     turn : int
         +1 or -1 for a turn anticlockwise or clockwise; 0 for a slide.
     along : ndarray, shape (2,)
@@ -55,6 +56,11 @@ class Move:
     along: Floats
     free: int | None = None
     value: float = 0.0
+
+    @property
+    def kind(self) -> Kind:
+        """Of its joint's functions."""
+        return "revolute" if self.turn else "prismatic"
 
 
 class Pose(NamedTuple):
@@ -84,6 +90,7 @@ def pose(moves: Sequence[Move]) -> Pose:
     sizes = Sizes(float(sum(lengths)), slides, len(moves))
     at, back, squared = (_constant(np.zeros(n)) for n in (2, 2, ()))
     found = Pose(_constant(np.eye(2)), at, back, squared, sizes)
+    passed = set[int]()
     for move in moves:
         found = _shifted(found, move.origin)
         if move.free is None:
@@ -91,7 +98,9 @@ def pose(moves: Sequence[Move]) -> Pose:
             found = _rotated(found, np.array([[c, -s], [s, c]])) if move.turn else found
             found = _shifted(found, move.value * move.along)
         else:
-            found = (_turned if move.turn else _slid)(found, move, move.free)
+            kind = move.kind if move.free in passed else None
+            found = (_turned if move.turn else _slid)(found, move, move.free, kind)
+            passed.add(move.free)
     return found
 
 
@@ -100,14 +109,6 @@ def _constant(value: Floats) -> Floats:
     table = np.zeros((*np.shape(value), 3, 3))
     table[..., 0, 0] = value
     return table
-
-
-def _times(table: Floats, joint: int, factor: int) -> Floats:
-    """Multiply what a joint does not move yet by that joint's first or second factor."""
-    product = np.zeros_like(table)
-    axis = joint - 2
-    np.moveaxis(product, axis, 0)[factor] = np.take(table, 0, axis=axis)
-    return product
 
 
 def _shifted(now: Pose, by: Floats) -> Pose:
@@ -127,26 +128,27 @@ def _rotated(now: Pose, by: Floats) -> Pose:
     return now._replace(turn=turn, back=np.einsum("ba,bij->aij", by, now.back))
 
 
-def _turned(now: Pose, move: Move, joint: int) -> Pose:
+def _turned(now: Pose, move: Move, joint: int, kind: Kind | None) -> Pose:
     """Turn by a free joint: cosine times what was, sine times that a quarter turn on."""
     on = _rotated(now, move.turn * QUARTER)
     turn, back = (
-        _times(one, joint, 1) + _times(other, joint, 2)
+        times_function(one, joint - 2, 1, kind) + times_function(other, joint - 2, 2, kind)
         for one, other in ((now.turn, on.turn), (now.back, on.back))
     )
     return now._replace(turn=turn, back=back)
 
 
-def _slid(now: Pose, move: Move, joint: int) -> Pose:
+def _slid(now: Pose, move: Move, joint: int, kind: Kind | None) -> Pose:
     """Go on along a free slide, by its value times a direction."""
     ahead = np.einsum("abij,b->aij", now.turn, move.along)
     product = 2 * np.tensordot(move.along, now.back, axes=1)
-    length = _constant(np.asarray(move.along @ move.along))
+    length, axis = _constant(np.asarray(move.along @ move.along)), joint - 2
+    gain = times_function(product, axis, 1, kind)
     return Pose(
         now.turn,
-        now.at + _times(ahead, joint, 1),
-        now.back + _times(_constant(move.along), joint, 1),
-        now.squared + _times(product, joint, 1) + _times(length, joint, 2),
+        now.at + times_function(ahead, axis, 1, kind),
+        now.back + times_function(_constant(move.along), axis, 1),
+        now.squared + gain + times_function(length, axis, 2),
         now.sizes,
     )
 

@@ -11,7 +11,7 @@ is zero is so too, and no ball.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,9 +21,11 @@ import numpy as np
 from qbound.arrays import Array
 from qbound.boundary.contacts import Contacts, anticlockwise
 from qbound.boundary.parts import bounded_bodies
+from qbound.forms.factors import FACTORS
+from qbound.forms.harmonic import Kind, times_function
 from qbound.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
 from qbound.model.frames import cross
-from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
+from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from qbound.tolerances import ROUNDING, ZERO_AMPLITUDE
 
 Vector = tuple[Any, Any]
@@ -131,28 +133,36 @@ class ExactPose:
         back = u[0] * c - v[0] * s, u[1] * c - v[1] * s
         return ExactPose(self.axes, turn, self.at, back, self.squared)
 
-    def freely_turned(self, sense: int, joint: int) -> ExactPose:
+    def freely_turned(self, sense: int, joint: int, kind: Kind | None) -> ExactPose:
         """Turn by a free joint."""
         on = self.rotated(rational(0), rational(sense))
         turn, back = (
             tuple(
-                _times(one, joint, 1) + _times(other, joint, 2)
+                self._times(one, joint, 1, kind) + self._times(other, joint, 2, kind)
                 for one, other in zip(own, quarter, strict=True)
             )
             for own, quarter in ((self.turn, on.turn), (self.back, on.back))
         )
         return ExactPose(self.axes, (turn[0], turn[1]), self.at, (back[0], back[1]), self.squared)
 
-    def freely_slid(self, along: Vector, joint: int) -> ExactPose:
+    def freely_slid(self, along: Vector, joint: int, kind: Kind | None) -> ExactPose:
         """Go on along a free slide, by its value times a direction."""
         axes = self.axes
         x, y = self.turned(along)
-        ahead = _times(x, joint, 1), _times(y, joint, 1)
-        step = _times(_constant(along[0]), joint, 1), _times(_constant(along[1]), joint, 1)
-        gain = _times(axes.dot(along, self.back) * 2, joint, 1)
-        square = _times(_constant(axes.dot(along, along)), joint, 2)
-        at, back = _sum(self.at, ahead), _sum(self.back, step)
+        ahead = self._times(x, joint, 1, kind), self._times(y, joint, 1, kind)
+        one, other = (self._times(_constant(length), joint, 1) for length in along)
+        gain = self._times(axes.dot(along, self.back) * 2, joint, 1, kind)
+        square = self._times(_constant(axes.dot(along, along)), joint, 2)
+        at, back = _sum(self.at, ahead), _sum(self.back, (one, other))
         return ExactPose(axes, self.turn, at, back, self.squared + gain + square)
+
+    def _times(self, table: Array, joint: int, k: int, kind: Kind | None = None) -> Array:
+        """Multiply by the cosine of a joint, its sine over the stretch, its value or its square."""
+        if kind is None or k == 1 or not FACTORS[kind].turns.any():
+            return times_function(table, joint, k, kind)
+        parts = np.moveaxis(table, joint, 0)  # the square of this sine has the ratio below it
+        scaled = np.stack([parts[0], parts[1], parts[2] / self.axes.ratio])
+        return times_function(np.moveaxis(scaled, 0, joint), joint, k, kind)
 
     @classmethod
     def still(cls, axes: PlaneAxes) -> ExactPose:
@@ -242,11 +252,11 @@ class ExactContacts:
             return self._height(boundary, part)
         assert isinstance(boundary, BodyPair)  # no other has features
         bodies = sorted(
-            bounded_bodies(self._robot, boundary), key=lambda b: self._robot.depth(b.frame)
+            bounded_bodies(self._robot, boundary), key=lambda b: self._robot.steps_to(b.frame)
         )
         near, far = (self._cores_of(body) for body in bodies)
         one, other = near[part // len(far)], far[part % len(far)]
-        moved = self._pose(*(self._robot.depth(body.frame) for body in bodies))
+        moved = self._pose(*(self._robot.steps_to(body.frame) for body in bodies))
         keep = one.radius + other.radius + self._clearance(boundary)
         row = k - int(np.searchsorted(self._contacts.pair, pair))
         return _feature(one, other, moved, keep, row)
@@ -259,7 +269,7 @@ class ExactContacts:
         """Return a corner of a body above a half-space: ``normal . r >= level``."""
         (body,) = bounded_bodies(self._robot, wall)
         exact: Any = self._numbers.boundary(wall)
-        axes, moved = self._axes, self._pose(0, self._robot.depth(body.frame))
+        axes, moved = self._axes, self._pose(0, self._robot.steps_to(body.frame))
         cores = self._cores_of(body)
         at, radius = [(c, core.radius) for core in cores for c in core.corners][corner]
         seen = _sum(moved.at, moved.turned(at))
@@ -273,11 +283,17 @@ class ExactContacts:
 
     @cached_property
     def _mounts(self) -> list[Array]:
-        """The rotation of each frame at all joint values 0, seen from the base, by depth."""
+        """The rotation of each frame at all joint values 0, seen from the base, by steps to it."""
         found = [rationals(np.eye(3, dtype=int))]
-        for joint in self._robot.joints:
-            found.append(found[-1] @ self._numbers.joint(joint).mount)
+        for step in self._steps:
+            found.append(found[-1] @ step.mount)
         return found
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        """The steps of the chain with exact numbers."""
+        joints = map(self._numbers.joint, self._robot.joints)
+        return [step for j, joint in enumerate(joints) for step in joint.steps(j)]
 
     @cached_property
     def _axes(self) -> PlaneAxes:
@@ -288,9 +304,8 @@ class ExactContacts:
 
     def _normal(self) -> Array:
         """Return a normal of the plane, of any length, chosen as `plane_of_motion` does."""
-        joints = self._robot.joints
-        axes = [self._mounts[j + 1] @ self._numbers.joint(x).axis for j, x in enumerate(joints)]
-        turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
+        axes = [self._mounts[k + 1] @ step.axis for k, step in enumerate(self._steps)]
+        turning = [axis for axis, step in zip(axes, self._steps, strict=True) if not step.slides]
         if turning:
             return np.asarray(turning[0])
         for axis in axes[1:]:
@@ -301,29 +316,31 @@ class ExactContacts:
         return rationals(self._robot.plane.normal)
 
     def _pose(self, near: int, far: int) -> ExactPose:
-        """Return the pose of a frame seen from one before it, by their depths."""
+        """Return the pose of a frame seen from one before it, by the steps to both."""
         if (near, far) not in self._poses:
-            found = ExactPose.still(self._axes)
-            for j in range(near, far):
-                found = self._moved(found, j)
+            found, passed = ExactPose.still(self._axes), set[int]()
+            for k in range(near, far):
+                found = self._moved(found, k, passed)
+                passed.add(self._steps[k].joint)
             self._poses[near, far] = found
         return self._poses[near, far]
 
-    def _moved(self, found: ExactPose, j: int) -> ExactPose:
-        """Go on by a joint."""
-        axes, joint = self._axes, self._numbers.joint(self._robot.joints[j])
-        sense, free = self._robot.plane.senses[j], self._robot.free(self._held)
-        found = found.shifted(axes.flat(self._mounts[j] @ joint.origin))
+    def _moved(self, found: ExactPose, k: int, passed: Collection[int]) -> ExactPose:
+        """Go on by a step; some joints have moved the frame before."""
+        axes, step = self._axes, self._steps[k]
+        sense, free = self._robot.plane.senses[k], self._robot.free(self._held)
+        kind = self._robot.joints[step.joint].kind if step.joint in passed else None
+        found = found.shifted(axes.flat(self._mounts[k] @ step.origin))
         if sense:
-            if j in free:
-                return found.freely_turned(sense, free.index(j))
-            s, c = sine_cosine(rational(self._held[j]))
+            if step.joint in free:
+                return found.freely_turned(sense, free.index(step.joint), kind)
+            s, c = sine_cosine(rational(self._held[step.joint]))
             return found.rotated(c, s * sense / axes.stretch)
-        axis = self._mounts[j + 1] @ joint.axis
-        x, y = axes.flat(axis / _length(joint.axis))
-        if j in free:
-            return found.freely_slid((x, y), free.index(j))
-        value = rational(self._held[j])
+        axis = self._mounts[k + 1] @ (step.axis * step.sense)
+        x, y = axes.flat(axis / _length(step.axis))
+        if step.joint in free:
+            return found.freely_slid((x, y), free.index(step.joint), kind)
+        value = rational(self._held[step.joint])
         return found.shifted((x * value, y * value))
 
     def _cores_of(self, body: Body) -> list[ExactCore]:
@@ -331,7 +348,7 @@ class ExactContacts:
         if body.name not in self._cores:
             shape = self._numbers.body(body).shape
             radius = getattr(shape, "radius", rational(0))
-            mount = self._mounts[self._robot.depth(body.frame)]
+            mount = self._mounts[self._robot.steps_to(body.frame)]
             at = [self._axes.flat(mount @ place) for place in shape.places]
             cores = []
             for loop in body.shape.loops:
@@ -418,16 +435,6 @@ def _plus(table: Array, value: Any) -> Array:
     result = table.copy()
     result[0, 0] = result[0, 0] + value
     return result
-
-
-def _times(table: Array, joint: int, factor: int) -> Array:
-    """Multiply what a joint does not move yet by that joint's first or second factor."""
-    product = np.full((3, 3), rational(0), dtype=object)
-    if joint == 0:
-        product[factor] = table[0]
-    else:
-        product[:, factor] = table[:, 0]
-    return product
 
 
 def _sum(u: Vector, v: Vector) -> Vector:

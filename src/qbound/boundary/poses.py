@@ -6,6 +6,8 @@ along a direction of the other is linear in the pose: a row of numbers times a c
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from qbound.arrays import Floats
@@ -17,7 +19,7 @@ vector seen from the turned frame, and 1."""
 
 
 class PlanePoses:
-    """Poses of the frames of a robot in its plane of motion, frames by their depth in the chain.
+    """Poses of the frames of a robot in its plane of motion, frames by the steps to them.
 
     Raises
     ------
@@ -26,15 +28,12 @@ class PlanePoses:
     """
 
     def __init__(self, robot: Robot) -> None:
-        plane, base = robot.plane, robot.base
-        turns = [np.asarray(plane.frames.rotation(base, j.parent), float) for j in robot.joints]
-        moves = [plane.across @ turn for turn in turns]
-        self._origins = [move @ j.origin for move, j in zip(moves, robot.joints, strict=True)]
-        axes = [move @ j.mount @ j.axis for move, j in zip(moves, robot.joints, strict=True)]
-        self._slides = [axis * (not j.turns) for axis, j in zip(axes, robot.joints, strict=True)]
-        self._senses = plane.senses
+        self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
+        self._origins, self._slides = zip(*flat_steps(robot), strict=True)
         self._lengths = [
-            float(np.linalg.norm(j.origin)) + (0.0 if j.turns else j.farthest) for j in robot.joints
+            float(np.linalg.norm(step.origin))
+            + (robot.joints[step.joint].farthest if step.slides else 0.0)
+            for step in robot.steps
         ]
 
     def length(self, near: int, far: int) -> float:
@@ -48,29 +47,46 @@ class PlanePoses:
         ----------
         q : ndarray, shape (n, joints)
         pairs : set of (near, far)
-            Depths; equal ones are the frame itself.
+            Numbers of steps from the base; equal ones are the frame itself.
 
         Returns
         -------
         dict of (near, far) to ndarray, shape (POSE, n)
         """
         columns = np.ascontiguousarray(q.T)
-        turning = {j for near, far in pairs for j in range(near, far) if self._senses[j]}
-        turns = {j: (np.cos(columns[j]), self._senses[j] * np.sin(columns[j])) for j in turning}
+        steps = {k for near, far in pairs for k in range(near, far) if self._senses[k]}
+        turning = {self._joints[k] for k in steps}
+        known = {j: (np.cos(columns[j]), np.sin(columns[j])) for j in turning}
+        both = ((k, known[self._joints[k]]) for k in steps)
+        turns = {k: (cosine, self._senses[k] * sine) for k, (cosine, sine) in both}
         return {pair: self._pose(columns, turns, *pair) for pair in pairs}
 
     def _pose(
         self, columns: Floats, turns: dict[int, tuple[Floats, Floats]], near: int, far: int
     ) -> Floats:
         c, s, x, y = (np.full(columns.shape[1], value) for value in (1.0, 0.0, 0.0, 0.0))
-        for j in range(near, far):
-            (u, v), (du, dv) = self._origins[j], self._slides[j]
-            u, v = u + du * columns[j], v + dv * columns[j]
+        for k in range(near, far):
+            (u, v), (du, dv) = self._origins[k], self._slides[k]
+            value = columns[self._joints[k]]
+            u, v = u + du * value, v + dv * value
             x, y = x + c * u - s * v, y + s * u + c * v
-            if j in turns:
-                cj, sj = turns[j]
-                c, s = c * cj - s * sj, s * cj + c * sj
+            if k in turns:
+                ck, sk = turns[k]
+                c, s = c * ck - s * sk, s * ck + c * sk
         return np.stack([c, s, x, y, c * x + s * y, c * y - s * x, np.ones_like(c)])
+
+
+def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:
+    """Yield origin and direction of slide of each step in the axes of the plane, shape (2,) each.
+
+    They are turned as at all joint values 0; the direction of a turn is zero.
+    """
+    plane = robot.plane
+    for step in robot.steps:
+        turn = np.asarray(plane.frames.rotation(robot.base, step.parent), dtype=float)
+        move = plane.across @ turn
+        along = move @ step.mount @ step.axis * (step.sense if step.slides else 0)
+        yield move @ step.origin, along
 
 
 def of_far_places(direction: Floats, places: Floats, level: Floats) -> Floats:

@@ -16,7 +16,7 @@ import numpy as np
 
 from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary
-from qbound.model.joints import Joint, Parallelogram
+from qbound.model.joints import Joint
 from qbound.model.robot import Robot
 from qbound.model.shapes import (
     Body,
@@ -94,9 +94,9 @@ class ExactNumbers:
         row = self._rows["joint"].get(joint.name, NO_ROW)
         degrees = self._table.get("angle_unit") == "deg"
         mount = _mount(row.get("rpy", (0, 0, 0)), degrees) if row else None
-        more: dict[str, Any] = {}
-        if isinstance(joint, Parallelogram):
-            more["crank"] = _numbers(row.get("crank"), joint.crank)
+        own = {key: getattr(joint, key) for key in joint.own_keys}
+        vectors = {key: value for key, value in own.items() if isinstance(value, np.ndarray)}
+        more: Any = {key: _numbers(row.get(key), value) for key, value in vectors.items()}
         return replace(
             joint,
             origin=_numbers(row.get("origin"), joint.origin),

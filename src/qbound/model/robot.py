@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
-from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute
+from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute, Step
 from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
@@ -44,6 +44,7 @@ __all__ = [
     "Revolute",
     "Robot",
     "Shape",
+    "Step",
 ]
 
 Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
@@ -144,6 +145,20 @@ class Robot:
         return tuple(joint.kind for joint in self.joints)
 
     @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The motions of its chain, from the base on; each has a frame of its own."""
+        return tuple(step for j, joint in enumerate(self.joints) for step in joint.steps(j))
+
+    def steps_to(self, frame: str) -> int:
+        """Count the steps between the base and a frame; ValueError if there is no such frame."""
+        return _named("frame", self._steps_to, frame)
+
+    @cached_property
+    def _steps_to(self) -> dict[str, int]:
+        moved = (step.frame for step in self.steps)
+        return {frame: k for k, frame in enumerate((self.base, *moved))}
+
+    @cached_property
     def plane(self) -> PlaneOfMotion:
         """The plane in which the arm moves; ValueError if it leaves every plane."""
         return plane_of_motion(self)
@@ -160,7 +175,7 @@ class Robot:
 
     def _colliding(self) -> Iterator[BodyPair]:
         """Yield a pair for every two bodies that can meet, may not, and that no boundary names."""
-        links = sorted(self.bodies, key=lambda body: self.depth(body.frame))
+        links = sorted(self.bodies, key=lambda body: self.steps_to(body.frame))
         settled = {frozenset(b.bodies) for b in self.boundaries if isinstance(b, BodyPair)}
         settled |= set(self.allowed)
         for one, other in combinations([*links, *self.obstacles], 2):

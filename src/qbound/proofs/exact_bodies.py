@@ -148,7 +148,7 @@ def _of(
     elif isinstance(boundary, BodyPair):
         bodies = bounded_bodies(robot, boundary)
         keep = boundary.clearance + sum(_radius(body) for body in bodies)
-        one, other = sorted(bodies, key=lambda body: robot.depth(body.frame))
+        one, other = sorted(bodies, key=lambda body: robot.steps_to(body.frame))
         for near, far in product(cores[one.name], cores[other.name]):
             # What is kept at no distance from a point forbids nothing, unless it has an inside.
             if ball(keep) > 0 or len(near.corners) + len(far.corners) > 3:
@@ -169,7 +169,7 @@ def _flat_coordinates(robot: Robot) -> dict[str, int]:
     for joint in robot.joints:
         turned = turned @ joint.mount
         axes.append((joint.turns, turned @ joint.axis))
-        rotations[joint.frame] = turned
+        rotations |= dict.fromkeys(joint.labels, turned)
     for normal in (1, 2, 0):
         across = [k for k in range(3) if k != normal]
         gone = [axis[k] for turns, axis in axes for k in (across if turns else [normal])]
