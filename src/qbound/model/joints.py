@@ -215,6 +215,17 @@ class Revolute(Joint):
         return super().limits_fault(limits, turn)
 
 
+class Continuous(Revolute):
+    """A joint that turns about its axis without limits, as URDF calls it."""
+
+    type_name = "continuous"
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Refuse limits."""
+        return None if limits is None else f"{shown(limits)} limits a joint that has no limits"
+
+
 class Prismatic(Joint):
     """A joint that slides along its axis."""
 
@@ -267,7 +278,7 @@ class Parallelogram(Revolute):
 
 
 JOINT_TYPES: dict[str, type[Joint]] = {
-    cls.type_name: cls for cls in (Revolute, Prismatic, Parallelogram)
+    cls.type_name: cls for cls in (Revolute, Prismatic, Parallelogram, Continuous)
 }
 """From a file's spelling to the class."""
 
@@ -282,7 +293,7 @@ class JointRow(Row, kw_only=True):
     """A table [[joint]]."""
 
     name: Label
-    type: Literal["revolute", "prismatic", "parallelogram"]
+    type: Literal["revolute", "prismatic", "parallelogram", "continuous"]
     parent: Label
     frame: Label
     origin: Vector
