@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from qbound import RobotFileError, clearance, find_region, load_robot, margins, save_robot
-from qbound.arms.allowed import Contact, allowed_collisions
+from qbound.arms.allowed import Contact, allowed_collisions, pair_forms
 from qbound.arms.fibres import fibres
 from qbound.arms.links import links
-from qbound.arms.pair_forms import pair_forms
-from qbound.arms.paths import ToolPaths
-from qbound.arms.reach import reach
+from qbound.arms.reach import ToolPaths, reach
 from qbound.arms.why import why
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator

@@ -5,8 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.arms.allowed import CELLS, Contact, allowed_collisions
-from qbound.arms.allowed_report import allowed_document, allowed_lines, srdf_text
+from qbound.arms.allowed import (
+    CELLS,
+    Contact,
+    allowed_collisions,
+    allowed_document,
+    allowed_lines,
+    srdf_text,
+)
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress

@@ -6,8 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import Any
 
-from qbound.arms.answers import why_document, why_lines
-from qbound.arms.why import Why, why, why_bytes
+from qbound.arms.why import Why, why, why_bytes, why_document, why_lines
 from qbound.cli.chosen import add_memory, add_robot, sized_robot
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
