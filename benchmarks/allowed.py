@@ -13,9 +13,8 @@ from collections import Counter
 import numpy as np
 
 from qbound import load_robot
-from qbound.arms.allowed import Contact, LinkContact, allowed_collisions
+from qbound.arms.allowed import Contact, LinkContact, allowed_collisions, pair_forms
 from qbound.arms.links import links
-from qbound.arms.pair_forms import pair_forms
 from qbound.model.robot import Robot
 from qbound.proofs.exact import exact_robot
 

@@ -14,11 +14,17 @@ from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from qbound.arms.allowed import Contact, allowed_collisions
-from qbound.arms.allowed_report import allowed_document, disabling_reason, srdf_text
-from qbound.arms.everywhere import apart_everywhere, touching_everywhere
+from qbound.arms.allowed import (
+    Contact,
+    allowed_collisions,
+    allowed_document,
+    apart_everywhere,
+    disabling_reason,
+    pair_forms,
+    srdf_text,
+    touching_everywhere,
+)
 from qbound.arms.links import link_of, link_pair, links
-from qbound.arms.pair_forms import pair_forms
 from qbound.cli import main
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, Robot

@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import load_robot
 from qbound.arms.fibres import fibres
-from qbound.arms.gaps import Intervals, on_circle, on_line
 from qbound.boundary.balls import BLOCK
 from qbound.boundary.evaluator import evaluator
+from qbound.geometry.arcs import Intervals, on_circle, on_line
 from qbound.region import find_region
 from support.ball_arms import arm_of_balls, drawn
 

@@ -156,7 +156,7 @@ def test_what_is_joined_is_not_certified():
 )
 def test_a_separation_that_is_none_is_not_written(elbow, goal):
     robot = parse_robot(tomllib.loads(arm(elbow)))
-    ranges = [r for r in blocked_ranges(robot, robot) if r.joint == 1]
+    ranges = [r for r in blocked_ranges(robot) if r.joint == 1]
     assert certify_no_path(arm(elbow), [0, 1, 0], [0, goal, 0], ranges).verdict == "undecided"
 
 

@@ -1,5 +1,6 @@
 """Exact numbers of a robot: decimals, degrees, quarter turns, unit vectors."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -52,8 +53,9 @@ def test_decimals_of_the_file_are_rationals_and_not_doubles():
 
 
 def test_a_robot_of_doubles_counts_each_double_as_the_fraction_that_it_is():
-    point = exact_robot(load_robot("minervabot-v2")).point("11")
-    exact = Fraction(9.09)
+    robot, exact = load_robot("minervabot-v2"), Fraction(9.09)
+    assert exact_robot(robot).point("11").at[0] == fmpq(909, 100)  # it knows its file
+    point = exact_robot(replace(robot, source=None)).point("11")
     assert point.at[0] == fmpq(exact.numerator, exact.denominator)
 
 

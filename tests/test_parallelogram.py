@@ -8,13 +8,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from qbound import RobotFileError, clearance, load_robot, save_robot
-from qbound.arms.allowed import Contact, allowed_collisions
+from qbound import RobotFileError, clearance, find_region, load_robot, margins, save_robot
+from qbound.arms.allowed import Contact, allowed_collisions, pair_forms
 from qbound.arms.fibres import fibres
 from qbound.arms.links import links
-from qbound.arms.pair_forms import pair_forms
-from qbound.arms.paths import ToolPaths
-from qbound.arms.reach import reach
+from qbound.arms.reach import ToolPaths, reach
 from qbound.arms.why import why
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
@@ -24,6 +22,9 @@ from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import parse_robot, robot_table
 from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.structure import prove_structure
+from qbound.region import clearance_problem
+from qbound.region.exact import ExactRows
 from support.urdf import BALL, joint, link, rotation, transform, written
 
 LABELS = ("0", "1", "bar", "2", "3")
@@ -129,14 +130,12 @@ def test_a_file_that_describes_none_is_refused(changed, says) -> None:
     assert says in str(error.value)
 
 
-def test_certificates_know_it_and_the_plane_of_motion_says_that_it_does_not(tmp_path) -> None:
+def test_certificates_know_it(tmp_path) -> None:
     file, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
     save_robot(replace(arm(2), boundaries=arm(2).boundaries[:3]), file)
     box = ["--box", "a=0:0.1", "p=0:0.1", "c=0:0.1"]
     assert main(["certify", str(file), *box, "-o", str(proof)]) == 0
     assert main(["check", str(proof), str(file), "--arb"]) == 0
-    with pytest.raises(ValueError, match="joint 'p' is a parallelogram: no plane of motion"):
-        load_robot(file).plane  # noqa: B018
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -229,6 +228,150 @@ def test_the_tool_goes_along_the_path_that_frames_say(frame) -> None:
             )
             tip = moved.frames(x).position("0", ahead.name, "0")
             assert directions[:, k] == pytest.approx(tip - places[:, k], abs=1e-12)
+
+
+# --- with bodies: an arm of two turns against each other says the same ----------------------------
+
+
+def in_a_plane(last: str = "revolute", across: str = "[0, 1, 0]") -> str:
+    """A parallelogram that carries an angled platform and a finger, between two obstacles."""
+    tilted = across != "[0, 1, 0]"
+
+    def at(x: float, z: float) -> str:
+        """Write a place of the plane: of x and z, or across [3, 4, 0]."""
+        return f"[{x * 0.8:.6g}, {-x * 0.6:.6g}, {z}]" if tilted else f"[{x}, 0, {z}]"
+
+    def loop(*corners: tuple[float, float]) -> str:
+        return f"[{', '.join(at(*corner) for corner in corners)}]"
+
+    axis = across if last == "revolute" else at(1, 0)
+    limits = {"revolute": "[-170, 170]", "prismatic": "[-0.2, 0.6]"}[last]
+    platform = [
+        (-0.05, -0.08),
+        (0.25, -0.08),
+        (0.25, 0.02),
+        (0.05, 0.02),
+        (0.05, 0.1),
+        (-0.05, 0.1),
+    ]
+    finger, foot = (
+        [(x, -z), (y, -z), (y, z), (x, z)] for x, y, z in ((0, 0.3, 0.02), (-0.1, 0.2, 0.1))
+    )
+    text = f"""
+schema = 1
+name = "palletizer"
+length_unit = "m"
+angle_unit = "deg"
+home = {{lift = 0, hand = 0}}
+tool = "tip"
+collisions = "all"
+allowed = [["bar", "platform"], ["bar", "foot"], ["platform", "finger"]]
+joint = [
+    {{name = "lift", type = "parallelogram", parent = "0", frame = "2", bar = "bar",
+      origin = {at(0.1, 0.2)}, axis = {across}, crank = {at(0.5, 0.1)}}},
+    {{name = "hand", type = "{last}", parent = "2", frame = "3", origin = {at(0.2, -0.05)},
+      axis = {axis}, limits = {limits}}},
+]
+point = [{{name = "tip", frame = "3", at = {at(0.3, 0)}}}]
+body = [
+    {{name = "bar", frame = "bar",
+      capsule = {{from = {at(0, 0)}, to = {at(0.5, 0.1)}, radius = 0.04}}}},
+    {{name = "platform", frame = "2", polygon = {loop(*platform)}}},
+    {{name = "finger", frame = "3", polygon = {loop(*finger)}}},
+]
+obstacle = [
+    {{name = "foot", polygon = {loop(*foot)}}},
+    {{name = "post", disc = {{at = {at(0.7, 0.75)}, radius = 0.1}}}},
+]
+"""
+    return text.replace(",\n      ", ", ")
+
+
+SCENES = [("revolute", "[0, 1, 0]"), ("prismatic", "[0, 1, 0]"), ("revolute", "[3, 4, 0]")]
+
+
+def with_two_turns(robot: Robot) -> Robot:
+    """Return the arm of three joints that is the same where the second has the first's value."""
+    p = robot.joints[0]
+    bar = Revolute("bar", "0", "bar", p.origin, p.mount, p.axis)
+    back = Revolute("back", "bar", "2", p.crank, np.eye(3), -p.axis)
+    return replace(robot, joints=(bar, back, robot.joints[1]), home=np.zeros(3), source=None)
+
+
+@pytest.mark.parametrize(("last", "across"), SCENES)
+def test_bodies_keep_apart_as_those_of_two_turns_do(last, across) -> None:
+    robot = parse_robot(in_a_plane(last, across))
+    region, count = find_region(robot), len(robot.used)
+    assert not region.unresolved
+    ends = robot.joints[1].limits
+    q = np.random.default_rng(8).uniform([-3.1, ends[0]], [3.1, ends[1]], (1000, 2))
+    found = margins(robot, q)[:, :count]
+    wanted = margins(with_two_turns(robot), q[:, [0, 0, 1]])[:, :count]
+    assert found == pytest.approx(wanted, abs=1e-12)
+    clear = np.abs(wanted).min(axis=1) > 1e-9
+    feasible = wanted.min(axis=1) > 0
+    assert 100 < feasible.sum() < 900
+    assert (region.contains(q) == feasible)[clear].all()
+    inside = [region.component_of(x) is not None for x in q[clear][:200]]  # by its arcs
+    assert inside == feasible[clear][:200].tolist()
+
+
+@pytest.mark.parametrize(("last", "across"), SCENES)
+def test_exact_contacts_of_bodies_are_those_of_doubles(last, across) -> None:
+    problem = clearance_problem(parse_robot(in_a_plane(last, across)))
+    rows, contacts = ExactRows(problem), problem.contacts
+    assert len(contacts.forms) > 100
+    for k, near in enumerate(contacts.forms):
+        form, _ = rows.feature(k)
+        exact = np.vectorize(middle, otypes=[float])(form)
+        exact *= np.abs(near).max() / np.abs(exact).max()
+        assert np.abs(exact - near).max() <= contacts.errors[k].max()
+
+
+def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:
+    file, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
+    file.write_text(in_a_plane())
+    region = find_region(load_robot(file))
+    proved = prove_structure(exact_problem(exact_robot(file)), region)
+    assert len(proved) == len(region.components) > 2
+    assert (
+        main(
+            [
+                "certify",
+                str(file),
+                "--box",
+                "lift=-5deg:5deg",
+                "hand=-20deg:20deg",
+                "-o",
+                str(proof),
+            ]
+        )
+        == 0
+    )
+    assert main(["check", str(proof), str(file), "--arb"]) == 0
+    found = why(file, [0.0, 0.0], [0.0, 1.0])
+    assert (found.answer, found.certificate.verdict) == ("connected", "proved")
+
+
+def test_two_slides_of_one_joint_are_of_the_second_degree_only_in_squares() -> None:
+    """A telescope, which goes out twice as far as each of its stages."""
+
+    class Telescope(Prismatic):
+        @property
+        def motions(self):
+            return (("stage", self.origin, 1), (self.frame, self.origin, 1))
+
+    x = np.array([1.0, 0, 0])
+    slide = Telescope("s", "0", "1", np.array([0.1, 0.2, 0]), np.eye(3), x, (0, 1))
+    turn = Revolute("t", "1", "2", x, np.eye(3), np.array([0, 0, 1.0]))
+    points = (Point("near", "0", x, 0.01), Point("far", "2", x, 0.01))
+    pair = Pair("near, far", ("near", "far"))
+    robot = Robot("r", (slide, turn), points, (pair,), np.zeros(2), "far", "m", "rad")
+    for q in ([0.3, 0.7], [0.9, -2.0]):
+        frames = robot.frames(q)
+        assert frames.position("0", "1", "0") == pytest.approx([0.2 + 2 * q[0], 0.4, 0])
+        distance = np.linalg.norm(frames.position("near", "far", "0"))
+        assert clearance(robot, pair)(q) == pytest.approx(distance**2 - 0.02**2, abs=1e-12)
 
 
 # --- from a URDF ----------------------------------------------------------------------------------

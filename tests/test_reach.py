@@ -12,10 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import load_robot
 from qbound.arms.fibres import fibres
-from qbound.arms.paths import Paths, ToolPaths
-from qbound.arms.reach import reach
-from qbound.arms.reports import reach_lines
-from qbound.arms.voxels import Grid, crossed, enclosed_volume
+from qbound.arms.reach import Grid, Paths, ToolPaths, crossed, enclosed_volume, reach, reach_lines
 from qbound.boundary.balls import Balls
 from qbound.boundary.functions import position
 from qbound.cli import main

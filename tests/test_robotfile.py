@@ -21,13 +21,15 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025 import printed as paper
-from qbound import RobotFileError, load_robot, margins, packaged_robots
+from qbound import RobotFileError, check, find_region, load_robot, margins, packaged_robots
+from qbound.arms.why import why
 from qbound.boundary.functions import clearance
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.model.robotcheck import json_schema
 from qbound.model.robotfile import parse_robot, save_robot
 from qbound.model.schema import SENTENCES, explained
+from qbound.proofs import second
 from qbound.symbols import with_symbols
 from support.oracles import OFFSETS, Table, packaged_table, robot_tables, row_of
 
@@ -134,6 +136,21 @@ def test_units_of_angle_scale_turns_and_not_slides() -> None:
     assert_allclose(parse_robot(table).home, [4 * pi, 2.5])  # home is not wrapped
     table["angle_unit"] = "rad"
     assert parse_robot(table).joints[0].limits == (-120, 480)
+
+
+def test_a_continuous_joint_turns_without_limits(tmp_path: Path) -> None:
+    table = packaged_table()
+    revolute = parse_robot(table)
+    table["joint"][0]["type"] = "continuous"
+    robot, q = parse_robot(table), np.random.default_rng(3).uniform(-4, 4, (500, 2))
+    assert robot.joints[0].type_name == "continuous"
+    assert (find_region(robot).contains(q) == find_region(revolute).contains(q)).all()
+    assert_array_equal(margins(robot, q), margins(revolute, q))
+    save_robot(robot, tmp_path / "arm.toml")
+    assert load_robot(tmp_path / "arm.toml") == robot
+    proved = why(tmp_path / "arm.toml", [0.0, 0.0], [0.2, -0.5]).certificate
+    assert check.check(proved.text).refuted is False
+    assert second.verify(proved.text.encode()).value == "proved"
 
 
 def test_normals_and_axes_are_normalised_and_offsets_are_not() -> None:
@@ -313,6 +330,10 @@ BAD: dict[str, tuple[Change, str, str]] = {
     "joint of an unknown type": (
         put("joint[0].type", "screw"), "joint[0].type (q1)",
         "'screw' is unknown; allowed: revolute, prismatic",
+    ),
+    "continuous joint with limits": (
+        lambda t: t["joint"][0].update(type="continuous", limits=[-10, 10]), "joint[0].limits (q1)",
+        "[-10, 10] limits a joint that has no limits",
     ),
     "boundary of an unknown type": (
         put("boundary[0].type", "wall"), "boundary[0].type (B1)",

@@ -88,7 +88,7 @@ def test_a_ball_off_the_axis_of_another_joint_narrows_the_range(file):
 
 def blocked_of(text):
     robot = robot_of(text)
-    return blocked_ranges(robot, robot)
+    return blocked_ranges(robot)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -14,9 +14,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from qbound import load_robot
-from qbound.arms.surface_files import COLOURS, OTHERS, colour_of, glb_bytes, ply_bytes
 from qbound.arms.surface_forms import SurfaceForms, axis_of
-from qbound.arms.surfaces import find_surface
+from qbound.arms.surfaces import COLOURS, OTHERS, colour_of, find_surface, glb_bytes, ply_bytes
 from qbound.boundary.balls import Balls
 from qbound.cli import main
 from qbound.explorer.surface_page import surface_data, surface_page

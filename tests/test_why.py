@@ -12,9 +12,8 @@ import pytest
 from jsonschema import validate
 
 from qbound import check, load_robot
-from qbound.arms.answers import why_document, why_lines
 from qbound.arms.search import find_path
-from qbound.arms.why import least_margins, why
+from qbound.arms.why import least_margins, why, why_document, why_lines
 from qbound.cli import main
 from qbound.figures.why import why_picture
 from qbound.model.robotfile import parse_robot, robot_text

@@ -1023,7 +1023,7 @@ def direction(value: Any, where: str) -> Exact:
 label, vector, size_of = text(200), items(number, 3, 3), not_negative(number)
 corner, two_labels = items(number, 2, 3), items(label, 2, 2)
 
-KINDS = ("revolute", "prismatic", "parallelogram")
+KINDS = ("revolute", "prismatic", "parallelogram", "continuous")
 JOINT: dict[str, Reader] = {
     "name": label,
     "type": one_of(*KINDS),
@@ -1272,6 +1272,8 @@ def _joints(file: Table) -> tuple[tuple[Joint, ...], tuple[StepRow, ...], tuple[
         fits = ("crank" in row) == ("bar" in row) == bar
         demand(fits, f"{where}: crank and bar belong to a parallelogram")
         demand(turns or "limits" in row, f"{where}: a prismatic joint needs limits")
+        endless = row["type"] == "continuous"
+        demand(not endless or "limits" not in row, f"{where}: a continuous joint has no limits")
         demand(row.get("velocity", 1) > 0, f"{where}.velocity: a number of more than 0 is wanted")
         rpy = tuple(row.get("rpy", [Fraction(0)] * 3))
         small = all(abs(angle) <= LARGEST_ANGLE[file["angle_unit"]] for angle in rpy)

@@ -14,27 +14,33 @@ good (`benchmarks/fibres.py`). Not in the paper.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, tau
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.arms.gaps import (
+from qbound.arms.links import link_pair
+from qbound.arrays import Bools, Floats, Indices
+from qbound.boundary.balls import Balls, blocks, squared_distances
+from qbound.boundary.chain import Pose
+from qbound.boundary.evaluator import limit_names
+from qbound.export.formats import heading
+from qbound.geometry.arcs import (
     NONE,
     Gaps,
     Intervals,
     on_circle,
     on_line,
 )
-from qbound.arrays import Bools, Floats, Indices
-from qbound.boundary.balls import Balls, blocks, squared_distances
-from qbound.boundary.chain import Pose
-from qbound.boundary.evaluator import limit_names
 from qbound.model.robot import Joint, Robot, refuse_no_robot
+from qbound.units import amount, joint_text
+
+MOST_SHOWN = 10
+"""Pairs of links that a sentence names."""
 
 
 class Interval(NamedTuple):
@@ -304,3 +310,68 @@ def _nothing(row: Indices) -> Taken:
 def _kept(balls: Balls) -> Floats:
     """Return the squared distance under which a pair is violated, less rounding; shape (pairs,)."""
     return np.asarray(np.square(balls.distance) - balls.rounding[balls.pairs])
+
+
+# --- as others read it: JSON and sentences --------------------------------------------------------
+
+
+def fibre_document(found: Fibres, q: Sequence[float]) -> dict[str, Any]:
+    """Return the JSON form of one fibre, schema qbound/fibre/1; rad or length."""
+    robot, joint = found.robot, found.robot.joints[found.joint]
+    return {
+        **heading("qbound/fibre/1", robot),
+        "joint": joint.name,
+        "unit": joint.unit(robot.length_unit),
+        "q": list(q),
+        "contains_q": bool(found.contains([q[found.joint]])[0]),
+        "length": float(found.length[0]),
+        "intervals": [interval._asdict() for interval in found[0]],
+        "blocked_by": [] if found[0] else blocking(robot, found.joint, q),
+    }
+
+
+def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
+    """Say between which values the joint may move, and what is there."""
+    robot, joint = found.robot, found.robot.joints[found.joint]
+    others = [j for j in range(len(q)) if j != found.joint]
+    held = joint_text(robot, np.array(q)[others], others)
+    yield f"{joint.name}{' with ' if held else ''}{held}"
+    for interval in found[0]:
+        yield f"  {_interval_text(found, interval)}"
+    if not found[0]:
+        names = by_links(robot, blocking(robot, found.joint, q))
+        yield "  nowhere" + (f"; whatever its value, violated: {', '.join(names)}" if names else "")
+
+
+def by_links(robot: Robot, names: Sequence[str]) -> list[str]:
+    """Sum up boundaries by pair of links, a few of them, and count the others."""
+    pairs = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
+    found = list(dict.fromkeys(pairs.get(name, name) for name in names))
+    more = len(found) - MOST_SHOWN
+    return found if more <= 0 else [*found[:MOST_SHOWN], f"{more} more"]
+
+
+def blocking(robot: Robot, joint: int, q: Sequence[float]) -> list[str]:
+    """Return the boundaries that are violated at every value of a joint, and others' limits."""
+    balls, moving = Balls.of(robot), robot.joints[joint]
+    c, a, b = balls.along(joint, q).T
+    if moving.turns:
+        most = c + np.hypot(a, b)
+    else:  # a convex form is greatest at an end
+        ends = np.array(moving.limits)[:, None]
+        most = (c + a * ends + b * ends**2).max(axis=0)
+    names = [name for name, x in zip(balls.names, most < -balls.rounding, strict=True) if x]
+    for j, each in enumerate(robot.joints):
+        if j != joint and each.limits is not None:
+            low, high = each.limits
+            names += [f"{each.name}.lower"] * (q[j] < low) + [f"{each.name}.upper"] * (q[j] > high)
+    return names
+
+
+def _interval_text(found: Fibres, interval: Interval) -> str:
+    joint = found.robot.joints[found.joint]
+    unit, scale = joint.unit(found.robot.length_unit, "deg"), joint.shown_scale
+    low, high = (amount(x * scale, unit) for x in interval[:2])
+    if interval.below is None:
+        return "all the way round"
+    return f"{low} ({interval.below}) to {high} ({interval.above})"

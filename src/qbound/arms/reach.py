@@ -17,19 +17,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import floor, log10
+from itertools import product
+from math import floor, log10, tau
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from qbound.arms.fibres import fibres
-from qbound.arms.paths import ToolPaths
-from qbound.arms.voxels import Grid, coarsened, crossed, enclosed_volume
 from qbound.arrays import Bools, Floats, Indices
+from qbound.boundary.chain import Chain
+from qbound.export.formats import heading, npz_bytes
 from qbound.extras import require
 from qbound.model.robot import Robot, refuse_no_robot
 from qbound.model.rows import unit_vector
 from qbound.sampling import joint_ranges
+from qbound.units import counted
 
 BANDS, SECTORS = 6, 12
 """Directions are told apart by so many bands of equal height, each with so many sectors."""
@@ -370,3 +373,283 @@ def _bin(directions: Floats) -> Indices:
     band = np.clip(np.floor((z + 1) / 2 * BANDS), 0, BANDS - 1)
     sector = np.mod(np.floor(np.arctan2(y, x) / (2 * np.pi) * SECTORS), SECTORS)
     return np.asarray(band * SECTORS + sector, dtype=np.intp)
+
+
+# --- the circle or line along which a joint carries the tool --------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """Vectors as forms of one joint, seen from the base: n paths.
+
+    Attributes
+    ----------
+    place : ndarray, shape (3, 3, n)
+        Coefficients of (1, cos q, sin q) or (1, q, 0), by coordinates; length.
+    direction : ndarray, shape (3, 3, n)
+        Those of a unit vector fixed to the tool's frame.
+    turns : bool
+        Whether the joint turns.
+    """
+
+    place: Floats
+    direction: Floats
+    turns: bool
+
+    def __getitem__(self, which: NDArray[np.intp]) -> Paths:
+        """Take some of the paths."""
+        return Paths(self.place[..., which], self.direction[..., which], self.turns)
+
+    def places(self, q: Floats) -> Floats:
+        """Return the place on each path at one joint value each, shape (3, n)."""
+        return self._at(self.place, q)
+
+    def directions(self, q: Floats) -> Floats:
+        """Return the direction on each path at one joint value each, shape (3, n)."""
+        return self._at(self.direction, q)
+
+    def _at(self, form: Floats, q: Floats) -> Floats:
+        if self.turns:
+            return np.asarray(form[0] + np.cos(q) * form[1] + np.sin(q) * form[2])
+        return np.asarray(form[0] + q * form[1])
+
+
+class ToolPaths:
+    """The paths of a robot's tool along each joint.
+
+    Parameters
+    ----------
+    axis : array_like, shape (3,)
+        A direction fixed to the tool's frame.
+    """
+
+    def __init__(self, robot: Robot, axis: Floats) -> None:
+        tool = robot.point(robot.tool)
+        self.robot, self.depth = robot, robot.depth(tool.frame)
+        self._chain = Chain(robot, [tool])
+        self._frame = self._chain.depth(tool.frame)
+        self._axis = self._chain.seen(axis, self._frame)
+
+    def along(self, joint: int, q: Floats) -> Paths:
+        """Return the paths along a joint that carries the tool.
+
+        Parameters
+        ----------
+        q : ndarray, shape (joints, n)
+            Configurations as columns; the joint's own value is not read.
+        """
+        poses = self._chain.poses(q, joint)
+        (base, origin), (tool_axes, _) = poses[0], poses[self._frame]
+        x, u = self._chain.places(poses)[:, 0], self._axis @ tool_axes
+        x, u, origin = (np.broadcast_to(each, (3, q.shape[1])) for each in (x, u, origin))
+        zero = np.zeros(q.shape[1])
+        if self.robot.joints[joint].turns:
+            crank = self._chain.crank(joint)
+            if crank is not None and self._chain.groups(joint)[0] == 2:
+                (a, b), turning = crank[:2, 0] + zero, zero
+                ahead = x - origin - np.array([a, b, zero])
+            else:
+                (a, b), turning = x[:2], zero + 1
+                ahead = np.array([zero, zero, x[2]]) - origin
+            place = [list(ahead), [a, b, zero], [-b, a, zero]]
+            about = [[u[0], u[1], zero], [-u[1], u[0], zero]]
+            direction = [list(u - turning * about[0]), *(turning * np.array(about))]
+        else:
+            place = [list(x - origin), [zero, zero, zero + 1], [zero, zero, zero]]
+            direction = [list(u), [zero] * 3, [zero] * 3]
+        places, directions = (
+            np.einsum("ijn,kin->kjn", base, np.array(each)) for each in (place, direction)
+        )
+        return Paths(places, directions, self.robot.joints[joint].turns)
+
+
+# --- the voxels on such a path --------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Cubes of one edge.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        The lowest corner; length.
+    edge : float
+        Length.
+    shape : tuple of int
+        How many along x, y, z.
+    """
+
+    origin: Floats
+    edge: float
+    shape: tuple[int, int, int]
+
+    def flat_index(self, places: Floats) -> Indices:
+        """Return the number of the voxel of each place, shape (3, m) to (m,)."""
+        index = np.floor((places - self.origin[:, None]) / self.edge).astype(np.intp)
+        index = np.clip(index, 0, np.array(self.shape)[:, None] - 1)  # rounding at the last face
+        return np.asarray(np.ravel_multi_index(tuple(index), self.shape))
+
+    def at_edge(self, touched: Bools) -> Indices:
+        """Return the numbers of voxels, of those touched, that have a face to one that is not."""
+        padded = np.pad(touched.reshape(self.shape), 1)
+        inner = padded.copy()
+        for axis in range(3):
+            inner &= np.roll(padded, 1, axis) & np.roll(padded, -1, axis)
+        return np.flatnonzero((padded & ~inner)[1:-1, 1:-1, 1:-1])
+
+
+def enclosed_volume(touched: Bools, edge: float) -> float:
+    r"""Return the volume of a body that touches these voxels and no others, shape (n, n, n).
+
+    It is that of the voxels less their surplus, which is in proportion to the edge but for terms of
+    second order: :math:`2 V_h - V_{2h}`, where the coarse voxels lie in each of eight ways.
+    """
+    coarse = np.mean([each.sum() for each in coarsened(touched)])
+    return float((2 * touched.sum() - 8 * coarse) * edge**3)
+
+
+def coarsened(touched: Bools) -> Iterator[Bools]:
+    """Yield which voxels of twice the edge are touched, as they lie in each of eight ways."""
+    for shift in product((0, 1), repeat=3):
+        ends = [(s, (n + s) % 2) for n, s in zip(touched.shape, shift, strict=True)]
+        padded = np.pad(touched, ends)
+        pairs = padded.reshape([part for size in padded.shape for part in (size // 2, 2)])
+        yield np.asarray(pairs.any(axis=(1, 3, 5)))
+
+
+class Crossed(NamedTuple):
+    """Voxels that paths go through, one after the other; one may come several times.
+
+    Attributes
+    ----------
+    voxel : ndarray of int, shape (m,)
+        Number of `Grid.flat_index`.
+    path : ndarray of int, shape (m,)
+    q : ndarray, shape (m,)
+        Joint value half-way through the voxel.
+    """
+
+    voxel: Indices
+    path: Indices
+    q: Floats
+
+
+def crossed(grid: Grid, paths: Paths, low: Floats, high: Floats) -> Crossed:
+    """Return the voxels that paths go through.
+
+    Parameters
+    ----------
+    paths : Paths
+    low, high : ndarray, shape (n,)
+        From where to where the joint moves along each.
+    """
+    if paths.turns:
+        high = np.minimum(high, low + tau)
+    number = np.arange(len(low))
+    cuts = [(number, low), (number, high)]
+    for coordinate in range(3):
+        cuts += _at_faces(grid, coordinate, paths, low, high)
+    path, q = (np.concatenate(each) for each in zip(*cuts, strict=True))
+    order = np.lexsort((q, path))
+    path, q = path[order], q[order]
+    inside = np.flatnonzero(path[1:] == path[:-1])
+    path, q = path[inside], (q[inside] + q[inside + 1]) / 2
+    return Crossed(grid.flat_index(paths[path].places(q)), path, q)
+
+
+def _at_faces(
+    grid: Grid, coordinate: int, paths: Paths, low: Floats, high: Floats
+) -> list[tuple[Indices, Floats]]:
+    """Return the paths and joint values at which one coordinate is that of a face."""
+    c, a, b = paths.place[:, coordinate]
+    start, edge = grid.origin[coordinate], grid.edge
+    size = np.hypot(a, b)
+    if paths.turns:
+        lowest, highest = c - size, c + size
+    else:
+        lowest, highest = (pick(c + a * low, c + a * high) for pick in (np.minimum, np.maximum))
+    first = np.ceil((lowest - start) / edge)
+    count = np.maximum(np.floor((highest - start) / edge) - first + 1, 0).astype(np.intp)
+    path = np.repeat(np.arange(len(c)), count)
+    face = first[path] + np.arange(len(path)) - np.repeat(np.cumsum(count) - count, count)
+    rise = start + edge * face - c[path]
+    moves = size[path] > 0
+    path, rise = path[moves], rise[moves]
+    if not paths.turns:
+        return [(path, np.clip(rise / a[path], low[path], high[path]))]
+    half = np.arccos(np.clip(rise / size[path], -1, 1))
+    theta = np.arctan2(b, a)[path]
+    return [_within(path, theta + side * half, low, high) for side in (-1, 1)]
+
+
+def _within(path: Indices, q: Floats, low: Floats, high: Floats) -> tuple[Indices, Floats]:
+    """Turn angles into a path's range, and leave out those that do not come to lie in it."""
+    q = low[path] + np.mod(q - low[path], tau)
+    kept = q < high[path]
+    return path[kept], q[kept]
+
+
+# --- as others read it: JSON and sentences --------------------------------------------------------
+
+
+def reach_document(found: Reach) -> dict[str, Any]:
+    """Return the JSON form of a map, schema qbound/reach/1; its voxels are in `reach_npz`."""
+    robot = found.robot
+    box = found.box
+    return {
+        **heading("qbound/reach/1", robot),
+        "length_unit": robot.length_unit,
+        "seed": found.seed,
+        "voxel": found.grid.edge,
+        "exact_joint": robot.joints[found.joint].name,
+        "fibres": found.fibres,
+        "voxels": int(found.reached.sum()),
+        "box": None if box is None else box.tolist(),
+        "volume": {
+            "value": found.volume,
+            "error": found.error,
+            "standard_error": found.standard_error,
+            "scrambles": found.volumes[:, 0].tolist(),
+            "before_last_round": float(found.volumes[:, 1].mean()),
+            "voxels_twice_as_long": float(found.volumes[:, 2].mean()),
+            "all_voxels": found.marked_volume,
+        },
+        "index": None if found.index is None else _index(found),
+    }
+
+
+def reach_lines(found: Reach) -> Iterator[str]:
+    """Say how large the map is, and what is exact about it."""
+    robot, unit = found.robot, found.robot.length_unit
+    if (box := found.box) is None:
+        yield "no feasible configuration was found"
+        return
+    low, high = (", ".join(f"{x:.4g}" for x in corner) for corner in box)
+    times = found.chance / found.standard_error if found.standard_error else 0.0
+    chance = f"chance alone: {found.chance:.2g}, {times:.3g} standard errors"
+    if (box[1] - box[0]).min() < 1.5 * found.grid.edge:  # one layer of voxels
+        yield "the tool stays in a plane: it has an area there, which qbound workspace measures"
+    else:
+        yield f"volume {found.volume:.4g} +- {found.error:.2g} {unit}^3 ({chance})"
+        yield "  an estimate, no bound: chance, places that are not found yet, and the voxels' edge"
+    yield f"{counted(int(found.reached.sum()), 'voxel')} of {found.grid.edge:g} {unit}"
+    yield f"  from ({low}) to ({high}) {unit}"
+    if found.index is not None:
+        index = _index(found)
+        yield f"  reachability index: mean {index['mean']:.3g}, greatest {index['greatest']:.3g}"
+    name = robot.joints[found.joint].name
+    yield f"{found.fibres} fibres: exact along {name}, the other joints drawn (seed {found.seed})"
+
+
+def reach_npz(found: Reach) -> bytes:
+    """Return the arrays reached and index, with the grid's origin and edge."""
+    index = {} if found.index is None else {"index": found.index}
+    unit = np.array(found.robot.length_unit)
+    grid = {"origin": found.grid.origin, "edge": np.array(found.grid.edge), "unit": unit}
+    return npz_bytes({"reached": found.reached, **index, **grid})
+
+
+def _index(found: Reach) -> dict[str, float]:
+    values = np.zeros(1) if found.index is None else found.index[found.reached]
+    return {"mean": float(values.mean()), "greatest": float(values.max())}

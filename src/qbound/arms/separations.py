@@ -103,7 +103,7 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
     Parameters
     ----------
     source : str, Path or Robot
-        What `load_robot` takes, each decimal as it is written; or a robot, by its doubles.
+        What `load_robot` takes, or a robot; numbers count as `exact_robot` has them.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
     """
     robot = source if isinstance(source, Robot) else load_robot(source)
     named = {b.name: link_pair(robot, b) for b in robot.used}
-    ranges = blocked_ranges(source, robot, [named[b.name] for b in robot.used])
+    ranges = blocked_ranges(robot, [named[b.name] for b in robot.used])
     return tuple(
         _travel(robot, j, [r for r in ranges if r.joint == j], named)
         for j in range(len(robot.joints))

@@ -7,7 +7,8 @@ held, prove that there is none. What none of these decides is not decided.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,16 +19,18 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arms.links import link_pair
 from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.arrays import Floats
-from qbound.boundary.evaluator import evaluator
+from qbound.boundary.evaluator import evaluator, limit_names
 from qbound.boundary.parts import bounds_bodies
-from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot, robot_text, written_text
+from qbound.export.formats import heading
+from qbound.model.robot import Joint, Robot
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import statements
 from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, certify, no_certificate
+from qbound.proofs.certify import Certificate, Subject, certify, no_certificate
 from qbound.proofs.connection import Connection, connection
 from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
 from qbound.proofs.no_path import certify_disconnected, certify_no_path
@@ -36,6 +39,7 @@ from qbound.proofs.proved_region import prove_region, proved_component
 from qbound.proofs.structure import Structure
 from qbound.proofs.verdict import Unproved, Verdict
 from qbound.region import Region, find_region, violated
+from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 During = Callable[[str], AbstractContextManager[None]]
@@ -191,18 +195,15 @@ def why(
     >>> found.answer, found.separation, found.certificate.verdict.value
     ('separated', None, 'proved')
     """
-    if isinstance(source, Robot):
-        text, robot = written_text(source), source
-    else:
-        text, _ = robot_text(source)
-        robot = load_robot(source)
+    robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
+    subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
         with during("a proof that an end is infeasible"):
-            return _infeasible(text, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
+            return _infeasible(subject, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
     with during("ranges that nothing passes"):
-        asked = _Asked(source, text, robot, ends, hold, seed, separations(source))
+        asked = _Asked(subject, robot, ends, hold, seed, separations(robot))
     tried = []
     for what, attempt in _ATTEMPTS.items():
         with during(what):
@@ -218,6 +219,7 @@ def why_bytes(robot: Robot) -> int:
 
     Examples
     --------
+    >>> from qbound import load_robot
     >>> why_bytes(load_robot("ur5")) // 10**6  # megabytes
     27
     """
@@ -229,8 +231,7 @@ def why_bytes(robot: Robot) -> int:
 class _Asked:
     """What is asked, and what is blocked."""
 
-    source: str | Path | Robot
-    text: str
+    subject: Subject
     robot: Robot
     ends: Floats
     hold: bool
@@ -262,7 +263,7 @@ class _Asked:
             If its bodies are not exactly in one plane, or an outline has no convex parts.
         """
         try:
-            return exact_problem(exact_robot(self.source), self._held)
+            return exact_problem(exact_robot(self.robot), self._held)
         except ValueError as error:
             raise Unproved(str(error)) from None
 
@@ -299,13 +300,13 @@ def differing(ends: Floats) -> list[int]:
 
 
 def _infeasible(
-    text: str, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
+    subject: Subject, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
 ) -> Why:
     """Certify the worst of what is violated."""
     refuted = None
     if not no_certificate(robot):
         point = statements.points_of(robot, ends)[bad[0][0]]
-        certificate = certify(text, statements.box(point, point))
+        certificate = certify(subject, statements.box(point, point))
         refuted = certificate if certificate.verdict is Verdict.REFUTED else None
     return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
 
@@ -320,7 +321,7 @@ def _separated(asked: _Asked) -> Why | str:
     proved = None
     if not no_certificate(asked.robot):
         ranges = [_widest(block) for block in parted.blocks]
-        certificate = certify_no_path(asked.text, asked.ends[0], asked.ends[1], ranges)
+        certificate = certify_no_path(asked.subject, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
     return asked.answer("separated", separation=parted, certificate=proved)
 
@@ -365,7 +366,7 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
             return None
         least = float(least_margins(asked.robot, path)[1].min())
         return asked.answer("connected", path=path, least=least, held=held)
-    proved = _proved(asked.text, asked.robot, path)
+    proved = _proved(asked.subject, asked.robot, path)
     if proved is None:
         return None
     corners, margin, least, certificate = proved
@@ -379,14 +380,16 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
     )
 
 
-def _proved(text: str, robot: Robot, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
+def _proved(
+    subject: Subject, robot: Robot, path: Floats
+) -> tuple[Floats, str, float, Certificate] | None:
     """Certify a path: its corners as they are written, the margin, what was seen, the file."""
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
     likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
     for margin in dict.fromkeys((likely, "0")):
-        certificate = certify(text, statements.path(points, margin))
+        certificate = certify(subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
     return None
@@ -503,7 +506,7 @@ def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; it is a proof without that, too."""
     if no_certificate(asked.robot):
         return None
-    certificate = certify_disconnected(asked.text, asked.ends[0], asked.ends[1], paving)
+    certificate = certify_disconnected(asked.subject, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
 
 
@@ -526,3 +529,222 @@ _ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
     "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
 }
 """What is tried in turn: each gives an answer, or says in a sentence why it has none."""
+
+
+# --- as others read it: sentences and JSON --------------------------------------------------------
+
+
+DIGITS = {"deg": 2}
+"""Decimals of what is shown; of lengths six."""
+
+MOST_SHOWN = 3
+"""Pairs of links that a sentence names."""
+
+
+def why_lines(found: Why) -> Iterator[str]:
+    """Say in sentences whether a robot gets from start to goal, and why or why not."""
+    if found.answer == "infeasible":
+        yield from _infeasible_lines(found)
+    elif found.separation is not None:
+        yield from _separated_lines(found.robot, found.ends.tolist(), found.separation)
+    elif found.answer == "separated":
+        yield f"separated{_held(found)}: {found.tried[-1]}"
+    elif found.path is not None:
+        yield from _connected_lines(found)
+    elif found.answer == "connected":
+        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
+    else:
+        yield "not decided whether a path joins start and goal; what was tried:"
+        yield from (f"- {said}" for said in found.tried)
+
+
+def why_document(found: Why) -> dict[str, Any]:
+    """Return the JSON form, schema qbound/why/1: rad, and lengths in the file's unit."""
+    robot = found.robot
+    parted, path = found.separation, found.path
+    return {
+        **heading("qbound/why/1", robot),
+        "joints": [joint.name for joint in robot.joints],
+        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+        "start": found.ends[0].tolist(),
+        "goal": found.ends[1].tolist(),
+        "answer": found.answer,
+        "held": [robot.joints[j].name for j in _held_joints(found)],
+        "violated": [
+            {"end": ("start", "goal")[k], "boundary": name, "margin": margin}
+            for k, name, margin in found.violated
+        ],
+        "separation": None if parted is None else _separation_document(parted),
+        "travel": [_travel_document(travel) for travel in found.travels],
+        "path": None if path is None else _path_document(found),
+        "tried": list(found.tried),
+        "certificate": found.certificate is not None,
+    }
+
+
+# --- sentences ------------------------------------------------------------------------------------
+
+
+def _infeasible_lines(found: Why) -> Iterator[str]:
+    robot, limited = found.robot, limited_joints(found.robot)
+    named = {b.name: link_pair(robot, b) for b in robot.used}
+    for k, end in enumerate(("start", "goal")):
+        worst: dict[str, tuple[str, float]] = {}
+        for _, name, margin in (row for row in found.violated if row[0] == k):
+            worst.setdefault(named.get(name, name), (name, margin))
+        said = [
+            f"{links}, by {margin_text(robot, name, -margin, limited)}"
+            + (f" (boundary {name})" if links != name else "")
+            for links, (name, margin) in list(worst.items())[:MOST_SHOWN]
+        ]
+        more = f"; and {len(worst) - MOST_SHOWN} more" if len(worst) > MOST_SHOWN else ""
+        if said:
+            yield f"infeasible: the {end} violates {'; '.join(said)}{more}"
+
+
+def _separated_lines(
+    robot: Robot, ends: Sequence[Sequence[float]], parted: Separation
+) -> Iterator[str]:
+    travel = parted.travel
+    joint = robot.joints[travel.joint]
+    one, other = (_shown(joint, robot, q[travel.joint]) for q in ends)
+    blocks = [_block_text(robot, joint, block) for block in parted.blocks]
+    cannot = f"cannot pass {blocks[0]}"
+    if len(blocks) > 1:
+        cannot = f"can pass neither {blocks[0]}, nor {blocks[1]}"
+    yield (
+        f"separated: {joint.name} cannot get from {one} to {other}; whatever the other joints are,"
+        f" it {cannot}"
+    )
+    ranges = ", ".join(
+        f"{_span(joint, robot, *span)}{_marks(parted.parts, k)}"
+        for k, span in enumerate(travel.free)
+    )
+    yield f"the travel of {joint.name} falls into {len(travel.free)} ranges: {ranges}"
+    yield from _same_posture(robot, joint, ends[1][travel.joint], parted)
+
+
+def _marks(parts: tuple[int, int], k: int) -> str:
+    return " (start)" * (parts[0] == k) + " (goal)" * (parts[1] == k)
+
+
+def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -> Iterator[str]:
+    """Say where a goal a full turn away lies in the range of the start, within the limits."""
+    if not joint.turns or joint.limits is None:
+        return
+    for k in (-1, 1):
+        value = goal + k * math.tau
+        if parted.travel.part(value) == parted.parts[0]:
+            place = _shown(joint, robot, value)
+            yield f"the goal's posture is in the start's range too, at {place}"
+
+
+def _connected_lines(found: Why) -> Iterator[str]:
+    robot, path = found.robot, found.path
+    assert path is not None
+    legs = len(path) - 1
+    kind = "a straight line" if legs == 1 else f"a path of {legs} legs"
+    margin = amount(float(found.margin), robot.length_unit)
+    least = amount(found.least, robot.length_unit, digits=3)
+    clear = f"every boundary keeps {margin} on it, proved (least margin seen: {least})"
+    if not robot.used:
+        clear = "there is no boundary"
+    yield f"connected{_held(found)}: {kind}, {_length(robot, path)} long; {clear}"
+    if legs > 1:
+        yield from (f"  {joint_text(robot, q)}" for q in path)
+
+
+def _length(robot: Robot, path: Floats) -> str:
+    """Write how long a path is: in angles, and in lengths."""
+    units, steps = np.array(joint_units(robot)), np.diff(path, axis=0)
+    parts = {u: np.linalg.norm(steps[:, units == u], axis=1).sum() for u in dict.fromkeys(units)}
+    return " and ".join(f"{length:.3g} {unit}" for unit, length in parts.items())
+
+
+def _held_joints(found: Why) -> list[int]:
+    if not found.hold:
+        return []
+    return [j for j in range(len(found.robot.joints)) if j not in found.differing]
+
+
+def _held(found: Why) -> str:
+    names = [found.robot.joints[j].name for j in _held_joints(found)]
+    return f", while {', '.join(names)} {'is' if len(names) == 1 else 'are'} held" if names else ""
+
+
+def _block_text(robot: Robot, joint: Joint, block: Block) -> str:
+    span = _span(joint, robot, block.low, block.high, inwards=True)
+    return f"{span}, where {_meet(block)}"
+
+
+def _meet(block: Block) -> str:
+    """Say what meets: two links, or what one boundary is about."""
+    others = " or others" if len(block.links) > 1 else ""
+    if block.links[0] in {each.boundary for each in block.ranges}:
+        return f"{block.links[0]}{others} is violated"
+    return f"{block.links[0].replace(', ', ' and ')}{others} meet"
+
+
+def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool = False) -> str:
+    """Write a range; one that is blocked is rounded inwards, one that is free outwards."""
+    unit = joint.unit(robot.length_unit, "deg")
+    size = 10.0 ** DIGITS.get(unit, 6)
+    scale = joint.shown_scale * size
+    down, up = (math.ceil, math.floor) if inwards else (math.floor, math.ceil)
+    ends = [down(low * scale) / size, up(high * scale) / size]
+    if not inwards and joint.limits is not None:
+        ends = [
+            x * joint.shown_scale if x in joint.limits else end
+            for x, end in zip((low, high), ends, strict=True)
+        ]
+    return f"{ends[0]:.10g} to {ends[1]:.10g} {unit}"
+
+
+def _shown(joint: Joint, robot: Robot, value: float) -> str:
+    unit = joint.unit(robot.length_unit, "deg")
+    return amount(value * joint.shown_scale, unit)
+
+
+# --- JSON -----------------------------------------------------------------------------------------
+
+
+def _path_document(found: Why) -> dict[str, Any]:
+    path = found.path
+    assert path is not None
+    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    least = None if not math.isfinite(found.least) else found.least
+    corners = path.tolist()
+    return {
+        "corners": corners,
+        "length": length,
+        "proved_margin": float(found.margin),
+        "least_margin_seen": least,
+    }
+
+
+def _separation_document(parted: Separation) -> dict[str, Any]:
+    return {
+        "joint": parted.travel.name,
+        "start_range": parted.parts[0],
+        "goal_range": parted.parts[1],
+        "blocked": [_block_document(block) for block in parted.blocks],
+    }
+
+
+def _travel_document(travel: JointTravel) -> dict[str, Any]:
+    return {
+        "joint": travel.name,
+        "limits": None if travel.limits is None else list(travel.limits),
+        "limit_names": None if travel.limits is None else list(limit_names(travel.name)),
+        "blocked": [_block_document(block) for block in travel.blocks],
+        "free": [list(span) for span in travel.free],
+    }
+
+
+def _block_document(block: Block) -> dict[str, Any]:
+    return {
+        "from": block.low,
+        "to": block.high,
+        "links": list(block.links),
+        "boundaries": list(dict.fromkeys(each.boundary for each in block.ranges)),
+    }

@@ -2,44 +2,20 @@
 
 Every frame is turned so that the axis of its joint is z. Then a joint mixes two columns of a pose
 by its cosine and sine, or adds a multiple of the third column. The other way along the chain undoes
-the same step, so a joint can be the observer as well as the base. A parallelogram is two steps: its
-bar turns, and the frame that the bar carries turns back.
+the same step, so a joint can be the observer as well as the base.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
 from qbound.arrays import Floats, Indices
-from qbound.model.robot import Parallelogram, Point, Robot
+from qbound.model.robot import Point, Robot
 
 Pose = tuple[Floats, Floats]
 """Axes as columns, shape (3, 3, n), and origin, shape (3, n); n is 1 of what nothing moves."""
-
-
-class Step(NamedTuple):
-    """A motion of one frame in the one before it: of a joint, or one of a parallelogram's two.
-
-    Attributes
-    ----------
-    joint : int
-        Whose value it is.
-    sense : int
-        -1 where it goes back by the value.
-    slides : bool
-    origin, mount, axis : ndarray
-        As a joint has them.
-    """
-
-    joint: int
-    sense: int
-    slides: bool
-    origin: Floats
-    mount: Floats
-    axis: Floats
 
 
 class Chain:
@@ -54,7 +30,7 @@ class Chain:
     """
 
     def __init__(self, robot: Robot, points: Sequence[Point]) -> None:
-        self.steps, self._depths = tuple(steps(robot)), depths(robot)
+        self.steps, self.depth = robot.steps, robot.steps_to
         self.points = tuple(sorted(points, key=lambda point: self.depth(point.frame)))
         self.depths = np.array([self.depth(point.frame) for point in self.points], dtype=np.intp)
         self._turned = [np.eye(3), *(axis_last(step.axis) for step in self.steps)]
@@ -66,10 +42,6 @@ class Chain:
         ends = np.searchsorted(self.depths, np.arange(len(turned) + 1))
         self._slices = [slice(*ends[k : k + 2]) for k in range(len(turned))]
         self._places = [at[s] @ turn for s, turn in zip(self._slices, turned, strict=True)]
-
-    def depth(self, frame: str) -> int:
-        """Count the steps between the base and a frame."""
-        return self._depths[frame]
 
     def groups(self, joint: int) -> Indices:
         """Say on which side of a joint each point is, shape (m,).
@@ -145,20 +117,6 @@ class Chain:
             axes = _turned(axes, np.cos(q), -np.sin(q))
         axes = self._turns[k] @ axes
         return axes, origin - self._moves[k] @ axes
-
-
-def depths(robot: Robot) -> dict[str, int]:
-    """Count the steps between the base and each frame, by its label."""
-    labels = [robot.base, *(label for joint in robot.joints for label in joint.labels)]
-    return {label: depth for depth, label in enumerate(labels)}
-
-
-def steps(robot: Robot) -> Iterator[Step]:
-    """Yield the motions of a robot's chain, from the base on; each has a frame of its own."""
-    for j, joint in enumerate(robot.joints):
-        yield Step(j, 1, not joint.turns, joint.origin, joint.mount, joint.axis)
-        if isinstance(joint, Parallelogram):
-            yield Step(j, -1, False, joint.crank, np.eye(3), joint.axis)
 
 
 def axis_last(axis: Floats) -> Floats:

@@ -13,145 +13,104 @@ occur, each in the first degree.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.errors import Sizes, coefficient_errors
+from qbound.boundary.poses import Axes, Pose, Vector
+from qbound.forms.harmonic import add_constant
 from qbound.tolerances import ROUNDING
 
-Tables = tuple[Floats, Floats, Floats, Floats]
+Rows = tuple[Floats, Floats, Floats, Floats]
 """Forms, sides, and the errors of both."""
 
 SIDES = 4
 """Most side conditions of one feature: two ends of an edge and two neighbours of a corner."""
 
 
-@dataclass(frozen=True)
-class Move:
-    """A joint in the plane of motion, as tables see it.
+Tables = Any
+"""Numbers, or arrays of tables of forms, shapes (..., 3, 3)."""
 
-    Attributes
+# --- one feature, of numbers of any type ----------------------------------------------------------
+
+
+def edge_and_corner(
+    axes: Axes,
+    along: Vector,
+    start: Vector,
+    reach: Tables,
+    seen: Vector,
+    rims: Sequence[Vector],
+    kept: Any,
+) -> tuple[Tables, list[Tables]]:
+    """Return form and side conditions of an edge of one core and a corner of the other.
+
+    The form is the height of the corner over the line of the edge, times the length of `along` over
+    the stretch, less what is kept. The corner is beside the edge where it is behind the start and
+    before the end; it is the nearest one where its own edges rise from it.
+
+    Parameters
     ----------
-    origin : ndarray, shape (2,)
-        From the parent's frame to the joint's, at joint value 0; length.
-    turn : int
-        +1 or -1 for a turn anticlockwise or clockwise; 0 for a slide.
-    along : ndarray, shape (2,)
-        Direction of a slide; zeros for a turn.
-    free : int or None
-        Which of the two free joints it is; None for one that is held.
-    value : float
-        Of a held joint, rad or length.
+    along : Vector
+        Direction of the edge, of any length.
+    start : Vector
+        Corner at which the edge begins.
+    reach : number
+        Product of `along` and the edge.
+    seen : pair of tables
+        The corner of the other core, seen from the first one's frame.
+    rims : sequence of pairs of tables
+        Directions of its own edges, away from it.
+    kept : number
+        Required distance, times what the height is multiplied by.
     """
-
-    origin: Floats
-    turn: int
-    along: Floats
-    free: int | None = None
-    value: float = 0.0
+    height = _plus(axes.cross(along, seen), -(axes.cross(along, start) + kept))
+    behind = _plus(axes.dot(along, seen), -axes.dot(along, start))
+    return height, [behind, _plus(-behind, reach), *(axes.cross(along, rim) for rim in rims)]
 
 
-class Pose(NamedTuple):
-    """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
+def two_corners(
+    moved: Pose,
+    p: Vector,
+    u: Vector,
+    steps: Sequence[Vector],
+    far_steps: Sequence[Vector],
+    kept: Any,
+) -> tuple[Tables, list[Tables]]:
+    """Return form and side conditions of a corner p of one core and a corner u of the other.
 
-    A place u of the moved frame is ``turn @ u + at``; ``back`` is ``turn.T @ at`` and ``squared``
-    ``|at|^2``, which a product of tables would not show to be of first degree. ``sizes`` is what
-    the lengths of its coefficients are rounded beside.
+    The form is their squared distance, less that which is kept. They are the nearest places where
+    each lies beyond the other one's edges.
+
+    Parameters
+    ----------
+    steps, far_steps : sequence of Vector
+        Directions of the edges at p and at u, away from it.
+    kept : number
+        Required distance.
     """
-
-    turn: Floats  # (2, 2, 3, 3)
-    at: Floats  # (2, 3, 3)
-    back: Floats  # (2, 3, 3)
-    squared: Floats  # (3, 3)
-    sizes: Sizes
-
-
-QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+    axes, ahead, back = moved.axes, moved.seen(u), moved.seen_back(p)
+    squared = moved.squared - axes.dot(p, ahead) * 2 + axes.dot(u, moved.back) * 2
+    squared = _plus(squared, axes.dot(p, p) + axes.dot(u, u) - kept * kept)
+    sides = [_plus(-axes.dot(step, ahead), axes.dot(step, p)) for step in steps]
+    sides += [_plus(-axes.dot(step, back), axes.dot(step, u)) for step in far_steps]
+    return squared, sides
 
 
-def pose(moves: Sequence[Move]) -> Pose:
-    """Return the pose that some joints, one after the other, give the last one's frame."""
-    held = [move for move in moves if move.free is None]
-    lengths = [np.hypot(*move.origin) for move in moves]
-    lengths += [abs(move.value) * np.hypot(*move.along) for move in held]
-    slides = frozenset(move.free for move in moves if move.free is not None and not move.turn)
-    sizes = Sizes(float(sum(lengths)), slides, len(moves))
-    at, back, squared = (_constant(np.zeros(n)) for n in (2, 2, ()))
-    found = Pose(_constant(np.eye(2)), at, back, squared, sizes)
-    for move in moves:
-        found = _shifted(found, move.origin)
-        if move.free is None:
-            c, s = np.cos(move.value), move.turn * np.sin(move.value)
-            found = _rotated(found, np.array([[c, -s], [s, c]])) if move.turn else found
-            found = _shifted(found, move.value * move.along)
-        else:
-            found = (_turned if move.turn else _slid)(found, move, move.free)
-    return found
+def _plus(tables: Tables, constant: Tables) -> Tables:
+    """Add to the constants of tables."""
+    constant = np.asarray(constant)
+    each = constant[..., 0, 0] if constant.ndim > 1 else constant
+    return add_constant(tables, np.broadcast_to(each, tables.shape[:-2]))
 
 
-def _constant(value: Floats) -> Floats:
-    """Return tables of a value that no joint moves, shape (..., 3, 3)."""
-    table = np.zeros((*np.shape(value), 3, 3))
-    table[..., 0, 0] = value
-    return table
-
-
-def _times(table: Floats, joint: int, factor: int) -> Floats:
-    """Multiply what a joint does not move yet by that joint's first or second factor."""
-    product = np.zeros_like(table)
-    axis = joint - 2
-    np.moveaxis(product, axis, 0)[factor] = np.take(table, 0, axis=axis)
-    return product
-
-
-def _shifted(now: Pose, by: Floats) -> Pose:
-    """Go on by a fixed vector, seen from the moved frame."""
-    return Pose(
-        now.turn,
-        now.at + np.einsum("abij,b->aij", now.turn, by),
-        now.back + _constant(by),
-        now.squared + 2 * np.tensordot(by, now.back, axes=1) + _constant(by @ by),
-        now.sizes,
-    )
-
-
-def _rotated(now: Pose, by: Floats) -> Pose:
-    """Turn by a fixed rotation."""
-    turn = np.einsum("abij,bc->acij", now.turn, by)
-    return now._replace(turn=turn, back=np.einsum("ba,bij->aij", by, now.back))
-
-
-def _turned(now: Pose, move: Move, joint: int) -> Pose:
-    """Turn by a free joint: cosine times what was, sine times that a quarter turn on."""
-    on = _rotated(now, move.turn * QUARTER)
-    turn, back = (
-        _times(one, joint, 1) + _times(other, joint, 2)
-        for one, other in ((now.turn, on.turn), (now.back, on.back))
-    )
-    return now._replace(turn=turn, back=back)
-
-
-def _slid(now: Pose, move: Move, joint: int) -> Pose:
-    """Go on along a free slide, by its value times a direction."""
-    ahead = np.einsum("abij,b->aij", now.turn, move.along)
-    product = 2 * np.tensordot(move.along, now.back, axes=1)
-    length = _constant(np.asarray(move.along @ move.along))
-    return Pose(
-        now.turn,
-        now.at + _times(ahead, joint, 1),
-        now.back + _times(_constant(move.along), joint, 1),
-        now.squared + _times(product, joint, 1) + _times(length, joint, 2),
-        now.sizes,
-    )
-
-
-# --- features -------------------------------------------------------------------------------------
+# --- the features of two cores --------------------------------------------------------------------
 
 
 def anticlockwise(corners: NDArray[Any]) -> list[int]:
@@ -283,7 +242,9 @@ class Features:
     discs: Floats | None = None
 
 
-def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool) -> Features:
+def features(
+    one: Core, other: Core, moved: Pose, keep: float, sizes: Sizes, *, swapped: bool
+) -> Features:
     """Return the features of two convex cores that are to keep a distance.
 
     Parameters
@@ -292,16 +253,15 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
         Of the other core's frame, seen from the first one's.
     keep : float
         Both radii plus the clearance, R; length.
+    sizes : Sizes
+        The lengths that go into the pose.
     swapped : bool
         Whether names begin with the other core's part.
     """
-    ahead = moved.at + np.einsum("abij,kb->kaij", moved.turn, other.corners)
-    back = np.einsum("baij,kb->kaij", moved.turn, one.corners) - moved.back
-    there, here = moved.turn, np.swapaxes(moved.turn, 0, 1)
-    sizes = moved.sizes.further(one.size + other.size + keep)
+    sizes = sizes.further(one.size + other.size + keep)
     found = [
-        _edges(one, other, ahead, there, keep, sizes),
-        _edges(other, one, back, here, keep, sizes),
+        _edges(one, other, moved.axes, moved.seen, moved.turned, keep, sizes),
+        _edges(other, one, moved.axes, moved.seen_back, moved.turned_back, keep, sizes),
     ]
     names = [(a, b) for a in one.edge_names for b in other.corner_names]
     names += [(b, a) for a in other.edge_names for b in one.corner_names]
@@ -309,11 +269,11 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
     clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
     of_edges = len(names)
     if keep > 0 or max(i, k) < 3:
-        found.append(_corners(one, other, ahead, back, moved, keep, sizes))
+        found.append(_corners(one, other, moved, keep, sizes))
         names += [(a, b) for a in one.corner_names for b in other.corner_names]
         clause = np.concatenate([clause, e + j + np.arange(i * k)])
     corners = np.arange(len(names)) >= of_edges
-    # What is kept at no distance from a point forbids nothing, unless it has an inside.
+    # Points and segments with zero clearance add no constraint, because touching is allowed.
     forbids = keep > 0 or i + k > 3
     forms, sides, relative, side_relative = map(np.concatenate, zip(*found, strict=True))
     return Features(
@@ -334,10 +294,7 @@ def features(one: Core, other: Core, moved: Pose, keep: float, *, swapped: bool)
 def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
     """Return the squared distance of the middles of two cores, less that at which discs meet."""
     (p, one_reach), (u, other_reach) = one.disc, other.disc
-    ahead = moved.at + np.einsum("abij,b->aij", moved.turn, u)
-    squared = moved.squared - 2 * np.einsum("a,aij->ij", p, ahead)
-    squared = squared + 2 * np.einsum("a,aij->ij", u, moved.back)
-    squared[0, 0] += p @ p + u @ u - (one_reach + other_reach + keep) ** 2
+    squared, _ = two_corners(moved, p, u, (), (), one_reach + other_reach + keep)
     return np.asarray(squared)
 
 
@@ -400,12 +357,12 @@ def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any
     return {"curves": tuple(curves), "keys": tuple(keys), "ends": tuple(ends)}
 
 
-def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[Features]:
+def heights(
+    core: Core, moved: Pose, normal: Floats, level: float, sizes: Sizes
+) -> Iterator[Features]:
     """Yield each corner of a core above a line, ``normal . r >= level``: features without sides."""
-    seen = moved.at + np.einsum("abij,kb->kaij", moved.turn, core.corners)
-    forms = np.einsum("a,kaij->kij", normal, seen)
-    forms[..., 0, 0] -= level
-    sizes = moved.sizes.further(core.size + abs(level))
+    forms = _plus(moved.axes.dot(normal, moved.seen(_vectors(core.corners))), -level)
+    sizes = sizes.further(core.size + abs(level))
     errors = np.full(1, sizes.relative(1)), np.zeros((1, SIDES))
     places = core.corners.tolist()
     for form, name, corner in zip(forms, core.corner_names, places, strict=True):
@@ -418,24 +375,25 @@ def heights(core: Core, moved: Pose, normal: Floats, level: float) -> Iterator[F
 
 
 def _edges(
-    mine: Core, theirs: Core, seen: Floats, turn: Floats, keep: float, sizes: Sizes
-) -> Tables:
+    mine: Core,
+    theirs: Core,
+    axes: Axes,
+    place: Callable[[Vector], Vector],
+    direction: Callable[[Vector], Vector],
+    keep: float,
+    sizes: Sizes,
+) -> Rows:
     """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
     along, lengths = mine.edges
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
-    starts = mine.corners[: len(along)]
-    height = np.einsum("ea,kaij->ekij", normal, seen)
-    height[..., 0, 0] -= ((normal * starts).sum(axis=1) + keep)[:, None]
-    beside = np.einsum("ea,kaij->ekij", along, seen)
-    beside[..., 0, 0] -= (along * starts).sum(axis=1)[:, None]
-    rest = -beside
-    rest[..., 0, 0] += lengths[:, None]
-    rims = np.einsum("ea,abij,knb->eknij", normal, turn, theirs.steps)
-    sides = np.concatenate([np.stack([beside, rest], axis=2), rims], axis=2)
+    own, start = (_vectors(x[:, None]) for x in (along, mine.corners[: len(along)]))
+    reach = lengths[:, None, None, None]
+    rims = [direction(_vectors(theirs.steps[:, n])) for n in range(theirs.steps.shape[1])]
+    seen = place(_vectors(theirs.corners))
+    height, sides = edge_and_corner(axes, own, start, reach, seen, rims, keep)
     relative = np.zeros((*height.shape[:2], SIDES))
     relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
     both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
-    relative[:, :, 2 : sides.shape[2]] = both[:, :, None]
+    relative[:, :, 2 : len(sides)] = both[:, :, None]
     return (
         height.reshape(-1, 3, 3),
         _padded(sides),
@@ -444,38 +402,36 @@ def _edges(
     )
 
 
-def _corners(
-    one: Core, other: Core, ahead: Floats, back: Floats, moved: Pose, keep: float, sizes: Sizes
-) -> Tables:
+def _corners(one: Core, other: Core, moved: Pose, keep: float, sizes: Sizes) -> Rows:
     """Forms and sides of each corner of one core with each of the other."""
-    p, u = one.corners, other.corners
-    squared = moved.squared - 2 * np.einsum("pa,kaij->pkij", p, ahead)
-    squared = squared + 2 * np.einsum("ka,aij->kij", u, moved.back)
-    squared[..., 0, 0] += (p**2).sum(axis=1)[:, None] + (u**2).sum(axis=1) - keep**2
-    mine, theirs = one.steps, other.steps
-    behind = -np.einsum("pna,kaij->pknij", mine, ahead)
-    behind[..., 0, 0] += np.einsum("pna,pa->pn", mine, p)[:, None]
-    beyond = -np.einsum("kna,paij->pknij", theirs, back)
-    beyond[..., 0, 0] += np.einsum("kna,ka->kn", theirs, u)
-    sides = np.concatenate([behind, beyond], axis=2)
-    relative = np.zeros((*squared.shape[:2], SIDES))
-    own, all_sides = behind.shape[2], sides.shape[2]
+    p, u = _vectors(one.corners[:, None]), _vectors(other.corners)
+    steps = [_vectors(one.steps[:, n, None]) for n in range(one.steps.shape[1])]
+    far_steps = [_vectors(other.steps[:, n]) for n in range(other.steps.shape[1])]
+    squared, sides = two_corners(moved, p, u, steps, far_steps, keep)
+    shape = squared.shape[:2]
+    relative, own = np.zeros((*shape, SIDES)), len(steps)
     relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
-    relative[:, :, own:all_sides] = (other.doubts_about + sizes.relative(1))[:, None]
+    relative[:, :, own : len(sides)] = (other.doubts_about + sizes.relative(1))[:, None]
     return (
         squared.reshape(-1, 3, 3),
-        _padded(sides),
-        np.full(p.shape[0] * u.shape[0], sizes.relative(2)),
+        _padded([np.broadcast_to(side, squared.shape) for side in sides]),
+        np.full(shape[0] * shape[1], sizes.relative(2)),
         relative.reshape(-1, SIDES),
     )
 
 
-def _padded(sides: Floats) -> Floats:
-    """Return side conditions (e, k, up to 4, 3, 3) as (e k, 4, 3, 3), with 1 for those missing."""
-    e, k, n = sides.shape[:3]
+def _vectors(places: Floats) -> Vector:
+    """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
+    return places[..., 0, None, None], places[..., 1, None, None]
+
+
+def _padded(sides: Sequence[Floats]) -> Floats:
+    """Return side conditions, up to 4 of shape (e, k, 3, 3), as (e k, 4, 3, 3), 1 for the rest."""
+    e, k = sides[0].shape[:2] if sides else (1, 1)
     full = np.zeros((e, k, SIDES, 3, 3))
     full[..., 0, 0] = 1.0
-    full[:, :, :n] = sides
+    for n, side in enumerate(sides):
+        full[:, :, n] = side
     return full.reshape(-1, SIDES, 3, 3)
 
 

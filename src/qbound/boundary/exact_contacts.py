@@ -1,12 +1,8 @@
-r"""Contact features with exact numbers, one at a time: what `contacts` has in floats.
+"""Contact features with exact numbers, one at a time: what `contacts` has in floats.
 
 A form and its side conditions are those of the same row of `Contacts` times a positive number: no
 edge is brought to length 1, so that whole numbers stay rational. Vectors of the plane of motion are
-(x, y) for :math:`x\,e_1 + y\,e_2`, where :math:`e_1` is any vector of the plane with rational
-coordinates and :math:`e_2` is its product with the normal n, as that is written. A turn is
-:math:`\cos q + \frac{\sin q}{|n|} K` with :math:`K (x, y) = (-|n|^2 y, x)`: tables hold the
-coefficients of :math:`\sin q / |n|` until they are done, so that in a plane that is tilted what
-is zero is so too, and no ball.
+pairs (x, y), in axes of any length (`poses.Axes`).
 """
 
 from __future__ import annotations
@@ -19,146 +15,39 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from qbound.arrays import Array
-from qbound.boundary.contacts import Contacts, anticlockwise
+from qbound.boundary.contacts import Contacts, anticlockwise, edge_and_corner, two_corners
 from qbound.boundary.parts import bounded_bodies
+from qbound.boundary.poses import Axes, Move, Pose, Vector
+from qbound.forms.harmonic import add_constant
 from qbound.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
 from qbound.model.frames import cross
-from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
+from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from qbound.tolerances import ROUNDING, ZERO_AMPLITUDE
-
-Vector = tuple[Any, Any]
-"""A vector of the plane, of numbers or of tables (3, 3)."""
 
 
 @dataclass(frozen=True)
-class PlaneAxes:
-    r"""Axes of the plane of motion, at right angles, turned as those of `Robot.plane` are.
+class PlaneAxes(Axes):
+    r"""Axes of the plane of motion, turned as those of `Robot.plane` are.
 
     Attributes
     ----------
     first, second : ndarray, shape (3,)
         Seen from the base; the second is the product of the normal and the first.
-    size : number
-        Square of the first axis' length.
-    ratio : number
-        Square of the second axis' length beside it: that of the normal's.
-    stretch : number
-        Square root of the ratio, by which `quarter` makes a vector longer.
     """
 
-    first: Array
-    second: Array
-    size: Any
-    ratio: Any
-    stretch: Any
+    first: Any = None
+    second: Any = None
 
     @classmethod
     def across(cls, normal: Array) -> PlaneAxes:
         """Return axes at right angles to a normal of any length."""
         base = rationals(np.eye(3, dtype=int)[int(np.argmin(np.abs(normal.astype(float))))])
         first, square = cross(base, normal), normal @ normal
-        return cls(first, cross(normal, first), first @ first, square, root(square))
+        return cls(first @ first, square, root(square), first, cross(normal, first))
 
     def flat(self, vector: Array) -> Vector:
         """Return the plane's coordinates of a vector of the base, shape (3,)."""
         return self.first @ vector / self.size, self.second @ vector / (self.size * self.ratio)
-
-    def dot(self, u: Vector, v: Vector) -> Any:
-        """Return the scalar product."""
-        return (u[0] * v[0] + u[1] * v[1] * self.ratio) * self.size
-
-    def quarter(self, u: Vector) -> Vector:
-        """Turn by a quarter turn, from the first axis to the second, and stretch."""
-        return -(u[1] * self.ratio), u[0]
-
-    def length(self, u: Vector) -> Any:
-        """Return the length of a vector of numbers."""
-        return root(self.dot(u, u))
-
-
-@dataclass(frozen=True)
-class ExactPose:
-    """Where a frame stands, seen from another one, as tables (3, 3) of the two free joints.
-
-    Attributes
-    ----------
-    turn : pair of tables
-        Cosine and sine of the turn, the sine over the stretch.
-    at : pair of tables
-        The frame's origin, seen from the other frame.
-    back : pair of tables
-        The same vector seen from the frame itself.
-    squared : table
-        Its squared length.
-    """
-
-    axes: PlaneAxes
-    turn: Vector
-    at: Vector
-    back: Vector
-    squared: Array
-
-    def turned(self, u: Vector) -> Vector:
-        """Return a vector of the frame seen from the other one."""
-        return self._rotate(u, self.turn)
-
-    def turned_back(self, u: Vector) -> Vector:
-        """Return a vector of the other frame seen from this one."""
-        return self._rotate(u, (self.turn[0], -self.turn[1]))
-
-    def _rotate(self, u: Vector, turn: Vector) -> Vector:
-        c, s = turn
-        v = self.axes.quarter(u)
-        return c * u[0] + s * v[0], c * u[1] + s * v[1]
-
-    def shifted(self, by: Vector) -> ExactPose:
-        """Go on by a fixed vector, seen from the moved frame."""
-        axes = self.axes
-        return ExactPose(
-            axes,
-            self.turn,
-            _sum(self.at, self.turned(by)),
-            (_plus(self.back[0], by[0]), _plus(self.back[1], by[1])),
-            _plus(self.squared + axes.dot(by, self.back) * 2, axes.dot(by, by)),
-        )
-
-    def rotated(self, c: Any, s: Any) -> ExactPose:
-        """Turn by a fixed angle, given by its cosine and its sine over the stretch."""
-        cosine, sine = self.turn
-        u = self.back
-        v = self.axes.quarter(u)
-        turn = cosine * c - sine * s * self.axes.ratio, sine * c + cosine * s
-        back = u[0] * c - v[0] * s, u[1] * c - v[1] * s
-        return ExactPose(self.axes, turn, self.at, back, self.squared)
-
-    def freely_turned(self, sense: int, joint: int) -> ExactPose:
-        """Turn by a free joint."""
-        on = self.rotated(rational(0), rational(sense))
-        turn, back = (
-            tuple(
-                _times(one, joint, 1) + _times(other, joint, 2)
-                for one, other in zip(own, quarter, strict=True)
-            )
-            for own, quarter in ((self.turn, on.turn), (self.back, on.back))
-        )
-        return ExactPose(self.axes, (turn[0], turn[1]), self.at, (back[0], back[1]), self.squared)
-
-    def freely_slid(self, along: Vector, joint: int) -> ExactPose:
-        """Go on along a free slide, by its value times a direction."""
-        axes = self.axes
-        x, y = self.turned(along)
-        ahead = _times(x, joint, 1), _times(y, joint, 1)
-        step = _times(_constant(along[0]), joint, 1), _times(_constant(along[1]), joint, 1)
-        gain = _times(axes.dot(along, self.back) * 2, joint, 1)
-        square = _times(_constant(axes.dot(along, along)), joint, 2)
-        at, back = _sum(self.at, ahead), _sum(self.back, step)
-        return ExactPose(axes, self.turn, at, back, self.squared + gain + square)
-
-    @classmethod
-    def still(cls, axes: PlaneAxes) -> ExactPose:
-        """Return the pose of a frame seen from itself."""
-        none, one = _constant(rational(0)), _constant(rational(1))
-        return cls(axes, (one, none), (none, none), (none, none), none)
 
 
 class ExactCore(NamedTuple):
@@ -215,7 +104,7 @@ class ExactContacts:
     ) -> None:
         self._robot, self._held, self._contacts = robot, held, contacts
         self._boundaries = {boundary.name: boundary for boundary in boundaries}
-        self._poses: dict[tuple[int, int], ExactPose] = {}
+        self._poses: dict[tuple[int, int], Pose] = {}
         self._cores: dict[str, list[ExactCore]] = {}
 
     def feature(self, k: int) -> Feature:
@@ -242,11 +131,11 @@ class ExactContacts:
             return self._height(boundary, part)
         assert isinstance(boundary, BodyPair)  # no other has features
         bodies = sorted(
-            bounded_bodies(self._robot, boundary), key=lambda b: self._robot.depth(b.frame)
+            bounded_bodies(self._robot, boundary), key=lambda b: self._robot.steps_to(b.frame)
         )
         near, far = (self._cores_of(body) for body in bodies)
         one, other = near[part // len(far)], far[part % len(far)]
-        moved = self._pose(*(self._robot.depth(body.frame) for body in bodies))
+        moved = self._pose(*(self._robot.steps_to(body.frame) for body in bodies))
         keep = one.radius + other.radius + self._clearance(boundary)
         row = k - int(np.searchsorted(self._contacts.pair, pair))
         return _feature(one, other, moved, keep, row)
@@ -259,12 +148,11 @@ class ExactContacts:
         """Return a corner of a body above a half-space: ``normal . r >= level``."""
         (body,) = bounded_bodies(self._robot, wall)
         exact: Any = self._numbers.boundary(wall)
-        axes, moved = self._axes, self._pose(0, self._robot.depth(body.frame))
+        axes, moved = self._axes, self._pose(0, self._robot.steps_to(body.frame))
         cores = self._cores_of(body)
         at, radius = [(c, core.radius) for core in cores for c in core.corners][corner]
-        seen = _sum(moved.at, moved.turned(at))
         level = (exact.offset + radius) * _length(exact.normal)
-        form = _plus(axes.dot(axes.flat(exact.normal), seen), -level)
+        form = add_constant(axes.dot(axes.flat(exact.normal), moved.seen(at)), -level)
         return form, np.empty((0, 3, 3), dtype=object)
 
     @cached_property
@@ -273,11 +161,17 @@ class ExactContacts:
 
     @cached_property
     def _mounts(self) -> list[Array]:
-        """The rotation of each frame at all joint values 0, seen from the base, by depth."""
+        """The rotation of each frame at all joint values 0, seen from the base, by steps to it."""
         found = [rationals(np.eye(3, dtype=int))]
-        for joint in self._robot.joints:
-            found.append(found[-1] @ self._numbers.joint(joint).mount)
+        for step in self._steps:
+            found.append(found[-1] @ step.mount)
         return found
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        """The steps of the chain with exact numbers."""
+        joints = map(self._numbers.joint, self._robot.joints)
+        return [step for j, joint in enumerate(joints) for step in joint.steps(j)]
 
     @cached_property
     def _axes(self) -> PlaneAxes:
@@ -288,9 +182,8 @@ class ExactContacts:
 
     def _normal(self) -> Array:
         """Return a normal of the plane, of any length, chosen as `plane_of_motion` does."""
-        joints = self._robot.joints
-        axes = [self._mounts[j + 1] @ self._numbers.joint(x).axis for j, x in enumerate(joints)]
-        turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
+        axes = [self._mounts[k + 1] @ step.axis for k, step in enumerate(self._steps)]
+        turning = [axis for axis, step in zip(axes, self._steps, strict=True) if not step.slides]
         if turning:
             return np.asarray(turning[0])
         for axis in axes[1:]:
@@ -300,38 +193,33 @@ class ExactContacts:
                 return normal
         return rationals(self._robot.plane.normal)
 
-    def _pose(self, near: int, far: int) -> ExactPose:
-        """Return the pose of a frame seen from one before it, by their depths."""
+    def _pose(self, near: int, far: int) -> Pose:
+        """Return the pose of a frame seen from one before it, by the steps to both."""
         if (near, far) not in self._poses:
-            found = ExactPose.still(self._axes)
-            for j in range(near, far):
-                found = self._moved(found, j)
-            self._poses[near, far] = found
+            moves = [self._move(k) for k in range(near, far)]
+            none = np.full((3, 3), rational(0), dtype=object)
+            self._poses[near, far] = Pose.after(moves, self._axes, none)
         return self._poses[near, far]
 
-    def _moved(self, found: ExactPose, j: int) -> ExactPose:
-        """Go on by a joint."""
-        axes, joint = self._axes, self._numbers.joint(self._robot.joints[j])
-        sense, free = self._robot.plane.senses[j], self._robot.free(self._held)
-        found = found.shifted(axes.flat(self._mounts[j] @ joint.origin))
-        if sense:
-            if j in free:
-                return found.freely_turned(sense, free.index(j))
-            s, c = sine_cosine(rational(self._held[j]))
-            return found.rotated(c, s * sense / axes.stretch)
-        axis = self._mounts[j + 1] @ joint.axis
-        x, y = axes.flat(axis / _length(joint.axis))
-        if j in free:
-            return found.freely_slid((x, y), free.index(j))
-        value = rational(self._held[j])
-        return found.shifted((x * value, y * value))
+    def _move(self, k: int) -> Move:
+        """Return a step as it moves in the plane."""
+        axes, step, sense = self._axes, self._steps[k], self._robot.plane.senses[k]
+        origin, free = axes.flat(self._mounts[k] @ step.origin), self._robot.free(self._held)
+        along = axes.flat(self._mounts[k + 1] @ (step.axis * step.sense) / _length(step.axis))
+        if step.joint in free:
+            return Move(origin, sense, along, free.index(step.joint))
+        value = rational(self._held[step.joint])
+        if not sense:
+            return Move(origin, sense, along, None, (value,))
+        sine, cosine = sine_cosine(value)
+        return Move(origin, sense, along, None, (cosine, sine / axes.stretch))
 
     def _cores_of(self, body: Body) -> list[ExactCore]:
         """Return the convex cores of a body."""
         if body.name not in self._cores:
             shape = self._numbers.body(body).shape
             radius = getattr(shape, "radius", rational(0))
-            mount = self._mounts[self._robot.depth(body.frame)]
+            mount = self._mounts[self._robot.steps_to(body.frame)]
             at = [self._axes.flat(mount @ place) for place in shape.places]
             cores = []
             for loop in body.shape.loops:
@@ -345,57 +233,32 @@ class ExactContacts:
 # --- one feature ----------------------------------------------------------------------------------
 
 
-def _feature(one: ExactCore, other: ExactCore, moved: ExactPose, keep: Any, row: int) -> Feature:
+def _feature(one: ExactCore, other: ExactCore, moved: Pose, keep: Any, row: int) -> Feature:
     """Return a row of `contacts.features`: edges of one, edges of the other, pairs of corners."""
     m, n = len(one.corners), len(other.corners)
     if row < one.edges * n:
         edge, corner = divmod(row, n)
-        u = other.corners[corner]
-        seen = _sum(moved.at, moved.turned(u))
         rims = [moved.turned(step) for step in other.around(corner)]
-        return _on_edge(moved.axes, one, edge, seen, rims, keep)
+        return _on_edge(moved, one, edge, moved.seen(other.corners[corner]), rims, keep)
     row -= one.edges * n
     if row < other.edges * m:
         edge, corner = divmod(row, m)
-        seen = _difference(moved.turned_back(one.corners[corner]), moved.back)
         rims = [moved.turned_back(step) for step in one.around(corner)]
-        return _on_edge(moved.axes, other, edge, seen, rims, keep)
-    return _of_corners(one, other, moved, keep, *divmod(row - other.edges * m, n))
-
-
-def _on_edge(
-    axes: PlaneAxes, core: ExactCore, edge: int, seen: Vector, rims: Sequence[Vector], keep: Any
-) -> Feature:
-    """Return a corner, seen from a core's frame, on one of its edges.
-
-    The height over the edge is the product of the edge and the way from its start to the corner,
-    less what is kept; rims are the corner's own edges, which rise from it.
-    """
-    along, start = core.step(edge), core.corners[edge]
-    way = _plus(seen[0], -start[0]), _plus(seen[1], -start[1])
-    form = (way[0] * along[1] - way[1] * along[0]) * axes.size
-    form = _plus(form, -(keep * axes.length(along) / axes.stretch)) if keep != 0 else form
-    beside = axes.dot(along, way)
-    sides = [beside, _plus(-beside, axes.dot(along, along))]
-    sides += [x * along[1] - y * along[0] for x, y in rims]
+        return _on_edge(moved, other, edge, moved.seen_back(one.corners[corner]), rims, keep)
+    i, k = divmod(row - other.edges * m, n)
+    p, u = one.corners[i], other.corners[k]
+    form, sides = two_corners(moved, p, u, one.around(i), other.around(k), keep)
     return form, _stacked(sides)
 
 
-def _of_corners(
-    one: ExactCore, other: ExactCore, moved: ExactPose, keep: Any, i: int, k: int
+def _on_edge(
+    moved: Pose, core: ExactCore, edge: int, seen: Vector, rims: Sequence[Vector], keep: Any
 ) -> Feature:
-    """Return a corner of one core and one of the other: their squared distance."""
-    axes, p, u = moved.axes, one.corners[i], other.corners[k]
-    ahead = _sum(moved.at, moved.turned(u))
-    squared = moved.squared + (axes.dot(u, moved.back) - axes.dot(p, ahead)) * 2
-    form = _plus(squared, axes.dot(p, p) + axes.dot(u, u) - keep * keep)
-    back = _difference(moved.turned_back(p), moved.back)
-    sides = [
-        _plus(-axes.dot(step, seen), axes.dot(step, own))
-        for core, corner, seen in ((one, i, ahead), (other, k, back))
-        for own in [core.corners[corner]]
-        for step in core.around(corner)
-    ]
+    """Return a corner, seen from a core's frame, on one of its edges."""
+    axes, along = moved.axes, core.step(edge)
+    reach = axes.dot(along, along)
+    kept = keep * root(reach) / axes.stretch if keep != 0 else keep
+    form, sides = edge_and_corner(axes, along, core.corners[edge], reach, seen, rims, kept)
     return form, _stacked(sides)
 
 
@@ -403,39 +266,6 @@ def _length(direction: Array) -> Any:
     """Return the length of a direction; one that is a unit vector but for rounding has length 1."""
     square = direction @ direction
     return rational(1) if abs(float(square) - 1) <= ROUNDING else root(square)
-
-
-# --- tables ---------------------------------------------------------------------------------------
-
-
-def _constant(value: Any) -> Array:
-    """Return the table of a value that no joint moves."""
-    return _plus(np.full((3, 3), rational(0), dtype=object), value)
-
-
-def _plus(table: Array, value: Any) -> Array:
-    """Add a number to a table's constant."""
-    result = table.copy()
-    result[0, 0] = result[0, 0] + value
-    return result
-
-
-def _times(table: Array, joint: int, factor: int) -> Array:
-    """Multiply what a joint does not move yet by that joint's first or second factor."""
-    product = np.full((3, 3), rational(0), dtype=object)
-    if joint == 0:
-        product[factor] = table[0]
-    else:
-        product[:, factor] = table[:, 0]
-    return product
-
-
-def _sum(u: Vector, v: Vector) -> Vector:
-    return u[0] + v[0], u[1] + v[1]
-
-
-def _difference(u: Vector, v: Vector) -> Vector:
-    return u[0] - v[0], u[1] - v[1]
 
 
 def _stacked(sides: Sequence[Array]) -> Array:

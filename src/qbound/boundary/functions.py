@@ -7,7 +7,6 @@ symbols: the formulas of the paper are derived here, never typed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import reduce, singledispatch
 
 import numpy as np
@@ -15,17 +14,16 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Array
 from qbound.forms.factors import FACTORS
-from qbound.forms.harmonic import HarmonicForm, add_constant
+from qbound.forms.harmonic import HarmonicForm, Kind, add_constant, times_function
 from qbound.model.frames import cross
 from qbound.model.robot import (
     BodyPair,
     Boundary,
     HalfSpace,
-    Joint,
     Pair,
-    Parallelogram,
     Point,
     Robot,
+    Step,
     refuse_no_robot,
 )
 from qbound.printable import printable
@@ -170,8 +168,9 @@ def term_size(robot: Robot, boundary: Boundary) -> float:
         rest = abs(boundary.offset) + far.radius
     else:
         raise ValueError(_of_bodies(boundary))
-    steps = [joint for _, joint in _steps(robot, far, observer)]
-    links = sum(float(np.linalg.norm(joint.origin)) + joint.farthest for joint in steps)
+    steps = _steps(robot, far, observer)
+    links = sum(float(np.linalg.norm(step.origin)) for step in steps)
+    links += sum(robot.joints[step.joint].farthest for step in steps if step.slides)
     size = links + float(np.linalg.norm(far.at)) + rest
     d_min = robot.least_distance(boundary)
     return size if d_min is None else size**2 + d_min**2
@@ -306,7 +305,7 @@ def _outer(left: Array, right: Array) -> Array:
 def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
     """Return the sign of "first to second" and the two points, the one nearer to the base first."""
     first, second = (robot.point(name) for name in pair.points)
-    if _order(robot, first) <= _order(robot, second):
+    if robot.steps_to(first.frame) <= robot.steps_to(second.frame):
         return 1, first, second
     return -1, second, first
 
@@ -325,30 +324,20 @@ def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[Array, Ar
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
     u = add_constant(u, point.at)
     squared = add_constant(np.zeros_like(u[0]), point.at @ point.at)
-    for j, joint in _steps(robot, point, robot.base if observer is None else observer):
-        u, squared = _pass_joint(joint, j, u, squared)
+    passed = set[int]()
+    for step in _steps(robot, point, robot.base if observer is None else observer):
+        kind = robot.joints[step.joint].kind if step.joint in passed else None
+        u, squared = _pass(step, u, squared, kind)
+        passed.add(step.joint)
     return u, squared
 
 
-def _order(robot: Robot, point: Point) -> tuple[int, int]:
-    """Say how far out a point is: by joints, and of one joint's frames the bar before the other."""
-    depth = robot.depth(point.frame)
-    labels = robot.joints[depth - 1].labels if depth else (robot.base,)
-    return depth, labels.index(point.frame)
-
-
-def _steps(robot: Robot, point: Point, observer: str) -> list[tuple[int, Joint]]:
-    """Return the joints between a point and its observer, by index, the point's first."""
-    first, last = robot.depth(observer), robot.depth(point.frame)
-    if first and observer != robot.joints[first - 1].frame:
-        first -= 1  # a bar sees what its own joint carries move
-    found = []
-    for j in reversed(range(first, last)):
-        frame = point.frame if j == last - 1 else robot.joints[j].frame
-        found += [(j, step) for step in robot.joints[j].steps(observer, frame)]
-    if robot.depth(observer) > last or (not found and observer != point.frame):
+def _steps(robot: Robot, point: Point, observer: str) -> tuple[Step, ...]:
+    """Return the steps between a point and its observer, the point's first."""
+    first, last = robot.steps_to(observer), robot.steps_to(point.frame)
+    if first > last:
         raise ValueError(f"frame {observer!r} does not carry the point {point.name!r}")
-    return found
+    return robot.steps[first:last][::-1]
 
 
 def _dot(matrix: Array, u: Array) -> Array:
@@ -357,52 +346,31 @@ def _dot(matrix: Array, u: Array) -> Array:
     return np.asarray(product.reshape(matrix.shape[:-1] + u.shape[1:]))
 
 
-def _pass_joint(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
-    """Express u (and |u|^2) beyond joint j, whose index axis has held only the constant so far."""
-    moved, squared = MOTIONS[joint.type_name](joint, j, u, squared)
-    moved = _dot(joint.mount, moved)
-    squared = squared + 2 * _dot(joint.origin, moved)
-    squared = add_constant(squared, joint.origin @ joint.origin)
-    return add_constant(moved, joint.origin), squared
+def _pass(step: Step, u: Array, squared: Array, kind: Kind | None) -> tuple[Array, Array]:
+    """Express u (and |u|^2) before a step; `kind` is that of its joint where u depends on it."""
+    u, squared = (_slide if step.slides else _turn)(step, u, squared, kind)
+    moved = _dot(step.mount, u)
+    squared = squared + 2 * _dot(step.origin, moved)
+    squared = add_constant(squared, step.origin @ step.origin)
+    return add_constant(moved, step.origin), squared
 
 
-def _turn(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+def _turn(step: Step, u: Array, squared: Array, kind: Kind | None) -> tuple[Array, Array]:
     """Turn u about a unit axis by Rodrigues' formula: constant, cosine and sine part."""
-    axis, u = joint.axis, np.take(u, 0, axis=j + 1)
+    axis, j = step.axis, step.joint
+    u = u if kind else np.take(u, 0, axis=j + 1)
     along = np.multiply.outer(axis, _dot(axis, u))
-    across = cross(axis, u)
-    return np.stack([along, u - along, across], axis=j + 1), squared
+    across = cross(axis, u) if step.sense > 0 else -cross(axis, u)
+    if not kind:
+        return np.stack([along, u - along, across], axis=j + 1), squared
+    cosine, sine = (times_function(x, j + 1, k, kind) for x, k in ((u - along, 1), (across, 2)))
+    return along + cosine + sine, squared
 
 
-def _circle(joint: Parallelogram, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
-    """Add the turned crank c to u; |u|^2 gains 2 c . u + |c|^2."""
-    axis, crank = joint.axis, joint.crank
-    along = axis * (axis @ crank)
-    parts = [along, crank - along, cross(axis, crank)]
-    still = np.take(u, 0, axis=j + 1)
-    gains = [2 * _dot(part, still) for part in parts]
-    gains[0] = add_constant(np.take(squared, 0, axis=j) + gains[0], crank @ crank)
-    moved = [
-        add_constant(x, part) for x, part in zip((still, 0 * still, 0 * still), parts, strict=True)
-    ]
-    return np.stack(moved, axis=j + 1), np.stack(gains, axis=j)
-
-
-def _slide(joint: Joint, j: int, u: Array, squared: Array) -> tuple[Array, Array]:
+def _slide(step: Step, u: Array, squared: Array, kind: Kind | None) -> tuple[Array, Array]:
     """Add q times a unit axis to u; |u|^2 gains 2 q axis . u + q^2."""
-    axis = joint.axis
-    along = np.take(_dot(axis, u), 0, axis=j)
-    constant = np.take(squared, 0, axis=j)
-    square = add_constant(np.zeros_like(along), 1)
-    squared = np.stack([constant, 2 * along, square], axis=j)
-    still = np.take(u, 0, axis=j + 1)
-    slope = add_constant(np.zeros_like(still), axis)
-    return np.stack([still, slope, np.zeros_like(still)], axis=j + 1), squared
-
-
-MOTIONS: dict[str, Callable[..., tuple[Array, Array]]] = {
-    "revolute": _turn,
-    "prismatic": _slide,
-    "parallelogram": _circle,
-}
-"""How a joint of each type moves what it carries."""
+    axis, j = step.axis * step.sense, step.joint
+    gain = times_function(2 * _dot(axis, u), j, 1, kind)
+    square = times_function(add_constant(np.zeros_like(squared), 1), j, 2)
+    ahead = times_function(add_constant(np.zeros_like(u), axis), j + 1, 1)
+    return u + ahead, squared + gain + square

@@ -93,7 +93,7 @@ def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Ne
 
 def _placed(robot: Robot, body: Body, q: Floats) -> Iterator[Placed]:
     """Yield what each part of a body is called, its core where it stands, and its radius."""
-    pair = (0, robot.depth(body.frame))
+    pair = (0, robot.steps_to(body.frame))
     c, s, x, y, *_ = PlanePoses(robot).of(q[None], {pair})[pair][:, 0]
     turn = np.array([[c, s], [-s, c]])
     parts = flat_parts(robot, body)

@@ -1,4 +1,4 @@
-"""Poses of a frame in the plane of motion, seen from another frame, many at a time.
+"""Poses of a frame in the plane of motion seen from another one, at configurations and as forms.
 
 In the axes of the plane a pose is a turn and a translation. The coordinate of a place of one frame
 along a direction of the other is linear in the pose: a row of numbers times a column `POSE`.
@@ -6,10 +6,19 @@ along a direction of the other is linear in the pose: a row of numbers times a c
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final, NamedTuple
+
 import numpy as np
 
-from qbound.arrays import Floats
-from qbound.model.robot import Robot
+from qbound.arrays import Array, Floats
+from qbound.forms.factors import FACTORS
+from qbound.forms.harmonic import Kind, add_constant, times_function
+from qbound.model.robot import Prismatic, Revolute, Robot
+
+TURNING: Final = Revolute.kind
+SLIDING: Final = Prismatic.kind
 
 POSE = 7
 """Rows of a pose: cosine and sine of its turn, its origin (x, y) seen from the observer, the same
@@ -17,7 +26,7 @@ vector seen from the turned frame, and 1."""
 
 
 class PlanePoses:
-    """Poses of the frames of a robot in its plane of motion, frames by their depth in the chain.
+    """Poses of the frames of a robot in its plane of motion, frames by the steps to them.
 
     Raises
     ------
@@ -26,15 +35,12 @@ class PlanePoses:
     """
 
     def __init__(self, robot: Robot) -> None:
-        plane, base = robot.plane, robot.base
-        turns = [np.asarray(plane.frames.rotation(base, j.parent), float) for j in robot.joints]
-        moves = [plane.across @ turn for turn in turns]
-        self._origins = [move @ j.origin for move, j in zip(moves, robot.joints, strict=True)]
-        axes = [move @ j.mount @ j.axis for move, j in zip(moves, robot.joints, strict=True)]
-        self._slides = [axis * (not j.turns) for axis, j in zip(axes, robot.joints, strict=True)]
-        self._senses = plane.senses
+        self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
+        self._origins, self._slides = zip(*flat_steps(robot), strict=True)
         self._lengths = [
-            float(np.linalg.norm(j.origin)) + (0.0 if j.turns else j.farthest) for j in robot.joints
+            float(np.linalg.norm(step.origin))
+            + (robot.joints[step.joint].farthest if step.slides else 0.0)
+            for step in robot.steps
         ]
 
     def length(self, near: int, far: int) -> float:
@@ -48,29 +54,46 @@ class PlanePoses:
         ----------
         q : ndarray, shape (n, joints)
         pairs : set of (near, far)
-            Depths; equal ones are the frame itself.
+            Numbers of steps from the base; equal ones are the frame itself.
 
         Returns
         -------
         dict of (near, far) to ndarray, shape (POSE, n)
         """
         columns = np.ascontiguousarray(q.T)
-        turning = {j for near, far in pairs for j in range(near, far) if self._senses[j]}
-        turns = {j: (np.cos(columns[j]), self._senses[j] * np.sin(columns[j])) for j in turning}
+        steps = {k for near, far in pairs for k in range(near, far) if self._senses[k]}
+        turning = {self._joints[k] for k in steps}
+        known = {j: (np.cos(columns[j]), np.sin(columns[j])) for j in turning}
+        both = ((k, known[self._joints[k]]) for k in steps)
+        turns = {k: (cosine, self._senses[k] * sine) for k, (cosine, sine) in both}
         return {pair: self._pose(columns, turns, *pair) for pair in pairs}
 
     def _pose(
         self, columns: Floats, turns: dict[int, tuple[Floats, Floats]], near: int, far: int
     ) -> Floats:
         c, s, x, y = (np.full(columns.shape[1], value) for value in (1.0, 0.0, 0.0, 0.0))
-        for j in range(near, far):
-            (u, v), (du, dv) = self._origins[j], self._slides[j]
-            u, v = u + du * columns[j], v + dv * columns[j]
+        for k in range(near, far):
+            (u, v), (du, dv) = self._origins[k], self._slides[k]
+            value = columns[self._joints[k]]
+            u, v = u + du * value, v + dv * value
             x, y = x + c * u - s * v, y + s * u + c * v
-            if j in turns:
-                cj, sj = turns[j]
-                c, s = c * cj - s * sj, s * cj + c * sj
+            if k in turns:
+                ck, sk = turns[k]
+                c, s = c * ck - s * sk, s * ck + c * sk
         return np.stack([c, s, x, y, c * x + s * y, c * y - s * x, np.ones_like(c)])
+
+
+def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:
+    """Yield origin and direction of slide of each step in the axes of the plane, shape (2,) each.
+
+    They are turned as at all joint values 0; the direction of a turn is zero.
+    """
+    plane = robot.plane
+    for step in robot.steps:
+        turn = np.asarray(plane.frames.rotation(robot.base, step.parent), dtype=float)
+        move = plane.across @ turn
+        along = move @ step.mount @ step.axis * (step.sense if step.slides else 0)
+        yield move @ step.origin, along
 
 
 def of_far_places(direction: Floats, places: Floats, level: Floats) -> Floats:
@@ -100,3 +123,192 @@ def of_near_places(direction: Floats, places: Floats, level: Floats) -> Floats:
     zero = np.zeros_like(nx)
     terms = (nx * px + ny * py, nx * py - ny * px, zero, zero, -nx, -ny, -level)
     return np.stack(np.broadcast_arrays(*terms), axis=-1)
+
+
+# --- as forms, of numbers of any type -------------------------------------------------------------
+
+Vector = Any
+"""Two coordinates in the axes of the plane: numbers, or arrays of tables."""
+
+
+@dataclass(frozen=True)
+class Axes:
+    r"""Axes of the plane of motion at right angles, of any length.
+
+    Doubles have unit vectors. Exact numbers take any vector of the plane with rational coordinates
+    for the first axis, and its product with the normal n, as that is written, for the second one.
+    So a turn is :math:`\cos q + \frac{\sin q}{|n|} K` with :math:`K (x, y) = (-|n|^2 y, x)`: tables
+    hold the coefficients of :math:`\sin q / |n|`, so that in a plane that is tilted what is zero is
+    zero, and not a ball.
+
+    Attributes
+    ----------
+    size : number
+        Square of the first axis' length.
+    ratio : number
+        Square of the second axis' length beside it: that of the normal's.
+    stretch : number
+        Square root of the ratio, by which `quarter` makes a vector longer.
+    """
+
+    size: Any = 1
+    ratio: Any = 1
+    stretch: Any = 1
+
+    def dot(self, u: Vector, v: Vector) -> Any:
+        """Return the scalar product."""
+        return (u[0] * v[0] + u[1] * v[1] * self.ratio) * self.size
+
+    def cross(self, u: Vector, v: Vector) -> Any:
+        """Return how far v is on the right of u, times the length of u over the stretch."""
+        return (v[0] * u[1] - v[1] * u[0]) * self.size
+
+    def quarter(self, u: Vector) -> Vector:
+        """Turn by a quarter turn, from the first axis to the second, and stretch."""
+        return -(u[1] * self.ratio), u[0]
+
+    def times(self, table: Array, joint: int, k: int, kind: Kind | None = None) -> Array:
+        """Multiply by the cosine of a joint, its sine over the stretch, its value or its square.
+
+        `kind` is that of the joint, where the table depends on it.
+        """
+        if kind is not None and k == 2 and FACTORS[kind].turns.any():
+            parts = np.moveaxis(table, joint, 0)  # the square of this sine has the ratio below it
+            scaled = np.stack([parts[0], parts[1], parts[2] / self.ratio])
+            table = np.moveaxis(scaled, 0, joint)
+        return times_function(table, joint, k, kind)
+
+
+class Move(NamedTuple):
+    """A step of the chain in the plane.
+
+    Attributes
+    ----------
+    origin : Vector
+        From the frame before to the step's, at joint value 0.
+    sense : int
+        +1 or -1 for a turn, from the first axis to the second or back; 0 for a slide.
+    along : Vector
+        Direction of a slide.
+    free : int or None
+        Which of the free joints it is; None for one that is held.
+    value : tuple of numbers
+        Of a held joint: cosine, and sine over the stretch; or how far it slides.
+    """
+
+    origin: Vector
+    sense: int
+    along: Vector
+    free: int | None
+    value: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a frame stands, seen from another one, as tables of the free joints.
+
+    Attributes
+    ----------
+    turn : pair of tables
+        Cosine of the turn, and its sine over the stretch.
+    at : pair of tables
+        The frame's origin, seen from the other frame.
+    back : pair of tables
+        The same vector seen from the frame itself.
+    squared : table
+        Its squared length, which a product of tables would not show to be of the first degree.
+    """
+
+    axes: Axes
+    turn: Vector
+    at: Vector
+    back: Vector
+    squared: Array
+
+    @classmethod
+    def after(cls, moves: Sequence[Move], axes: Axes, none: Array) -> Pose:
+        """Return the pose that moves, one after the other, give the last one's frame.
+
+        Parameters
+        ----------
+        none : ndarray, shape (3, ..., 3)
+            A table of zeros, with an axis for each free joint.
+        """
+        found = cls(axes, (add_constant(none, 1), none), (none, none), (none, none), none)
+        passed = set[int]()
+        for move in moves:
+            found = found.shifted(move.origin)
+            if move.free is not None:
+                again = move.free in passed
+                found = (found.turned_by if move.sense else found.slid_by)(move, move.free, again)
+                passed.add(move.free)
+            elif move.sense:
+                cosine, sine = move.value
+                found = found.rotated(cosine, move.sense * sine)
+            else:
+                (value,) = move.value
+                found = found.shifted((value * move.along[0], value * move.along[1]))
+        return found
+
+    def seen(self, u: Vector) -> Vector:
+        """Return a place of the frame seen from the other one."""
+        x, y = self.turned(u)
+        return self.at[0] + x, self.at[1] + y
+
+    def seen_back(self, u: Vector) -> Vector:
+        """Return a place of the other frame seen from this one."""
+        x, y = self.turned_back(u)
+        return x - self.back[0], y - self.back[1]
+
+    def turned(self, u: Vector) -> Vector:
+        """Return a vector of the frame seen from the other one."""
+        (c, s), v = self.turn, self.axes.quarter(u)
+        return c * u[0] + s * v[0], c * u[1] + s * v[1]
+
+    def turned_back(self, u: Vector) -> Vector:
+        """Return a vector of the other frame seen from this one."""
+        (c, s), v = self.turn, self.axes.quarter(u)
+        return c * u[0] - s * v[0], c * u[1] - s * v[1]
+
+    def shifted(self, by: Vector) -> Pose:
+        """Go on by a fixed vector, seen from the moved frame."""
+        axes, gain = self.axes, self.axes.dot(by, self.back) * 2
+        back = add_constant(self.back[0], by[0]), add_constant(self.back[1], by[1])
+        squared = add_constant(self.squared + gain, axes.dot(by, by))
+        return Pose(axes, self.turn, self.seen(by), back, squared)
+
+    def rotated(self, c: Any, s: Any) -> Pose:
+        """Turn by a fixed angle, given by its cosine and its sine over the stretch."""
+        cosine, sine = self.turn
+        u, v = self.back, self.axes.quarter(self.back)
+        turn = cosine * c - sine * s * self.axes.ratio, sine * c + cosine * s
+        back = u[0] * c - v[0] * s, u[1] * c - v[1] * s
+        return replace(self, turn=turn, back=back)
+
+    def turned_by(self, move: Move, joint: int, again: bool) -> Pose:
+        """Turn by a free joint: cosine times what was, sine times that a quarter turn on."""
+        on, kind = self.rotated(0, move.sense), TURNING if again else None
+        times = self.axes.times
+        turn, back = (
+            tuple(
+                times(one, joint, 1, kind) + times(other, joint, 2, kind)
+                for one, other in zip(own, quarter, strict=True)
+            )
+            for own, quarter in ((self.turn, on.turn), (self.back, on.back))
+        )
+        return replace(self, turn=turn, back=back)
+
+    def slid_by(self, move: Move, joint: int, again: bool) -> Pose:
+        """Go on along a free slide, by its value times a direction."""
+        axes, times, kind = self.axes, self.axes.times, SLIDING if again else None
+        (x, y), none = self.turned(move.along), self.squared * 0
+        ahead = times(x, joint, 1, kind), times(y, joint, 1, kind)
+        own = [times(add_constant(none, length), joint, 1) for length in move.along]
+        gain = times(axes.dot(move.along, self.back) * 2, joint, 1, kind)
+        square = times(add_constant(none, axes.dot(move.along, move.along)), joint, 2)
+        return replace(
+            self,
+            at=(self.at[0] + ahead[0], self.at[1] + ahead[1]),
+            back=(self.back[0] + own[0], self.back[1] + own[1]),
+            squared=self.squared + gain + square,
+        )

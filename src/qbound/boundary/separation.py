@@ -35,7 +35,7 @@ class PartPairs:
     Attributes
     ----------
     frames : (int, int)
-        Depths of both frames, the nearer one first.
+        Numbers of steps to both frames, the nearer one first.
     boundary : ndarray of int, shape (p,)
         Ascending: which boundary each pair belongs to.
     rows : ndarray, shape (2, features, p, POSE)
@@ -247,7 +247,7 @@ class Separation:
         sizes = np.zeros(len(self.names))
         for i, boundary in enumerate(self.boundaries):
             bodies = bounded_bodies(self.robot, boundary)
-            depths = [self.robot.depth(body.frame) for body in bodies]
+            depths = [self.robot.steps_to(body.frame) for body in bodies]
             radii = sum(max(part.radius for part in body.parts) for body in bodies)
             corners = sum(
                 max(float(np.linalg.norm(p.corners, axis=-1).max()) for p in body.parts)
@@ -268,13 +268,13 @@ def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
     """
     if not bounds_bodies(boundary):
         raise ValueError(f"{boundary.name}: it is about points, not about bodies")
-    bodies = sorted(bounded_bodies(robot, boundary), key=lambda body: robot.depth(body.frame))
-    far, last = bodies[-1], robot.depth(bodies[-1].frame)
-    first = robot.depth(bodies[0].frame) if len(bodies) == 2 else 0
+    bodies = sorted(bounded_bodies(robot, boundary), key=lambda body: robot.steps_to(body.frame))
+    far, last = bodies[-1], robot.steps_to(bodies[-1].frame)
+    first = robot.steps_to(bodies[0].frame) if len(bodies) == 2 else 0
     poses, speeds = PlanePoses(robot), np.zeros(len(robot.joints))
     corners = max(float(np.linalg.norm(p.corners, axis=-1).max()) for p in far.parts)
-    for j in range(first, last):
-        speeds[j] = poses.length(j + 1, last) + corners if robot.joints[j].turns else 1.0
+    for k, step in enumerate(robot.steps[first:last], start=first):
+        speeds[step.joint] += 1.0 if step.slides else poses.length(k + 1, last) + corners
     if isinstance(boundary, HalfSpace):
         speeds *= float(np.linalg.norm(boundary.normal))
     return speeds
@@ -287,8 +287,8 @@ def _part_pairs(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[PartPa
         if not isinstance(boundary, BodyPair):
             continue
         bodies = bounded_bodies(robot, boundary)
-        one, other = sorted(bodies, key=lambda body: robot.depth(body.frame))
-        frames = robot.depth(one.frame), robot.depth(other.frame)
+        one, other = sorted(bodies, key=lambda body: robot.steps_to(body.frame))
+        frames = robot.steps_to(one.frame), robot.steps_to(other.frame)
         for (p, p_radius), (r, r_radius) in product(
             flat_parts(robot, one), flat_parts(robot, other)
         ):
@@ -342,7 +342,7 @@ def _heights(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[Heights]:
         normal = robot.plane.across @ boundary.normal
         for corners, radius in flat_parts(robot, body):
             kept = boundary.offset + radius - float(boundary.normal @ off)
-            found[robot.depth(body.frame), len(corners)].append((i, corners, normal, kept))
+            found[robot.steps_to(body.frame), len(corners)].append((i, corners, normal, kept))
     for (depth, _), items in found.items():
         index, cores, normals, kepts = zip(*items, strict=True)
         places, level = np.array(cores), np.zeros(cores[0].shape[0])

@@ -5,8 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.arms.allowed import CELLS, Contact, allowed_collisions
-from qbound.arms.allowed_report import allowed_document, allowed_lines, srdf_text
+from qbound.arms.allowed import (
+    CELLS,
+    Contact,
+    allowed_collisions,
+    allowed_document,
+    allowed_lines,
+    srdf_text,
+)
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress
@@ -60,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         shown = shown or progress("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(options.robot, cells=options.cells, tell=tell)
+    found = allowed_collisions(robot, cells=options.cells, tell=tell)
     document = (options.json, lambda: json_text(allowed_document(robot, found)))
     srdf = (options.disabled, lambda: srdf_text(robot, found, neighbours=options.adjacent))
     deliver([document, srdf], allowed_lines(robot, found))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
@@ -25,6 +24,7 @@ from qbound.proofs import statements
 from qbound.proofs.certify import (
     Bracket,
     Certificate,
+    Subject,
     bracket_scale,
     certify,
     certify_region,
@@ -85,13 +85,10 @@ def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
     if options.with_checker is not None:
         _check_folder(options.with_checker)
-    text, file = robot_text(options.robot)
-    try:
-        robot = parse_robot(tomllib.loads(text))
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
+    robot = parse_robot(*robot_text(options.robot))
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
+    subject = Subject(robot)
     refuse_memory(options, region_bytes(robot), FEWER)
     margin = as_decimal("--margin", options.margin)
     if Fraction(margin) < 0:
@@ -102,9 +99,9 @@ def run(options: argparse.Namespace) -> int:
                 "--largest-scale: for the robot as it is, without --margin and --slice"
             )
         with working("proofs and witnesses around the largest scale"):
-            found = bracket_scale(text)
+            found = bracket_scale(subject)
         return _say_bracket(robot, found, options)
-    answer = _answer(text, robot, options, margin)
+    answer = _answer(subject, robot, options, margin)
     written = _write(options, answer)
     if options.output != "-" or not answer.text:
         say(*folded(answer.said), *certificate_lines(robot, answer), *written)
@@ -113,7 +110,9 @@ def run(options: argparse.Namespace) -> int:
     return STATUS[answer.verdict]
 
 
-def _answer(text: str, robot: Robot, options: argparse.Namespace, margin: str) -> Certificate:
+def _answer(
+    subject: Subject, robot: Robot, options: argparse.Namespace, margin: str
+) -> Certificate:
     """Prove or refute what the options ask for."""
     with working("what the options ask for"):
         asked = None if options.region else statement(robot, options, margin)
@@ -124,9 +123,9 @@ def _answer(text: str, robot: Robot, options: argparse.Namespace, margin: str) -
 
     if asked is None:
         inset = _inset(robot, options)
-        answer = certify_region(text, inset, margin, held(robot, options.slice), tell)
+        answer = certify_region(subject, inset, margin, held(robot, options.slice), tell)
     else:
-        answer = certify(text, asked, tell=tell)
+        answer = certify(subject, asked, tell=tell)
     shown(STEPS)
     return answer
 

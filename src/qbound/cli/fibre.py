@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.arms.fibres import fibres
-from qbound.arms.reports import fibre_document, fibre_lines
+from qbound.arms.fibres import fibre_document, fibre_lines, fibres
 from qbound.cli.chosen import add_robot
 from qbound.cli.files import deliver
 from qbound.cli.values import configuration, joint

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from qbound.arms.reports import by_links
+from qbound.arms.fibres import by_links
 from qbound.boundary.margins import violated
 from qbound.cli.files import deliver
 from qbound.cli.progress import working

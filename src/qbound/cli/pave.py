@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
     estimate = paving_bytes(len(robot.used), len(free))
     estimate += COLUMNS * len(robot.used) if options.columns else 0
     refuse_memory(options, estimate, "hold some of the joints with --slice")
-    problem = exact_problem(exact_robot(options.robot), values)
+    problem = exact_problem(exact_robot(robot), values)
     shown = progress("paving", STEPS)
 
     def tell(part: float) -> None:

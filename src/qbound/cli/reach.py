@@ -6,8 +6,7 @@ import argparse
 import math
 from typing import Any
 
-from qbound.arms.reach import Reach, map_bytes, reach
-from qbound.arms.reports import reach_document, reach_lines, reach_npz
+from qbound.arms.reach import Reach, map_bytes, reach, reach_document, reach_lines, reach_npz
 from qbound.cli.chosen import add_memory, add_robot, refuse_memory
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working

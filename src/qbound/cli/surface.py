@@ -9,8 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from qbound.arms.surface_files import glb_bytes, ply_bytes
-from qbound.arms.surfaces import RESOLUTION, Surface, find_surface
+from qbound.arms.surfaces import RESOLUTION, Surface, find_surface, glb_bytes, ply_bytes
 from qbound.cli.chosen import add_memory, add_robot, add_slice, sized_robot
 from qbound.cli.files import Content, check_targets, deliver
 from qbound.cli.progress import working

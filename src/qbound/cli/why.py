@@ -6,8 +6,7 @@ import argparse
 from collections.abc import Iterator
 from typing import Any
 
-from qbound.arms.answers import why_document, why_lines
-from qbound.arms.why import Why, why, why_bytes
+from qbound.arms.why import Why, why, why_bytes, why_document, why_lines
 from qbound.cli.chosen import add_memory, add_robot, sized_robot
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
@@ -68,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
     if options.svg is not None:
         check_targets([options.svg], kinds=("svg",))
     start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
-    found = why(options.robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    found = why(robot, start, goal, seed=options.seed, hold=options.hold, during=working)
     outputs: list[Output] = [
         (options.json, lambda: json_text(why_document(found))),
         (options.svg, lambda: why_picture(found)),

@@ -13,7 +13,6 @@ from typing import Any, Final
 import numpy as np
 
 from qbound.arrays import Floats
-from qbound.boundary.chain import Step, depths, steps
 from qbound.boundary.functions import clearance, position
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.export.document import vertex_content, workspace_content
@@ -22,7 +21,7 @@ from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
 from qbound.measures.bodies import outline_in_frame
 from qbound.measures.scaling import largest_safe_scale
-from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot
+from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot, Step
 from qbound.region import Component, Region, Slices
 from qbound.region.outline import Arc
 from qbound.tolerances import FLAT_ARC, ZERO_AMPLITUDE
@@ -79,7 +78,7 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "free": free,
         "q": q.tolist(),
         "joints": [_joint(joint) for joint in robot.joints],
-        "steps": [_step(step) for step in steps(robot)],
+        "steps": [_step(step) for step in robot.steps],
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": _bodies(robot),
         "flat": _flat(robot),
@@ -122,7 +121,7 @@ def _step(step: Step) -> Data:
 
 def _point(robot: Robot, i: int) -> Data:
     point = robot.points[i]
-    depth = depths(robot)[point.frame]
+    depth = robot.steps_to(point.frame)
     return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
 
 
@@ -132,7 +131,7 @@ def _bodies(robot: Robot) -> list[Data]:
     return [
         {
             "name": body.name,
-            "frame": depths(robot)[body.frame],
+            "frame": robot.steps_to(body.frame),
             "outline": outline_in_frame(robot, body).tolist(),
             "parts": [
                 {"corners": part.corners.tolist(), "radius": float(part.radius)}
@@ -218,7 +217,7 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     if (carrier @ u) @ np.array([1.0, 1e-3, 0.0]) < 0:
         u = -u
     view = {"u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
-    return {"frame": depths(robot)[one.parent], **view, "oblique": oblique}
+    return {"frame": robot.steps_to(one.parent), **view, "oblique": oblique}
 
 
 def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> bool:

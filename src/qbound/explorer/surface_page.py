@@ -10,8 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arms.surface_files import colour_of
-from qbound.arms.surfaces import Surface
+from qbound.arms.surfaces import Surface, colour_of
 from qbound.explorer.page import embedded, engine_style, shorter_script, source_hash, web_text
 from qbound.printable import printable
 from qbound.units import counted, joint_text

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from qbound.arms.surface_files import COLOURS, OTHERS, colour_of
-from qbound.arms.surfaces import Surface
+from qbound.arms.surfaces import COLOURS, OTHERS, Surface, colour_of
 from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.figures import INK, STYLE, as_text, symbol

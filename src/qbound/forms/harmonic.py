@@ -25,7 +25,7 @@ from qbound.forms.waves import Waves, to_waves
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["HarmonicForm", "Kind", "add_constant", "basis", "basis_slope"]
+__all__ = ["HarmonicForm", "Kind", "add_constant", "basis", "basis_slope", "times_function"]
 
 Values = ArrayLike | Sequence[Any]
 """Joint values: floats, or objects such as balls and symbols."""
@@ -318,6 +318,30 @@ def _outer(left: Array, right: Array) -> Array:
     """Multiply (..., m) by (..., 3) into all products, (..., 3 m)."""
     products = left[..., :, None] * right[..., None, :]
     return products.reshape(*products.shape[:-2], 3 * left.shape[-1])
+
+
+def times_function(coefficients: Array, axis: int, k: int, kind: Kind | None = None) -> Array:
+    r"""Multiply coefficients of a form by one function :math:`e_k` of a joint.
+
+    Parameters
+    ----------
+    axis : int
+        Axis of the joint.
+    k : int
+        1 or 2.
+    kind : {"revolute", "prismatic"}, optional
+        Of the joint, where the form depends on it. The product must be of the first degree again:
+        what is of a higher one is left out, because it is zero but for rounding.
+    """
+    parts = np.moveaxis(coefficients, axis, 0)
+    product = np.zeros_like(parts) if parts.dtype != object else parts * 0  # zeros of its type
+    if kind is None:
+        product[k] = parts[0]
+    else:
+        twice = FACTORS[kind].product[:, :, k]
+        for m, i in np.argwhere(twice).tolist():
+            product[m] = product[m] + parts[i] * int(twice[m, i]) / 2
+    return np.asarray(np.moveaxis(product, 0, axis))
 
 
 def add_constant(coefficients: Array, constant: ArrayLike) -> Array:

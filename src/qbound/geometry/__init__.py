@@ -6,5 +6,6 @@
 - `solid_covers`, `mesh_covers`: few balls that cover a shape; `covering`: the proof that they do;
 - `mesh_solids`: the solid that a mesh encloses; `inner_balls`: balls in it that touch its surface;
 - `surface_distance`: a lower bound of the distance to a surface, from samples of it;
-- `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals.
+- `simplices`: segments, triangles and so on, and their halves; `bisection`: of many intervals;
+- `arcs`: the gaps that intervals leave, on a line or round a circle.
 """

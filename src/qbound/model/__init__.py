@@ -1,6 +1,7 @@
 """The robot as data: joints, points, bodies, boundaries, and the files that hold them.
 
 - `robot`: the robot; `joints`, `shapes`, `boundaries`: its elements, a class for each type;
+- `source`: what a robot was read from, parsed once;
 - `exact`: the numbers of a robot as its file writes them, as rationals and balls;
 - `plane`: the plane in which a planar arm moves;
 - `frames`: vector labelling (eqs. 1-8); `values`: joint values that a caller gives;

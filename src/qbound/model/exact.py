@@ -7,10 +7,8 @@ that the robot was read from if it is still the robot's; else it counts as the d
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +16,7 @@ import numpy as np
 
 from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary
-from qbound.model.joints import Joint, Parallelogram
+from qbound.model.joints import Joint
 from qbound.model.robot import Robot
 from qbound.model.shapes import (
     Body,
@@ -37,9 +35,6 @@ if TYPE_CHECKING:
     arb = flint.arb
 
 Table = Mapping[str, Any]
-
-LARGEST_EXPONENT = 400
-"""Powers of ten beyond a double's range; a number with more would need astronomical fractions."""
 
 NO_ROW: Table = {}
 
@@ -99,9 +94,9 @@ class ExactNumbers:
         row = self._rows["joint"].get(joint.name, NO_ROW)
         degrees = self._table.get("angle_unit") == "deg"
         mount = _mount(row.get("rpy", (0, 0, 0)), degrees) if row else None
-        more: dict[str, Any] = {}
-        if isinstance(joint, Parallelogram):
-            more["crank"] = _numbers(row.get("crank"), joint.crank)
+        own = {key: getattr(joint, key) for key in joint.own_keys}
+        vectors = {key: value for key, value in own.items() if isinstance(value, np.ndarray)}
+        more: Any = {key: _numbers(row.get(key), value) for key, value in vectors.items()}
         return replace(
             joint,
             origin=_numbers(row.get("origin"), joint.origin),
@@ -161,24 +156,12 @@ def written_numbers(robot: Robot, *, unit: bool = True) -> ExactNumbers:
         As `ExactNumbers` has it.
     """
     source = robot.source
-    if not isinstance(source, str):
-        return ExactNumbers(robot, source or NO_ROW, unit=unit)
+    if source is None:
+        return ExactNumbers(robot, NO_ROW, unit=unit)
     try:
-        table = read_exactly(source)
+        return ExactNumbers(robot, source.exact, unit=unit)
     except ValueError:
-        table = tomllib.loads(source)
-    return ExactNumbers(robot, table, unit=unit)
-
-
-def read_exactly(text: str) -> Table:
-    """Return the content of a TOML text, its decimals as rationals.
-
-    Raises
-    ------
-    ValueError
-        If a number has an exponent that no double could hold.
-    """
-    return tomllib.loads(text, parse_float=_decimal)
+        return ExactNumbers(robot, source.table, unit=unit)
 
 
 def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
@@ -246,16 +229,6 @@ def sine_cosine(angle: Any) -> tuple[Any, Any]:
 
     s, c = arb(angle).sin_cos()
     return _whole(s), _whole(c)
-
-
-def _decimal(text: str) -> Any:
-    """Read a decimal as a rational."""
-    from flint import fmpq
-
-    number = Decimal(text)
-    if number and abs(number.adjusted()) > LARGEST_EXPONENT:
-        raise ValueError(f"{text}: an exponent this far from 0 cannot be used in a proof")
-    return fmpq(*number.as_integer_ratio())
 
 
 def _whole(value: arb) -> Any:

@@ -1,15 +1,15 @@
-"""Types of joints, a class for each: its motion, unit, limits and row in a robot file.
+"""Types of joints, a class for each: what it moves and how, unit, limits and row in a robot file.
 
-A new type needs a class here, its name in `JointRow.type`, its motion in `boundary.functions`
-(`MOTIONS`) and in `boundary.chain`, and its numbers in `model.exact`. Its factor in a harmonic form
-(`kind`) must be one that `forms` knows.
+A joint moves its frames by steps: turns about one axis, or slides along it, by its value or back by
+its value. Forms, poses, balls and symbols are all derived from these steps. A new type that turns
+or slides needs a class here and its name in `JointRow.type`. Its factor in a harmonic form (`kind`)
+must be one that `forms` knows.
 """
 
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Annotated, Any, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType, structs
@@ -38,8 +38,34 @@ MOST_TURNS = 100
 AnyJoint = TypeVar("AnyJoint", bound="Joint")
 
 
+class Step(NamedTuple):
+    """A motion of one frame in the one before it, by the value of a joint.
+
+    Attributes
+    ----------
+    joint : int
+        Index of the joint.
+    parent, frame : str
+        Labels of the frames before and after it.
+    sense : int
+        -1 where it goes back by the value.
+    slides : bool
+    origin, mount, axis : ndarray
+        As a joint has them.
+    """
+
+    joint: int
+    parent: str
+    frame: str
+    sense: int
+    slides: bool
+    origin: Array
+    mount: Array
+    axis: Array
+
+
 @dataclass(frozen=True, eq=False)
-class Joint(ABC):
+class Joint:
     """A joint that moves `frame` relative to `parent`.
 
     Attributes
@@ -64,6 +90,8 @@ class Joint(ABC):
     """How a file spells it."""
     turns: ClassVar[bool]
     """Whether its values are angles."""
+    own_keys: ClassVar[tuple[str, ...]] = ()
+    """Keys of a file that joints of this type must have and others must not."""
 
     name: str
     parent: str
@@ -74,26 +102,47 @@ class Joint(ABC):
     limits: tuple[float, float] | None = None
     velocity: float | None = None
 
-    @abstractmethod
-    def frame_at(self, q: Any) -> Frame:
-        """Return its frame at joint values of shape (...) or a symbol, seen from the parent."""
+    @property
+    def motions(self) -> tuple[tuple[str, Array, int], ...]:
+        """Its steps, the one nearest to the base first.
+
+        Of each the label of the frame that it moves, that frame's origin seen from the frame before
+        at joint value 0, and the sense.
+        """
+        return ((self.frame, self.origin, 1),)
+
+    def steps(self, joint: int) -> Iterator[Step]:
+        """Yield its steps, as those of the joint of that index."""
+        parent, mount = self.parent, self.mount
+        for frame, origin, sense in self.motions:
+            yield Step(joint, parent, frame, sense, not self.turns, origin, mount, self.axis)
+            parent, mount = frame, np.eye(3, dtype=int)
 
     def frames_at(self, q: Any) -> tuple[Frame, ...]:
-        """Return all frames that it moves, seen from the parent, its own last."""
-        return (self.frame_at(q),)
+        """Return all frames that it moves, its own last, seen from the parent (Table 2).
+
+        Parameters
+        ----------
+        q : array_like, shape (...), or a symbol or ball
+            Its value, rad or length.
+        """
+        found, total = list[Frame](), 0
+        at, turned = self.origin, self.mount
+        for label, origin, sense in self.motions:
+            at = at + turned @ origin if found else at
+            total = total + sense if self.turns else sense
+            value = q if total == 1 else total * q
+            if not self.turns:
+                at = at + np.asarray(value)[..., None] * (self.mount @ self.axis)
+            else:
+                turned = self.mount @ axis_rotation(self.axis, value) if total else self.mount
+            found.append(Frame(label, self.parent, turned, at))
+        return tuple(found)
 
     @property
     def labels(self) -> tuple[str, ...]:
         """Names of all frames that it moves, its own last."""
-        return (self.frame,)
-
-    def steps(self, observer: str, frame: str) -> tuple["Joint", ...]:
-        """Return the motion that brings what its parent, or `observer`, sees of one of its frames.
-
-        A single joint, or none: `observer` is the frame that sees it, if this joint moves that too,
-        and `frame` the one that is seen, or a frame that grows from it.
-        """
-        return () if observer == self.frame else (self,)
+        return tuple(label for label, *_ in self.motions)
 
     @classmethod
     def further(cls, row: "JointRow") -> dict[str, Any]:
@@ -102,8 +151,11 @@ class Joint(ABC):
 
     @property
     def farthest(self) -> float:
-        """How far it carries its frame at most: a slide's farther limit, 0 of a turn."""
-        return 0.0 if self.turns or self.limits is None else max(map(abs, self.limits))
+        """How far it carries its frame at most: a slide's farther limit, the cranks of a turn."""
+        if self.turns:
+            cranks = (np.asarray(origin, dtype=float) for _, origin, _ in self.motions[1:])
+            return sum((float(np.linalg.norm(crank)) for crank in cranks), 0.0)
+        return 0.0 if self.limits is None else max(map(abs, self.limits))
 
     def unit(self, length_unit: str, angle_unit: str = "rad") -> str:
         """Return the unit of its values, in the library or where another unit of angle is used."""
@@ -162,10 +214,16 @@ class Revolute(Joint):
             return f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
         return super().limits_fault(limits, turn)
 
-    def frame_at(self, q: Any) -> Frame:
-        """Turn the frame (Table 2)."""
-        turn = self.mount @ axis_rotation(self.axis, q)
-        return Frame(self.frame, self.parent, turn, self.origin)
+
+class Continuous(Revolute):
+    """A joint that turns about its axis without limits, as URDF calls it."""
+
+    type_name = "continuous"
+
+    @classmethod
+    def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
+        """Refuse limits."""
+        return None if limits is None else f"{shown(limits)} limits a joint that has no limits"
 
 
 class Prismatic(Joint):
@@ -181,11 +239,6 @@ class Prismatic(Joint):
         if limits is None:
             return f"missing; a {cls.type_name} joint needs [lowest, highest]"
         return super().limits_fault(limits, turn)
-
-    def frame_at(self, q: Any) -> Frame:
-        """Move the frame's origin."""
-        slide = np.asarray(q)[..., None] * (self.mount @ self.axis)
-        return Frame(self.frame, self.parent, self.mount, self.origin + slide)
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,43 +257,15 @@ class Parallelogram(Revolute):
     """
 
     type_name = "parallelogram"
+    own_keys = ("crank", "bar")
 
     crank: Array = field(default_factory=lambda: np.zeros(3))
     bar: str = ""
 
-    def frame_at(self, q: Any) -> Frame:
-        """Carry the frame's origin round."""
-        carried = self.mount @ axis_rotation(self.axis, q) @ self.crank
-        return Frame(self.frame, self.parent, self.mount, self.origin + carried)
-
-    def frames_at(self, q: Any) -> tuple[Frame, ...]:
-        """Return the bar's frame and its own."""
-        return (self._bar.frame_at(q), self.frame_at(q))
-
     @property
-    def labels(self) -> tuple[str, ...]:
-        """Name the bar first."""
-        return (self.bar, self.frame)
-
-    def steps(self, observer: str, frame: str) -> tuple[Joint, ...]:
-        """Turn what is fixed in the bar; the bar sees what it carries turn back."""
-        if observer in (self.frame, frame):
-            return ()
-        if frame == self.bar:
-            return (self._bar,)
-        if observer != self.bar:
-            return (self,)
-        back = {"parent": self.bar, "origin": self.crank, "axis": -self.axis}
-        return (self.as_type(Revolute, mount=np.eye(3, dtype=int), **back),)
-
-    @property
-    def _bar(self) -> Revolute:
-        return self.as_type(Revolute, frame=self.bar)
-
-    @property
-    def farthest(self) -> float:
-        """The length of the crank."""
-        return float(np.linalg.norm(np.asarray(self.crank, dtype=float)))
+    def motions(self) -> tuple[tuple[str, Array, int], ...]:
+        """The bar turns, and the frame that it carries turns back."""
+        return ((self.bar, self.origin, 1), (self.frame, self.crank, -1))
 
     @classmethod
     def further(cls, row: "JointRow") -> dict[str, Any]:
@@ -253,7 +278,7 @@ class Parallelogram(Revolute):
 
 
 JOINT_TYPES: dict[str, type[Joint]] = {
-    cls.type_name: cls for cls in (Revolute, Prismatic, Parallelogram)
+    cls.type_name: cls for cls in (Revolute, Prismatic, Parallelogram, Continuous)
 }
 """From a file's spelling to the class."""
 
@@ -268,7 +293,7 @@ class JointRow(Row, kw_only=True):
     """A table [[joint]]."""
 
     name: Label
-    type: Literal["revolute", "prismatic", "parallelogram"]
+    type: Literal["revolute", "prismatic", "parallelogram", "continuous"]
     parent: Label
     frame: Label
     origin: Vector

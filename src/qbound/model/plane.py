@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Array
 from qbound.model.frames import Frames, cross
-from qbound.model.joints import Joint
+from qbound.model.joints import Joint, Step
 from qbound.model.schema import one_line
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -37,8 +37,8 @@ class PlaneOfMotion:
         Unit vector, its largest coordinate positive; not always ``cross(*across)``, which is -y
         for the plane of x and z.
     senses : tuple of int
-        For each joint +1 or -1: its value turns the frame in the plane, from the first axis to the
-        second or back; 0 for a joint that slides.
+        For each step of the chain +1 or -1: the joint's value turns the frame in the plane, from
+        the first axis to the second or back; 0 for a slide.
     frames : Frames
         At all joint values 0.
     chosen : bool
@@ -64,8 +64,7 @@ class PlaneOfMotion:
         """Return places of a frame, shape (m, 3), in the plane's axes, shape (m, 2).
 
         They are seen from the frame's origin and turned as at all joint values 0: at joint values
-        q its pose is a turn by the sum of ``senses * q`` of the joints before it, and a
-        translation.
+        q its pose is a turn by the sum of ``senses * q`` of the steps before it, and a translation.
         """
         rotation = np.asarray(self.frames.rotation(self.frames.base, frame), dtype=float)
         return np.asarray(np.asarray(corners, dtype=float) @ (self.across @ rotation).T)
@@ -103,6 +102,10 @@ class Chain(Protocol):
     def base(self) -> str:
         """Label of the base frame."""
 
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The motions of its chain, from the base outwards."""
+
     def frames(self, q: ArrayLike) -> Frames:
         """Return its frames at joint values."""
 
@@ -125,10 +128,6 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
     >>> plane.across.tolist(), plane.senses
     ([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], (-1, -1))
     """
-    for joint in robot.joints:
-        if len(joint.labels) > 1:
-            text = f"joint {one_line(repr(joint.name))} is a {joint.type_name}"
-            raise ValueError(f"{text}: no plane of motion is worked out for it")
     frames = robot.frames(np.zeros(len(robot.joints)))
     mounts = [frames.rotation(robot.base, j.parent) @ j.mount for j in robot.joints]
     axes = [np.asarray(m @ j.axis, dtype=float) for m, j in zip(mounts, robot.joints, strict=True)]
@@ -144,7 +143,8 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
         raise ValueError(text)
     across = _across(normal)
     over = cross(*across)
-    senses = [round(float(a @ over)) * j.turns for a, j in zip(axes, robot.joints, strict=True)]
+    ways = [round(float(a @ over)) * j.turns for a, j in zip(axes, robot.joints, strict=True)]
+    senses = [ways[step.joint] * step.sense for step in robot.steps]
     along = [np.linalg.norm(cross(axes[0], axis)) <= ZERO_AMPLITUDE for axis in axes]
     chosen = all(along) and not any(joint.turns for joint in robot.joints)
     return PlaneOfMotion(across, normal, tuple(senses), frames, chosen)

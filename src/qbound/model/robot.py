@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
-from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute
+from qbound.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute, Step
 from qbound.model.plane import PlaneOfMotion, plane_of_motion
 from qbound.model.schema import one_line
 from qbound.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
 from qbound.model.values import joint_values
+
+if TYPE_CHECKING:
+    from qbound.model.source import Source
 
 __all__ = [
     "JOINT_TYPES",
@@ -41,6 +44,7 @@ __all__ = [
     "Revolute",
     "Robot",
     "Shape",
+    "Step",
 ]
 
 Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
@@ -80,8 +84,8 @@ class Robot:
     >>> len(arm.boundaries), len(arm.used)
     (0, 8)
 
-    What it was read from, the text of a file or its content, is kept in `source` and not compared:
-    exact numbers are looked up there (`qbound.model.exact`).
+    What it was read from is kept in `source` and not compared: exact numbers are looked up there
+    (`qbound.model.exact`).
     """
 
     name: str
@@ -97,7 +101,7 @@ class Robot:
     collisions: bool = False
     clearance: float = 0.0
     allowed: tuple[frozenset[str], ...] = ()
-    source: str | Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         """Fit a line: name, joints with their kinds, number of boundaries, of pairs of bodies."""
@@ -141,6 +145,20 @@ class Robot:
         return tuple(joint.kind for joint in self.joints)
 
     @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The motions of its chain, from the base on; each has a frame of its own."""
+        return tuple(step for j, joint in enumerate(self.joints) for step in joint.steps(j))
+
+    def steps_to(self, frame: str) -> int:
+        """Count the steps between the base and a frame; ValueError if there is no such frame."""
+        return _named("frame", self._steps_to, frame)
+
+    @cached_property
+    def _steps_to(self) -> dict[str, int]:
+        moved = (step.frame for step in self.steps)
+        return {frame: k for k, frame in enumerate((self.base, *moved))}
+
+    @cached_property
     def plane(self) -> PlaneOfMotion:
         """The plane in which the arm moves; ValueError if it leaves every plane."""
         return plane_of_motion(self)
@@ -157,7 +175,7 @@ class Robot:
 
     def _colliding(self) -> Iterator[BodyPair]:
         """Yield a pair for every two bodies that can meet, may not, and that no boundary names."""
-        links = sorted(self.bodies, key=lambda body: self.depth(body.frame))
+        links = sorted(self.bodies, key=lambda body: self.steps_to(body.frame))
         settled = {frozenset(b.bodies) for b in self.boundaries if isinstance(b, BodyPair)}
         settled |= set(self.allowed)
         for one, other in combinations([*links, *self.obstacles], 2):

@@ -103,7 +103,7 @@ def read_table(table: Table) -> RobotFile:
     for check in (
         _check_small,
         _check_names,
-        _check_parallelograms,
+        _check_own_keys,
         _check_chain,
         _check_references,
         _check_pairs,
@@ -201,15 +201,16 @@ def _check_chain(table: Table) -> None:
             seen |= {joint[key]} if key in joint else set()
 
 
-def _check_parallelograms(table: Table) -> None:
-    """Refuse crank and bar where they are missing, or of no use."""
+def _check_own_keys(table: Table) -> None:
+    """Refuse keys of one type of joint where they are missing, or of no use."""
+    owners = {key: kind for kind, cls in JOINT_TYPES.items() for key in cls.own_keys}
     for _, i, joint in _rows(table, "joint"):
-        wanted = joint["type"] == "parallelogram"
-        for key in ("crank", "bar"):
+        for key, owner in owners.items():
+            wanted = key in JOINT_TYPES[joint["type"]].own_keys
             if wanted and key not in joint:
-                raise fault(table, ("joint", i), f"{key} is missing; a parallelogram needs one")
+                raise fault(table, ("joint", i), f"{key} is missing; a {joint['type']} needs one")
             if key in joint and not wanted:
-                text = f"only a parallelogram has one; this joint is {joint['type']}"
+                text = f"only a {owner} has one; this joint is {joint['type']}"
                 raise fault(table, ("joint", i, key), text)
 
 

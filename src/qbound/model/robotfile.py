@@ -6,7 +6,6 @@ A file is data: it is checked by `robotcheck`, and nothing in it is evaluated.
 from __future__ import annotations
 
 import os
-import tomllib
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
@@ -25,6 +24,7 @@ from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, rea
 from qbound.model.rows import quotient
 from qbound.model.schema import place
 from qbound.model.shapes import BodyRow, ObstacleRow, default_names, row_shape
+from qbound.model.source import Source
 from qbound.printable import printable
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "RobotFileError",
+    "as_written",
     "load_robot",
     "packaged_robots",
     "parse_robot",
@@ -39,7 +40,6 @@ __all__ = [
     "robot_table",
     "robot_text",
     "save_robot",
-    "written_text",
 ]
 
 ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
@@ -110,12 +110,7 @@ def load_robot(
         return import_urdf(source, **given).robot  # type: ignore[arg-type]  # by their names
     if given:
         raise ValueError(f"{', '.join(given)}: for a URDF only; {source} is a robot file")
-    text, label = robot_text(source)
-    try:
-        table = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
-        raise RobotFileError(f"{label}: not TOML: {error}") from None
-    return _robot(table, f"{label}: ", text)
+    return _robot(*robot_text(source))
 
 
 def is_urdf(source: str | Path) -> bool:
@@ -193,20 +188,23 @@ def refuse_replacing(path: str | Path) -> None:
         )
 
 
-def written_text(robot: Robot) -> str:
-    """Return the text of the file that a robot was read from, or of one that says the same.
+def as_written(robot: Robot) -> Robot:
+    """Return the robot that a file says: the same one, or one read from the file that it would get.
+
+    Its `source` has the text of the file.
 
     Raises
     ------
     ModuleNotFoundError
         If it was changed, or not read from a robot file, and there is no tomlkit.
     """
-    if isinstance(robot.source, str) and _built(read_table(tomllib.loads(robot.source))) == robot:
-        return robot.source
+    source = robot.source
+    if source is not None and source.text and _built(read_table(source.table)) == robot:
+        return robot
     require("tomlkit")
     import tomlkit
 
-    return tomlkit.dumps(robot_table(robot))
+    return parse_robot(tomlkit.dumps(robot_table(robot)))
 
 
 def packaged_robots() -> tuple[str, ...]:
@@ -222,10 +220,28 @@ def packaged_robots() -> tuple[str, ...]:
     return tuple(sorted(stem for stem, _, ending in files if ending == "toml"))
 
 
-def parse_robot(table: Table) -> Robot:
-    """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit."""
-    table = _plain(table)
-    return _robot(table, "", table)
+def parse_robot(content: str | Table | Source, label: str = "") -> Robot:
+    """Turn the content of a robot file into a `Robot`: radians, unit vectors, one length unit.
+
+    Parameters
+    ----------
+    content : str, mapping or Source
+        The text of a file, a table such as `robot_table` makes, or either one as it was read.
+    label : str, optional
+        Name of the file, for errors.
+
+    Raises
+    ------
+    RobotFileError
+        If the content is not that of a robot file.
+    """
+    return _robot(content, label)
+
+
+def _source(content: str | Table | Source) -> Source:
+    if isinstance(content, Source):
+        return content
+    return Source.of_text(content) if isinstance(content, str) else Source(_plain(content))
 
 
 def _plain(table: Table) -> Table:
@@ -237,17 +253,16 @@ def _plain(table: Table) -> Table:
     return plain
 
 
-def _robot(table: Table, label: str, source: str | Table) -> Robot:
+def _robot(content: str | Table | Source, label: str) -> Robot:
+    label = f"{label}: " if label else ""
     try:
-        file = read_table(table)
+        source = _source(content)
+        robot = _built(read_table(table := source.table), source)
+        check_bodies(robot, table)
     except RobotFileError as error:
         raise RobotFileError(f"{label}{error}") from None
     except RecursionError:
         raise RobotFileError(f"{label}tables in tables without end") from None
-    try:
-        check_bodies(robot := _built(file, source), table)
-    except RobotFileError as error:
-        raise RobotFileError(f"{label}{error}") from None
     for i, boundary in enumerate(robot.boundaries):
         if robot.least_distance(boundary) == 0:
             where = place(table, ("boundary", i))
@@ -282,7 +297,7 @@ def _read(path: str | Path, encoding: str) -> str:
 # --- from a table to a robot, and back -----------------------------------------------------------
 
 
-def _built(file: RobotFile, source: str | Table | None = None) -> Robot:
+def _built(file: RobotFile, source: Source | None = None) -> Robot:
     angle = ANGLE[file.angle_unit]
     joints = tuple(row.joint(angle) for row in file.joint)
     robot = Robot(

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -61,17 +60,13 @@ class BlockedRange:
     boundary: str
 
 
-def blocked_ranges(
-    source: str | Path | Robot, robot: Robot, groups: Sequence[object] = ()
-) -> list[BlockedRange]:
+def blocked_ranges(robot: Robot, groups: Sequence[object] = ()) -> list[BlockedRange]:
     """Return ranges of joints that a boundary of points blocks, each proved.
 
     Parameters
     ----------
-    source : str, Path or Robot
-        What `exact_robot` takes.
     robot : Robot
-        The same in doubles.
+        Its numbers count as `exact_robot` has them.
     groups : sequence, optional
         One label for each of `robot.used`: a range within another of the same joint and label is
         left out. Without labels, all are one group.
@@ -89,7 +84,7 @@ def blocked_ranges(
     )
     if not found:
         return []
-    exact = exact_robot(source)
+    exact = exact_robot(robot)
     names = {b.name: b for b in exact.used}
     rows = ((j, names[chosen[i][1].name]) for i, j in found)
     ranges = [_range(exact, j, boundary) for j, boundary in rows]

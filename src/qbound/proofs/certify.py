@@ -6,7 +6,6 @@ book's page "The certificate", and the checkers decide.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -18,7 +17,7 @@ from qbound import check
 from qbound.arrays import Floats
 from qbound.export.formats import json_text
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot
+from qbound.model.robotfile import as_written, parse_robot
 from qbound.proofs import safe
 from qbound.proofs.inequality import (
     Arm,
@@ -89,9 +88,14 @@ def no_certificate(robot: Robot) -> str:
     return ""
 
 
-@dataclass(frozen=True)
 class Subject:
-    """A robot that a certificate is about: its text, and what certificates make of it.
+    """A robot that certificates are about: its text, and what certificates make of it, made once.
+
+    Parameters
+    ----------
+    source : str or Robot
+        The text of a robot file; or a robot, whose certificates are about the file that it was read
+        from, or about the one that `save_robot` writes if it is another robot.
 
     Raises
     ------
@@ -99,12 +103,20 @@ class Subject:
         Where it is used, if no certificate can hold the robot.
     """
 
-    text: str
+    def __init__(self, source: str | Robot) -> None:
+        self._read = None if isinstance(source, str) else as_written(source)
+        file = None if self._read is None else self._read.source
+        self.text = source if isinstance(source, str) else file.text if file else ""
+
+    @classmethod
+    def of(cls, source: str | Robot | Subject) -> Subject:
+        """Make it of what it is made of; one that there is stays."""
+        return source if isinstance(source, Subject) else cls(source)
 
     @cached_property
     def robot(self) -> Robot:
         """The robot, refused before any work if no certificate can hold it."""
-        robot = parse_robot(tomllib.loads(self.text))
+        robot = parse_robot(self.text) if self._read is None else self._read
         reason = no_certificate(robot)
         if reason:
             raise ValueError(reason)
@@ -144,14 +156,19 @@ class Subject:
 
 
 def certify(
-    text: str, statement: Statement, *, most: int = MOST_CELLS, tell: Tell = silent
+    subject: str | Robot | Subject,
+    statement: Statement,
+    *,
+    most: int = MOST_CELLS,
+    tell: Tell = silent,
 ) -> Certificate:
     """Prove or refute that every boundary in use holds all over a set.
 
     Parameters
     ----------
-    text : str
-        The robot file, see `robotfile.robot_text`.
+    subject : str, Robot or Subject
+        The text of a robot file, see `robotfile.robot_text`; or a robot, see `Subject`. One subject
+        may serve many statements.
     statement : dict
         From `statements`.
     most : int
@@ -184,8 +201,7 @@ def certify(
     >>> answer.verdict.value, answer.witness is not None
     ('refuted', True)
     """
-    subject = Subject(text)
-    return _certified(subject, statement, most, tell)
+    return _certified(Subject.of(subject), statement, most, tell)
 
 
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
@@ -215,7 +231,7 @@ def proof_of(arm: Arm, found: Mapping[int, Search], directions: list[list[int]])
 
 
 def certify_region(
-    text: str,
+    subject: str | Robot | Subject,
     inset: float,
     margin: str = "0",
     held: Mapping[int, float] | None = None,
@@ -227,7 +243,7 @@ def certify_region(
     too few points, and says nothing of the component: it is drawn again through more, and what is
     left in the end is undecided.
     """
-    subject = Subject(text)
+    subject = Subject.of(subject)
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
             statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
@@ -295,7 +311,9 @@ class Bracket:
     unsafe: tuple[str, Certificate | None]
 
 
-def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Bracket:
+def bracket_scale(
+    subject: str | Robot | Subject, *, width: float = 1e-9, highest: float = 1.0
+) -> Bracket:
     """Enclose the largest safe scale about the centroid of the area between a proof and a witness.
 
     Parameters
@@ -305,7 +323,7 @@ def bracket_scale(text: str, *, width: float = 1e-9, highest: float = 1.0) -> Br
     highest : float
         Scales above it are not tried.
     """
-    subject = Subject(text)
+    subject = Subject.of(subject)
     arm, corners = Arm(subject.form), home_vertices(subject.robot)
     low, high, tries = 0.0, 0.0, highest
     while low < highest and (not low or not high or high - low > width) and tries > width:

@@ -14,9 +14,9 @@ from typing import Any
 from qbound.boundary.evaluator import limit_names, stacked
 from qbound.boundary.parts import bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, Kind
-from qbound.model.exact import ExactNumbers, frozen, read_exactly
+from qbound.model.exact import ExactNumbers, frozen
 from qbound.model.robot import Boundary, Robot
-from qbound.model.robotfile import load_robot, robot_text
+from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.balls import arb, ball, pi, precision
 from qbound.proofs.exact_bodies import ExactSeparation, exact_separations
 
@@ -65,8 +65,9 @@ def exact_robot(source: str | Path | Robot) -> Robot:
     Parameters
     ----------
     source : str, Path or Robot
-        What `load_robot` takes: each decimal of the file counts as it is written. Or a robot: each
-        of its doubles counts as the binary fraction that it is.
+        A robot file, the name of a packaged robot, or a robot. Each decimal of the file counts as
+        it is written. A number that is not the file's any more, or of a robot that was not read
+        from a file, is a double and counts as the binary fraction that it is.
 
     Raises
     ------
@@ -74,10 +75,8 @@ def exact_robot(source: str | Path | Robot) -> Robot:
         As `load_robot`, and if a number has an exponent that no double could hold.
     """
     with precision(BITS):
-        if isinstance(source, Robot):
-            return ExactNumbers(source, {}).robot
-        robot = load_robot(source)  # says what is wrong with the file, if anything
-        return ExactNumbers(robot, read_exactly(robot_text(source)[0])).robot
+        robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
+        return ExactNumbers(robot, robot.source.exact if robot.source else {}).robot
 
 
 def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactProblem:

@@ -5,30 +5,28 @@ all corners of the other core more than R beyond it, or two corners that are the
 both cores and more than R apart. So a cell is feasible where some feature's forms are all positive
 throughout, and infeasible where every feature has a form that is negative throughout.
 
-All comes from places of the far body seen from the near one's frame, and from their squared
-distances from its origin: a step d of the far frame from a place c to c + d has, seen from here,
-:math:`|c + d|^2 - |c|^2 = 2 c \cdot d + |d|^2`.
-
 No edge is brought to length 1: that would cost the exact numbers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Array
-from qbound.boundary.contacts import SIDES
-from qbound.boundary.functions import position, squared_distance
+from qbound.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_corners
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Point, Robot
+from qbound.boundary.poses import Axes, Move, Pose, Vector
+from qbound.forms.factors import cos_sin
+from qbound.forms.harmonic import HarmonicForm, add_constant
+from qbound.model.exact import rational, rationals
+from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.printable import printable
 from qbound.proofs import parts
 from qbound.proofs.balls import ball
@@ -61,41 +59,38 @@ class ExactSeparation:
     inner: NDArray[np.bool_]
 
 
-@dataclass(frozen=True, eq=False)
-class Core:
-    """A convex core in a frame, exact: its corners, and for each edge its step and its normal.
+class Core(NamedTuple):
+    """A convex core in a frame, exact.
 
     Attributes
     ----------
-    corners, steps, normals : tuple of ndarray, shape (3,)
-        Steps lead from a corner to the next; normals point outwards and are as long as the steps.
-    inner : tuple of bool
-        Whether the body was cut along an edge.
+    corners : list of Vector
+        In the axes of the plane, anticlockwise.
+    straight : list of bool
+        Whether both edges at a corner are in line: what touches it touches them as well. Its
+        neighbours do not tell on which side of it the core lies, so it is no contact itself.
+    inner : list of bool
+        Whether the body was cut along the edge that begins at a corner.
     """
 
-    frame: str
-    corners: tuple[Array, ...]
-    steps: tuple[Array, ...]
-    normals: tuple[Array, ...]
-    inner: tuple[bool, ...]
+    corners: list[Vector]
+    straight: list[bool]
+    inner: list[bool]
 
-    def around(self, i: int) -> list[Array]:
-        """Return the steps from a corner to its neighbours."""
-        if len(self.corners) < 3:
-            return [self.steps[i]] if self.steps else []
-        return [self.steps[i], -self.steps[i - 1]]
+    @property
+    def edges(self) -> int:
+        """Number of edges; a segment has one on either side."""
+        return len(self.corners) if len(self.corners) > 1 else 0
 
-    def is_straight(self, i: int) -> bool:
-        """Tell whether both edges at a corner are in line: what touches it touches them as well.
+    def step(self, i: int, k: int) -> Vector:
+        """Return the vector from one corner to another."""
+        (x, y), (u, v) = self.corners[i], self.corners[k % len(self.corners)]
+        return u - x, v - y
 
-        Its neighbours do not tell on which side of it the core lies, so it is no contact itself.
-        """
-        return len(self.corners) > 2 and bool(self.normals[i] @ self.steps[i - 1] == 0)
-
-    def beside(self, i: int) -> list[int]:
-        """Return the numbers of a corner's neighbours."""
+    def around(self, i: int) -> list[Vector]:
+        """Return the vectors from a corner to its neighbours."""
         count = len(self.corners)
-        return sorted({(i + 1) % count, (i - 1) % count} - {i})
+        return [self.step(i, k) for k in sorted({(i + 1) % count, (i - 1) % count} - {i})]
 
 
 def exact_separations(
@@ -119,17 +114,16 @@ def exact_separations(
     about = [boundary for boundary in boundaries if bounds_bodies(boundary)]
     if not about:
         return ()
-    flat = _flat_coordinates(robot)
+    chain = _Chain(robot, held or {})
     cores: dict[str, list[Core]] = {}
     for body in (body for boundary in about for body in bounded_bodies(robot, boundary)):
         if body.name not in cores:
-            cores[body.name] = list(_cores(body, flat[body.frame]))
+            cores[body.name] = list(_cores(body, chain))
     found = []
     for boundary in about:
-        for tests, contacts, inner in _of(boundary, robot, cores):
+        for tests, contacts, inner in _of(boundary, robot, chain, cores):
             flat_tests = np.array([form for test in tests for form in test])
-            stacks = [HarmonicForm(np.array(x), robot.kinds) for x in (flat_tests, contacts)]
-            stacks = [stack.restrict(held) for stack in stacks] if held else stacks
+            stacks = [HarmonicForm(np.array(x), chain.kinds) for x in (flat_tests, contacts)]
             starts = np.cumsum([0, *map(len, tests)])[:-1]
             found.append(ExactSeparation(boundary.name, stacks[0], starts, stacks[1], inner))
     return tuple(found)
@@ -140,74 +134,127 @@ Tests = list[list[Array]]
 
 
 def _of(
-    boundary: Boundary, robot: Robot, cores: Mapping[str, Sequence[Core]]
+    boundary: Boundary, robot: Robot, chain: _Chain, cores: Mapping[str, Sequence[Core]]
 ) -> Iterator[tuple[Tests, list[Array], NDArray[np.bool_]]]:
     """Yield the tests of each pair of parts, and its contacts with what `inner` says of them."""
     if isinstance(boundary, HalfSpace):
-        yield _heights(robot, boundary, cores[str(boundary.body)])
+        yield _heights(robot, boundary, chain, cores[str(boundary.body)])
     elif isinstance(boundary, BodyPair):
         bodies = bounded_bodies(robot, boundary)
         keep = boundary.clearance + sum(_radius(body) for body in bodies)
-        one, other = sorted(bodies, key=lambda body: robot.depth(body.frame))
+        one, other = sorted(bodies, key=lambda body: robot.steps_to(body.frame))
+        moved = chain.pose(one.frame, other.frame)
         for near, far in product(cores[one.name], cores[other.name]):
-            # What is kept at no distance from a point forbids nothing, unless it has an inside.
+            # Points and segments with zero clearance add no constraint: touching is allowed.
             if ball(keep) > 0 or len(near.corners) + len(far.corners) > 3:
-                yield _features(robot, near, far, keep)
+                yield _features(moved, near, far, keep)
 
 
 def _radius(body: Body) -> Any:
     return body.parts[0].radius if len(body.shape.places) < 3 else 0
 
 
-# --- cores ----------------------------------------------------------------------------------------
+# --- the chain in its plane, and cores ------------------------------------------------------------
 
 
-def _flat_coordinates(robot: Robot) -> dict[str, int]:
-    """Return the coordinate of each frame that is across the plane of motion, checked exactly."""
-    turned = np.array([[ball(int(i == k)) for k in range(3)] for i in range(3)])
-    rotations, axes = {robot.base: turned}, []
-    for joint in robot.joints:
-        turned = turned @ joint.mount
-        axes.append((joint.turns, turned @ joint.axis))
-        rotations[joint.frame] = turned
-    for normal in (1, 2, 0):
-        across = [k for k in range(3) if k != normal]
-        gone = [axis[k] for turns, axis in axes for k in (across if turns else [normal])]
-        if not all(x == 0 for x in gone):
-            continue
-        own = {
-            name: [k for k in range(3) if all(rotation[i, k] == 0 for i in across)]
-            for name, rotation in rotations.items()
-        }
-        if all(own.values()):
-            return {name: found[0] for name, found in own.items()}
-    raise ValueError(
-        "a proof about bodies needs joints that move them exactly in a plane across x, y or z of"
-        " every frame; a mount in rad is rounded, one in degrees is not"
-    )
+class _Chain:
+    """The chain of an exact robot in its plane of motion, which lies across an axis of the base.
+
+    Attributes
+    ----------
+    kinds : tuple of {"revolute", "prismatic"}
+        Of the joints that are not held.
+    own : dict of str to int
+        The coordinate of each frame that is across the plane.
+    """
+
+    def __init__(self, robot: Robot, held: Mapping[int, Any]) -> None:
+        self._robot, self._held, self._free = robot, held, robot.free(held)
+        self.kinds = tuple(robot.joints[j].kind for j in self._free)
+        turned = rationals(np.eye(3, dtype=int))
+        self._turned, self._above = [turned], [rational(0)]
+        for step in robot.steps:
+            turned = turned @ step.mount
+            self._turned.append(turned)
+        axes = [m @ s.axis for m, s in zip(self._turned[1:], robot.steps, strict=True)]
+        self._across, self._along, self.own = self._plane(axes)
+        for before, step in zip(self._turned, robot.steps, strict=False):
+            self._above.append(self._above[-1] + (before @ step.origin)[self._along])
+        i, k = self._across
+        self._moves = []
+        for before, step, axis in zip(self._turned, robot.steps, axes, strict=False):
+            sense = 0 if step.slides else int(np.sign(float(axis[self._along])))
+            sense *= step.sense * (1 if (k - i) % 3 == 1 else -1)  # of e_i x e_k
+            origin, along = self._seen(before @ step.origin), self._seen(axis * step.sense)
+            self._moves.append(self._move(step.joint, origin, sense, along))
+
+    def _plane(self, axes: Sequence[Array]) -> tuple[list[int], int, dict[str, int]]:
+        """Return the coordinates of the plane, that across it, and that of each frame, exactly."""
+        robot = self._robot
+        names = [robot.base, *(step.frame for step in robot.steps)]
+        for normal in (1, 2, 0):
+            across = [k for k in range(3) if k != normal]
+            both = zip(axes, robot.steps, strict=True)
+            gone = [axis[k] for axis, s in both for k in ([normal] if s.slides else across)]
+            if not all(x == 0 for x in gone):
+                continue
+            own = {
+                name: [k for k in range(3) if all(turned[i, k] == 0 for i in across)]
+                for name, turned in zip(names, self._turned, strict=True)
+            }
+            if all(own.values()):
+                return across, normal, {name: found[0] for name, found in own.items()}
+        raise ValueError(
+            "a proof about bodies needs joints that move them exactly in a plane across x, y or z"
+            " of every frame; a mount in rad is rounded, one in degrees is not"
+        )
+
+    def _seen(self, vector: Array) -> Vector:
+        """Return a vector of the base in the axes of the plane."""
+        i, k = self._across
+        return vector[i], vector[k]
+
+    def _move(self, joint: int, origin: Vector, sense: int, along: Vector) -> Move:
+        if joint in self._free:
+            return Move(origin, sense, along, self._free.index(joint))
+        value = self._held[joint]
+        return Move(origin, sense, along, None, cos_sin(value) if sense else (value,))
+
+    def flat(self, frame: str, place: Array) -> Vector:
+        """Return a place of a frame in the axes of the plane, turned as at all joint values 0."""
+        return self._seen(self._turned[self._robot.steps_to(frame)] @ place)
+
+    def above(self, frame: str, place: Array, normal: Array) -> Any:
+        """Return the part of ``normal . place`` that is across the plane."""
+        k = self._robot.steps_to(frame)
+        return normal[self._along] * (self._above[k] + (self._turned[k] @ place)[self._along])
+
+    def pose(self, near: str, far: str) -> Pose:
+        """Return the pose of a frame seen from one before it."""
+        none = np.full((3,) * len(self._free), rational(0), dtype=object)
+        steps = slice(self._robot.steps_to(near), self._robot.steps_to(far))
+        return Pose.after(self._moves[steps], Axes(), none)
 
 
-def _cores(body: Body, flat: int) -> Iterator[Core]:
+def _cores(body: Body, chain: _Chain) -> Iterator[Core]:
     """Yield the convex cores of a body."""
-    places = list(body.shape.places)
+    places, flat = list(body.shape.places), chain.own[body.frame]
     if any(place[flat] != places[0][flat] for place in places):
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
-    seen = [k for k in range(3) if k != flat]
-    corners = [tuple(_fraction(place[k]) for k in seen) for place in places]
-    cut = parts.cut(corners, body.name) if len(places) > 2 else [list(range(len(places)))]
-    sense = 1 if len(places) < 3 or parts.turns_left(corners) else -1
-    edges = {edge for part in cut if len(part) > 2 for edge in _around(part)}
-    for part in cut:
-        own = [places[k] for k in part]
-        count = len(own) if len(own) > 1 else 0
-        steps = [own[(k + 1) % len(own)] - own[k] for k in range(count)]
-        normals = []
-        for step in steps:
-            normal = step * 0
-            normal[seen[0]], normal[seen[1]] = sense * step[seen[1]], -sense * step[seen[0]]
-            normals.append(normal)
-        inner = [(after, before) in edges for before, after in _around(part)]
-        yield Core(body.frame, tuple(own), tuple(steps), tuple(normals), tuple(inner))
+    own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
+    seen = [chain.flat(body.frame, place) for place in places]
+    loops = parts.cut(own, body.name) if len(places) > 2 else [list(range(len(places)))]
+    order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
+    if order[0] > order[-1]:
+        loops = [loop[::-1] for loop in loops]
+    edges = {edge for loop in loops if len(loop) > 2 for edge in _around(loop)}
+    for loop in loops:
+        around = list(zip([loop[-1], *loop[:-1]], loop, [*loop[1:], loop[0]], strict=True))
+        yield Core(
+            [seen[k] for k in loop],
+            [len(loop) > 2 and parts.side(own[i], own[k], own[m]) == 0 for i, k, m in around],
+            [(after, before) in edges for before, after in _around(loop)],
+        )
 
 
 def _around(part: Sequence[int]) -> list[tuple[int, int]]:
@@ -222,95 +269,54 @@ def _fraction(x: Any) -> Fraction:
 # --- features -------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    """A place of the far frame, seen from the near one: three forms, and its square."""
-
-    place: Array
-    squared: Array
-
-
-def _seen(robot: Robot, near: str, frame: str, at: Array) -> _Seen:
-    point = Point("\0", frame, at)
-    with_point = replace(robot, points=(*robot.points, point))
-    return _Seen(
-        position(with_point, point.name, near).coefficients,
-        squared_distance(with_point, point.name, near).coefficients,
-    )
-
-
-def _dot(u: Array, forms: Array) -> Array:
-    return np.asarray(np.tensordot(u, forms, axes=1))
-
-
-def _plus(form: Array, constant: Any) -> Array:
-    form = form.copy()
-    form[(0,) * form.ndim] += constant
-    return form
-
-
 def _features(
-    robot: Robot, near: Core, far: Core, keep: Any
+    moved: Pose, near: Core, far: Core, keep: Any
 ) -> tuple[Tests, list[Array], NDArray[np.bool_]]:
     """Return the tests of all features of two cores, and their contacts."""
-    corners = [_seen(robot, near.frame, far.frame, at) for at in far.corners]
-
-    def across(d: Array, k: int) -> tuple[Array, Array]:
-        """Return a direction of the far frame seen from here, and its product with corner k."""
-        end = _seen(robot, near.frame, far.frame, far.corners[k] + d)
-        here = corners[k]
-        return end.place - here.place, _plus(end.squared - here.squared, -(d @ d)) / 2
-
-    def above(core: Core, k: int) -> Iterator[list[Array]]:
-        """Yield the products of the other core's corners with an edge's normal, and its step."""
-        for d in (core.normals[k], core.steps[k]):
-            if core is near:
-                yield [_plus(_dot(d, c.place), -(d @ near.corners[k])) for c in corners]
-            else:
-                seen, on = across(d, k)
-                yield [_dot(u, seen) - on for u in near.corners]
-
     tests: Tests = []
     contacts, inner = [], []
-    apart = bool(ball(keep) > 0)
-    for core, other in ((near, far), (far, near)):
-        for k, (normal, step) in enumerate(zip(core.normals, core.steps, strict=True)):
-            heights, along = above(core, k)
-            tests.append([_plus(height, -keep * _length(normal)) for height in heights])
-            for i, (height, place) in enumerate(zip(tests[-1], along, strict=True)):
-                if other.is_straight(i):
-                    continue
-                rims = [heights[j] - heights[i] for j in other.beside(i)]
-                contacts.append(_contact(height, [place, _plus(-place, step @ step), *rims]))
-                inner.append(core.inner[k] and not apart)
-    ahead = [[across(step, k) for step in far.around(k)] for k in range(len(corners))]
-    for (i, p), (k, corner) in product(enumerate(near.corners), enumerate(corners)):
-        square = _plus(corner.squared - 2 * _dot(p, corner.place), p @ p - keep * keep)
-        behind = [_plus(-_dot(step, corner.place), step @ p) for step in near.around(i)]
-        beyond = [on - _dot(p, seen) for seen, on in ahead[k]]
-        tests.append([square, *behind, *beyond])
-        if apart and not near.is_straight(i) and not far.is_straight(k):
-            contacts.append(_contact(square, [*behind, *beyond]))
+    apart, dot = bool(ball(keep) > 0), moved.axes.dot
+    ways = ((near, far, moved.seen, moved.turned), (far, near, moved.seen_back, moved.turned_back))
+    for core, other, seen, turned in ways:
+        places = [seen(corner) for corner in other.corners]
+        rims = [[turned(step) for step in other.around(i)] for i in range(len(places))]
+        for k in range(core.edges):
+            along, start = core.step(k, k + 1), core.corners[k]
+            reach = dot(along, along)
+            kept = keep * ball(reach).sqrt()
+            found = [
+                edge_and_corner(moved.axes, along, start, reach, place, own, kept)
+                for place, own in zip(places, rims, strict=True)
+            ]
+            tests.append([height for height, _ in found])
+            straight = zip(found, other.straight, strict=True)
+            contacts += [_contact(*feature) for feature, is_straight in straight if not is_straight]
+            inner += [core.inner[k] and not apart] * other.straight.count(False)
+    for i, k in product(range(len(near.corners)), range(len(far.corners))):
+        p, u = near.corners[i], far.corners[k]
+        square, sides = two_corners(moved, p, u, near.around(i), far.around(k), keep)
+        tests.append([square, *sides])
+        if apart and not near.straight[i] and not far.straight[k]:
+            contacts.append(_contact(square, sides))
             inner.append(False)
     return tests, contacts, np.array(inner)
 
 
 def _contact(form: Array, sides: Sequence[Array]) -> Array:
     """Return a form and four that are not to be negative, 1 where there are fewer."""
-    free = [_plus(form * 0, 1)] * (SIDES - len(sides))
+    free = [add_constant(form * 0, 1)] * (SIDES - len(sides))
     return np.array([form, *sides, *free])
 
 
 def _heights(
-    robot: Robot, wall: HalfSpace, cores: Sequence[Core]
+    robot: Robot, wall: HalfSpace, chain: _Chain, cores: Sequence[Core]
 ) -> tuple[Tests, list[Array], NDArray[np.bool_]]:
     """Return the heights of all corners of a body above a half-space: one feature."""
-    level = wall.offset + _radius(robot.body(str(wall.body)))
-    places = [_seen(robot, robot.base, c.frame, at) for c in cores for at in c.corners]
-    heights = [_plus(_dot(wall.normal, seen.place), -level) for seen in places]
+    body = robot.body(str(wall.body))
+    moved, normal = chain.pose(robot.base, body.frame), chain.flat(robot.base, wall.normal)
+    level = wall.offset + _radius(body)
+    level = level - chain.above(body.frame, body.shape.places[0], wall.normal)
+    places = [moved.seen(corner) for core in cores for corner in core.corners]
+    heights = [add_constant(moved.axes.dot(normal, place), -level) for place in places]
     contacts = [_contact(height, []) for height in heights]
     return [heights], contacts, np.zeros(len(contacts), dtype=np.bool_)
-
-
-def _length(vector: Array) -> Any:
-    return ball(vector @ vector).sqrt()

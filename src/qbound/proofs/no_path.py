@@ -44,7 +44,7 @@ THIN = 2.0**-40
 
 
 def certify_no_path(
-    text: str, one: ArrayLike, other: ArrayLike, ranges: Sequence[BlockedRange]
+    subject: str | Robot | Subject, one: ArrayLike, other: ArrayLike, ranges: Sequence[BlockedRange]
 ) -> Certificate:
     """Certify that no path leads from one configuration to another: a joint cannot pass.
 
@@ -52,8 +52,8 @@ def certify_no_path(
 
     Parameters
     ----------
-    text : str
-        The robot file, see `robotfile.robot_text`.
+    subject : str, Robot or Subject
+        The robot, as `certify` takes it.
     one, other : array_like, shape (n,)
         rad or length; what is written is rounded to decimals.
     ranges : sequence of BlockedRange
@@ -70,7 +70,7 @@ def certify_no_path(
     ValueError
         If a configuration is none of the robot's.
     """
-    subject = Subject(text)
+    subject = Subject.of(subject)
     ends, j = _ends(subject.robot, one, other), ranges[0].joint
     kinds = ["moves" if k == j else "any" for k in range(ends.shape[1])]
     task = _Task(Arm(subject.form), kinds, ends[0])
@@ -86,7 +86,7 @@ def certify_no_path(
 
 
 def certify_disconnected(
-    text: str, one: ArrayLike, other: ArrayLike, paving: Paving
+    subject: str | Robot | Subject, one: ArrayLike, other: ArrayLike, paving: Paving
 ) -> Certificate:
     """Certify that no path joins two configurations while the joints that agree are held.
 
@@ -94,8 +94,8 @@ def certify_disconnected(
 
     Parameters
     ----------
-    text : str
-        The robot file, see `robotfile.robot_text`.
+    subject : str, Robot or Subject
+        The robot, as `certify` takes it.
     one, other : array_like, shape (n,)
         rad or length; what is written is rounded to decimals.
     paving : Paving
@@ -111,7 +111,7 @@ def certify_disconnected(
     ValueError
         If a configuration is none of the robot's, or the paving does not separate the two.
     """
-    subject = Subject(text)
+    subject = Subject.of(subject)
     ends = _ends(subject.robot, one, other)
     names = [f"{joint.name}.lower" for joint in subject.robot.joints]
     moving = [names.index(name) for name, _ in paving.problem.limits]

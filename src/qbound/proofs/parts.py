@@ -89,14 +89,14 @@ def _with_straight_corners(corners: Sequence[Corner], part: Sequence[int]) -> li
 
 def _is_within(a: Corner, b: Corner, c: Corner) -> bool:
     ahead = sum((y - x) * (z - x) for x, y, z in zip(a, b, c, strict=True))
-    return bool(_side(a, b, c) == 0 and 0 < ahead < _squared(a, b))
+    return bool(side(a, b, c) == 0 and 0 < ahead < _squared(a, b))
 
 
 def _squared(a: Corner, b: Corner) -> Any:
     return sum((y - x) ** 2 for x, y in zip(a, b, strict=True))
 
 
-def _side(a: Corner, b: Corner, c: Corner) -> Any:
+def side(a: Corner, b: Corner, c: Corner) -> Any:
     """Return a positive number where c lies on the left of the line from a to b."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
 
@@ -125,7 +125,7 @@ def check_parts(corners: Sequence[Corner], parts: Sequence[Sequence[int]], name:
     number = {corner: k for k, corner in enumerate(corners)}
     for part in parts:
         for i, k in _around(part):
-            sides = [_side(corners[i], corners[k], corners[m]) for m in part]
+            sides = [side(corners[i], corners[k], corners[m]) for m in part]
             sides = sides if left else [-side for side in sides]
             if any(side < 0 for side in sides) or not any(sides):
                 raise ValueError(

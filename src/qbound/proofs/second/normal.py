@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import product
 from typing import Any, NamedTuple
@@ -14,9 +13,9 @@ from typing import Any, NamedTuple
 from flint import fmpq
 
 from qbound.model.boundaries import BodyPair, HalfSpace, Pair
-from qbound.model.exact import read_exactly
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
+from qbound.model.source import Source
 from qbound.proofs.parts import check_parts
 from qbound.proofs.second.reading import (
     LARGEST,
@@ -88,12 +87,12 @@ class _Robot:
     def __init__(self, text: str) -> None:
         demand(not COSTLY.search(text), "robot: a key of many parts or a number of many digits")
         try:
-            plain = tomllib.loads(text)
-            _check_counts(plain)
+            source = Source.of_text(text)
+            _check_counts(source.table)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                self.robot: Robot = parse_robot(plain)
-            self.table = read_exactly(text)
+                self.robot: Robot = parse_robot(source)
+            self.table = source.exact
         except (ValueError, OverflowError, RecursionError) as error:
             refuse(f"robot: {shown(str(error))}")
         demand(len(self.robot.used) <= MOST_ROWS, f"robot: more than {MOST_ROWS} boundaries in use")
@@ -262,7 +261,7 @@ def _around(loop: Sequence[Any]) -> list[tuple[Any, Any]]:
     return list(zip(loop, [*loop[1:], *loop[:1]], strict=True))
 
 
-def _check_counts(table: dict[str, Any]) -> None:
+def _check_counts(table: Mapping[str, Any]) -> None:
     """Bound the rows of a robot file before its reader compares them with each other."""
     kinds = ["joint", "point", "boundary", "body", "obstacle", "allowed"]
     rows = {kind: table.get(kind, []) for kind in kinds}
