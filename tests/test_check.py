@@ -304,7 +304,7 @@ SETS = {
     "a joint that is held": ("box of one joint", put(*TREES, 0, 0, "b.."), "proof: a tree cuts a joint that the box does not have, or that is held"),
     "a second edge of a segment": ("path", put(*TREES, 0, 0, "b.."), "proof: a tree cuts an edge that its cell does not have"),
     "a fourth edge of a triangle": ("polygon", put(*TREES, 0, 0, "d.."), "proof: a tree cuts an edge that its cell does not have"),
-    "121 cuts on top of each other": ("box", put(*TREES, 0, 0, "a" * 121 + "." * 122), "proof: more than 120 cuts in a tree"),
+    "121 cuts on top of each other": ("box", put(*TREES, 0, 0, "a" * 121 + "." * 122), "proof.trees[0][0]: more than 120 cuts in a tree"),
     "a leaf of a pair without a number": ("box", put(*TREES, 1, 0, "."), "proof.trees[1][0]: a leaf names no direction of the list"),
     "a number without a leaf": ("box", put(*TREES, 1, 0, "0.0"), "proof.trees[1][0]: no tree of letters and leaves"),
     "a number with a zero before it": ("box", put(*TREES, 1, 0, "00."), "proof.trees[1][0]: no tree of letters and leaves"),
