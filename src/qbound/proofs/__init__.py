@@ -4,8 +4,7 @@
 - numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
   `balls` (python-flint's, and their precision);
 - boundaries: `crossings` (where two curves meet, none left out), `runs` (pieces between them),
-  `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
-  `exact_windows` (the paper's rule, Table 6);
+  `proved_region` (regions and their areas);
 - components, with bodies or without: `stars` (cells on which what is free is connected) and
   `structure` (how many components, of how many loops);
 - cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
@@ -19,7 +18,7 @@
   refute, and write the file), `inequality` (the one inequality, in floats), `subdivide` (cells,
   their halves, the search that cuts them), `safe` (a direction for each leaf), `contact` (places
   of two hulls that are too near), `witness` (what refutes), `no_path` (that nothing leads from
-  start to goal), `separator` (few boxes that separate), `minorant` (other bounds, to compare);
+  start to goal), `separator` (few boxes that separate);
 - `second`: the second checker, which shares nothing with `qbound.check` nor with the provers;
 - `reports`: what was proved, as JSON and in words.
 """
