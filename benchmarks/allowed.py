@@ -17,7 +17,7 @@ from qbound.arms.allowed import Contact, LinkContact, allowed_collisions
 from qbound.arms.links import links
 from qbound.arms.pair_forms import pair_forms
 from qbound.model.robot import Robot
-from qbound.proofs.exact import exact_robot
+from qbound.proofs.exact.problem import exact_robot
 
 POSES = 10_000
 SEEDS = 100

@@ -15,9 +15,9 @@ from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.balls import balls, precision
-from qbound.proofs.dyadic import magnitude
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.exact.bounds import magnitude
+from qbound.proofs.exact.numbers import balls, precision
+from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
 from qbound.region import clearance_problem, paper_rule
 from support.oracles import packaged_table, robot_tables
 from support.robot_files import robot_file

@@ -23,7 +23,7 @@ from qbound.cli import main
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import parse_robot, robot_table
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact.problem import exact_problem, exact_robot
 from support.urdf import BALL, joint, link, rotation, transform, written
 
 LABELS = ("0", "1", "bar", "2", "3")

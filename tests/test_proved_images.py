@@ -15,7 +15,7 @@ from lizarraga2025.evidence.certainty import (
 )
 from qbound import load_robot
 from qbound.model.robot import Point, Revolute, Robot
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.region import clearance_problem, paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm

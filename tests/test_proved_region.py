@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose
 
 from lizarraga2025.evidence.certainty import exact_windows_problem
 from qbound import find_region, load_robot
-from qbound.proofs.balls import precision
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.proved_region import prove_region, proved_component
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved
+from qbound.proofs.exact.numbers import precision
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.exact.region import prove_region, proved_component
 from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS

@@ -11,12 +11,12 @@ from flint import acb_mat, ctx, fmpq
 
 from qbound import check
 from qbound.model.robotfile import packaged_robots, parse_robot, robot_text
+from qbound.proofs import Verdict
 from qbound.proofs.second import proof, verify
 from qbound.proofs.second.cells import Box, Simplex, numbered
 from qbound.proofs.second.normal import is_convex, normal_form, text
 from qbound.proofs.second.reading import Claim, Work, decimal, exact
 from qbound.proofs.second.waves import Form, halved
-from qbound.proofs.verdict import Verdict
 from support import certificates
 
 # --- random robots, and where their places are ----------------------------------------------------

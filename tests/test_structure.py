@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from qbound import find_region, load_robot
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.proved_region import prove_region
-from qbound.proofs.stars import Stars, Undecided
-from qbound.proofs.structure import Structure, prove_structure
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved
+from qbound.proofs.exact.components import Structure, prove_structure
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.exact.region import prove_region
+from qbound.proofs.exact.stars import Stars, Undecided
 from qbound.region import Problem, Region, solve
 from support.arms_in_planes import scene
 from support.exact import stated

@@ -18,12 +18,12 @@ from qbound.arms.why import least_margins, why
 from qbound.cli import main
 from qbound.figures.why import why_picture
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import second, statements
-from qbound.proofs.certify import certify
-from qbound.proofs.connection import connection
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.structure import Structure
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved, second
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import certify
+from qbound.proofs.exact.components import Structure
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.connection import connection
 from support import brute_force
 from support.elbow import arm
 from support.planar import caged

@@ -20,11 +20,11 @@ from qbound.arrays import Array
 from qbound.boundary.functions import position
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
-from qbound.proofs.balls import arb, ball, balls, precision, turns
-from qbound.proofs.exact import BITS, ExactProblem, exact_state
-from qbound.proofs.proved_region import BITS as AREA_BITS
-from qbound.proofs.proved_region import ProvedComponent, prove_region
-from qbound.proofs.runs import area_under
+from qbound.proofs.exact.numbers import arb, ball, balls, precision, turns
+from qbound.proofs.exact.problem import BITS, ExactProblem, exact_state
+from qbound.proofs.exact.region import BITS as AREA_BITS
+from qbound.proofs.exact.region import ProvedComponent, prove_region
+from qbound.proofs.exact.runs import area_under
 from qbound.region import Problem, paper_rule, solve
 from qbound.region.exact import window_end
 from qbound.workspace import planar

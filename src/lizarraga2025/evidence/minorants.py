@@ -19,7 +19,7 @@ from qbound.boundary.functions import clearance
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
-from qbound.proofs.statements import Statement, corners_of, units, wider
+from qbound.proofs.certificates.statements import Statement, corners_of, units, wider
 from qbound.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
 from qbound.tolerances import NEGLIGIBLE
 

@@ -4,8 +4,8 @@ Other programs draw ten thousand poses and call a pair that was in contact in no
 Here the proofs use cells that fill the ranges of the joints between both links. "Never": every form
 has a bound above zero in each cell. "Always": in each cell one form has a bound below zero.
 "Sometimes": there are two configurations, one with contact and one without. The bounds are those of
-`qbound.proofs.dyadic` and include rounding. Not in the paper, whose Table 6 has the case of one
-joint.
+`qbound.proofs.exact.bounds` and include rounding. Not in the paper, whose Table 6 has the case
+of one joint.
 
 The proofs are about the spheres. If the spheres cover a link, "never" holds for the link too;
 "always" and "sometimes" need not.
@@ -29,8 +29,8 @@ from qbound.arms.pair_forms import PairForms, pair_forms
 from qbound.arrays import Floats
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
-from qbound.proofs.exact import exact_robot
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.problem import exact_robot
 
 CELLS: Final = 1_000_000
 """Cells at which the search for a proof about two links ends."""

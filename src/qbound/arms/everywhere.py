@@ -1,6 +1,6 @@
 """Proofs of contact everywhere or nowhere, over cells that fill the ranges of the joints.
 
-Bounds of forms over cells come from `qbound.proofs.dyadic` and include rounding.
+Bounds of forms over cells come from `qbound.proofs.exact.bounds` and include rounding.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from qbound.arms.pair_forms import PairForms
 from qbound.arrays import Bools, Floats
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import ball, precision
-from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells
+from qbound.proofs.exact.numbers import ball, precision
 
 BATCH: Final = 8192
 """Cells that are bounded at a time."""

@@ -19,8 +19,8 @@ from qbound.arrays import Floats
 from qbound.boundary.evaluator import stacked
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.robot import Joint, Pair, Robot
-from qbound.proofs.balls import above, arb, ball, balls, below, pi, precision
-from qbound.proofs.dyadic import BITS, magnitude
+from qbound.proofs.exact.bounds import BITS, magnitude
+from qbound.proofs.exact.numbers import above, arb, ball, balls, below, pi, precision
 from qbound.tolerances import ZERO_AMPLITUDE
 
 Ends = tuple[tuple[arb, arb], ...]
@@ -110,7 +110,7 @@ class PairForms:
 
 
 def pair_forms(robot: Robot, one: Link, other: Link) -> PairForms:
-    """Return the forms of two links of an exact robot (`proofs.exact.exact_robot`).
+    """Return the forms of two links of an exact robot (`proofs.exact.problem.exact_robot`).
 
     Between two frames only the joints from the one to the other are looked at: the chain is cut
     there, and the form is that of a shorter arm. The bar of a parallelogram sees what its own joint

@@ -25,16 +25,16 @@ from qbound.boundary.evaluator import evaluator
 from qbound.boundary.parts import bounds_bodies
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot, robot_text, written_text
-from qbound.proofs import statements
-from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, certify, no_certificate
-from qbound.proofs.connection import Connection, connection
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
-from qbound.proofs.no_path import certify_disconnected, certify_no_path
-from qbound.proofs.paving import Paving
-from qbound.proofs.proved_region import prove_region, proved_component
-from qbound.proofs.structure import Structure
-from qbound.proofs.verdict import Unproved, Verdict
+from qbound.proofs import Unproved, Verdict
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import Certificate, certify, no_certificate
+from qbound.proofs.certificates.no_path import certify_disconnected, certify_no_path
+from qbound.proofs.exact.components import Structure
+from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot, paving_bytes
+from qbound.proofs.exact.region import prove_region, proved_component
+from qbound.proofs.subpaving.connection import Connection, connection
+from qbound.proofs.subpaving.forbidden import BlockedRange
+from qbound.proofs.subpaving.paving import Paving
 from qbound.region import Region, find_region, violated
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]

@@ -17,7 +17,7 @@ from qbound.model.boundaries import BodyPair, HalfSpace, Pair
 from qbound.model.exact import read_exactly
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.parts import check_parts
+from qbound.proofs.exact.parts import check_parts
 from qbound.proofs.second.reading import (
     LARGEST,
     LARGEST_ANGLE,

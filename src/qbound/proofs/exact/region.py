@@ -25,8 +25,9 @@ from numpy.typing import ArrayLike
 from qbound.arrays import Floats
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import arb, ball, precision, turns
-from qbound.proofs.crossings import (
+from qbound.proofs import Unproved, Verdict
+from qbound.proofs.exact.components import prove_structure
+from qbound.proofs.exact.crossings import (
     Balls,
     Crossing,
     Crossings,
@@ -39,10 +40,17 @@ from qbound.proofs.crossings import (
     sides,
     within_ranges,
 )
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
-from qbound.proofs.structure import prove_structure
-from qbound.proofs.verdict import Unproved, Verdict
+from qbound.proofs.exact.numbers import arb, ball, precision, turns
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.exact.runs import (
+    Curve,
+    Run,
+    area_under,
+    lies_on,
+    on_the_left,
+    root_near,
+    sign_along,
+)
 from qbound.region import Component, Region
 from qbound.region.arcs import Arc
 
@@ -431,7 +439,7 @@ def proved_component(problem: ExactProblem, proved: ProvedRegion, q: ArrayLike) 
     Examples
     --------
     >>> from qbound import find_region, load_robot
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> from qbound.proofs.exact.problem import exact_problem, exact_robot
     >>> problem = exact_problem(exact_robot("minervabot-v2"))
     >>> proved = prove_region(problem, find_region(load_robot("minervabot-v2")))
     >>> proved_component(problem, proved, [0.0, 0.0]), proved_component(problem, proved, [0.0, 2.5])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.inequality import (
+from qbound.proofs.certificates.inequality import (
     Arm,
     Kind,
     Seen,

@@ -25,7 +25,7 @@ import numpy as np
 from qbound.arrays import Floats, Ints
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, arb, ball, balls, precision
+from qbound.proofs.exact.numbers import above, arb, ball, balls, precision
 
 Ends = Sequence[tuple[arb, arb]]
 

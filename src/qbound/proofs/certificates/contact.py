@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.inequality import (
+from qbound.proofs.certificates.inequality import (
     Arm,
     Kind,
 )

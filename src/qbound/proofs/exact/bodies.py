@@ -30,8 +30,8 @@ from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Point, Robot
 from qbound.printable import printable
-from qbound.proofs import parts
-from qbound.proofs.balls import ball
+from qbound.proofs.exact import parts
+from qbound.proofs.exact.numbers import ball
 
 
 @dataclass(frozen=True, eq=False)

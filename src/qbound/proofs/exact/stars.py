@@ -33,9 +33,8 @@ import numpy as np
 from qbound.arrays import Array, Bools, Floats, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, ball, precision, turns
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.trigonometry import cosine_sine
+from qbound.proofs.exact.numbers import above, ball, cosine_sine, precision, turns
+from qbound.proofs.exact.problem import ExactProblem
 
 WHOLE = 2**36
 """Steps across each range: a cell one step wide is given up."""
