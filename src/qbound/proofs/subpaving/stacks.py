@@ -27,6 +27,7 @@ from qbound.proofs import Verdict
 from qbound.proofs.exact.bounds import BITS, BoxBounds
 from qbound.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
 from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.subdivide import Rows
 from qbound.proofs.subpaving.paving import Clock, bracket_lines, part_done, volume_unit
 from qbound.proofs.subpaving.sectors import Sectors, covered, hidden, pieces, sectors_of
 from qbound.units import counted
@@ -48,7 +49,7 @@ FUZZ = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class Columns(Rows):
     """Cells of all joints but the lift, and how much of the lift's range is proved over each.
 
     Attributes
@@ -68,20 +69,6 @@ class Columns:
     undecided: Floats
     feasible: Floats
     slopes: Floats
-
-    def __len__(self) -> int:
-        """Return how many cells there are."""
-        return len(self.low)
-
-    def __getitem__(self, chosen: Any) -> Columns:
-        """Take some of the cells, by a mask or by numbers."""
-        return Columns(*(getattr(self, name)[chosen] for name in self.__dataclass_fields__))
-
-    def joined(self, other: Columns) -> Columns:
-        """Return these cells and others."""
-        names = self.__dataclass_fields__
-        both = (np.concatenate([getattr(x, name) for x in (self, other)]) for name in names)
-        return Columns(*both)
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,7 +237,7 @@ def _refined(paving: ColumnPaving) -> ColumnPaving:
     low, high = np.concatenate([old.low, second]), np.concatenate([first, old.high])
     kept = np.ones(len(columns), dtype=bool)
     kept[chosen[room]] = False
-    return replace(paving, columns=columns[kept].joined(_looked_at(paving, low, high)))
+    return replace(paving, columns=Columns.joined([columns[kept], _looked_at(paving, low, high)]))
 
 
 def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
@@ -258,9 +245,7 @@ def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
     step = max(1, BLOCK // max(1, len(paving.problem.names)))
     parts = [slice(k, k + step) for k in range(0, len(low), step)]
     empty = Columns(low[:0], high[:0], low[:0, 0], low[:0, 0], low[:0])
-    for part in parts:
-        empty = empty.joined(_measured(paving, low[part], high[part]))
-    return empty
+    return Columns.joined([empty, *(_measured(paving, low[part], high[part]) for part in parts)])
 
 
 def _measured(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
