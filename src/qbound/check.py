@@ -1264,7 +1264,8 @@ def _boundaries(
             found.append(Boundary(", ".join(names), pair, None, file["clearance"]))
     limits = {f"{joint['name']}.{side}" for joint in joints for side in ("lower", "upper")}
     demand(not limits & {*_named("boundary", found)}, "robot: a boundary has the name of a limit")
-    used = tuple(b for b in found if b.name not in {*unused})
+    without = {*unused}
+    used = tuple(boundary for boundary in found if boundary.name not in without)
     demand(len(used) <= MAX_BOUNDARIES, f"robot: more than {MAX_BOUNDARIES} boundaries in use")
     left_out = [*(f"{named!a} (used = false)" for named in unused), *left_out]
     left_out += ["bodies of one frame" if file["collisions"] else "other bodies"] * bool(bodies)
@@ -1416,8 +1417,8 @@ def demand_filled(
     """Refuse pieces that do not fill loops: convex, inner edges in pairs, all others the loops.
 
     Then the edges of all pieces add up to the loops. So around any place the loops wind as often as
-    pieces hold it, and a place that they wind around lies in a piece. Points are numbered by
-    sorting, because the hash of a number can be chosen and that of a text cannot.
+    pieces hold it, and a place that they wind around lies in a piece. Points are known by their
+    text, because the hash of a number can be chosen and that of a text cannot.
     """
     for piece in pieces:
         demand(is_convex(piece), f"{where}: a piece is not convex, flat, or goes clockwise")
