@@ -1024,7 +1024,24 @@ def seams(depth):
     return draft.file(proof={"places": [], "tree": balanced(depth, "abcdefg")})
 
 
+def long_names(count=138):
+    """Twenty thousand pairs of parts with long names: a normal form of 90 MB of ASCII."""
+    x = [k / count - 0.5 for k in range(count)]
+    loop = [[0, 1], *([round(u, 4), round(0.5 - u * u, 8)] for u in x)]
+    fan = [[0, k, k + 1] for k in range(1, count)]
+    moved_loop = [[0.75 + u, round(0.4 + v, 8)] for u, v in loop]
+    robot = BODIES.replace("[[0.4, 0.03], [0.4, -0.03], [-0.05, -0.03], [-0.05, 0.03]]", str(loop))
+    robot = robot.replace("[[0.6, 0.4], [0.9, 0.4], [0.9, 0.7], [0.6, 0.7]]", str(moved_loop))
+    names = {name: "\U0001f916" * 190 + name for name in ("hand", "crate")}
+    for name, long_name in names.items():
+        robot = robot.replace(f'"{name}"', f'"{long_name}"')
+    robot = re.sub('  { name = "hook".*\n', "", robot)
+    parts = dict.fromkeys(names.values(), fan)
+    return Draft(robot, box("0 0", "0 0"), parts).file(proof={"directions": [], "trees": []})
+
+
 HOSTILE = {
+    "long names of many pairs": long_names,
     "equal hashes of 20,000 configurations": lambda: colliding(20_000),
     "outlines of a thousand corners": long_outline,
     "a thousand obstacles": lambda: obstacles(1900),
@@ -1055,12 +1072,15 @@ def test_a_hostile_file_is_answered_in_bounded_time_and_memory(tmp_path, name):
         resource.setrlimit(resource.RLIMIT_AS, (500_000_000, 500_000_000))
         resource.setrlimit(resource.RLIMIT_CPU, (30, 30))
 
-    words = [sys.executable, "-I", FILE, file if data else "/dev/zero"]
-    done = subprocess.run(words, preexec_fn=limits, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) in ((0, ""), (2, ""))
-    assert not re.search("Error|Exception|Traceback|fault of the checker|memory", done.stdout)
+    statuses = []
+    for option in ([], ["--print", "robot"]):
+        words = [sys.executable, "-I", FILE, file if data else "/dev/zero", *option]
+        done = subprocess.run(words, preexec_fn=limits, capture_output=True, text=True, check=False)
+        statuses.append(done.returncode)
+        assert (done.returncode, done.stderr) in ((0, ""), (2, ""))
+        assert not re.search("Error|Exception|Traceback|fault of the checker|memory", done.stdout)
     if data:
-        assert verdict("second", data) == "proved" or done.returncode == 2
+        assert verdict("second", data) == "proved" or statuses[0] == 2
 
 
 COSTLY = {

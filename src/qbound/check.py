@@ -729,7 +729,7 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     for end, q in zip(("start", "goal"), ends, strict=True):
         demand(not arm.robot.beyond(q), f"claim.points: the {end} is beyond a limit")
     free, turns = [kind == "any" for kind in claim.joints], list[int]()
-    low, high = ([*arm.placed(ends[0])] for _ in "ab")
+    low, high = [*arm.placed(ends[0])], [*arm.placed(ends[0])]
     for j, kind in enumerate(claim.joints):
         if kind != "held":
             low[j], high[j] = arm.whole_range(j)
@@ -743,9 +743,8 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
         number = found_leaf.get("proof.tree")
         leaves.add(part, depth, number == "")
         if number:
-            demand(
-                int(number) < len(found["places"]), "proof.tree: a leaf names no place of the list"
-            )
+            known = int(number) < len(found["places"])
+            demand(known, "proof.tree: a leaf names no place of the list")
             keep, spots = found["places"][int(number)]
             violated = is_violated(arm.steps, Pose(arm.steps, part.middle), keep, spots, part, free)
             demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
@@ -1814,7 +1813,7 @@ def _read_file(file: str) -> bytes:
 
 def _printed(said: str) -> bool:
     """Print a text in ASCII and tell whether it arrived."""
-    safe = "".join(c if c == "\n" or " " <= c <= "~" else ascii(c)[1:-1] for c in said)
+    safe = re.sub(r"[^\n -~]", lambda found: ascii(found[0])[1:-1], said)
     try:
         sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
         sys.stdout.flush()
