@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arrays import Bools, Floats
+from qbound.arrays import Bools, Floats, Ints
 from qbound.geometry import simplices
 
 Tell = Callable[[float], None]
@@ -256,6 +256,38 @@ class Search:
     left: int
     part_left: float
     violation: tuple[int, Floats] | None = None
+
+
+def best_cuts(
+    cells: Cells,
+    tried: Bools,
+    worth: Callable[[Ints, Cells], Floats],
+    enough: float,
+    size: float,
+) -> Ints:
+    """Choose the cut of each cell that closes most halves, and then leaves the least to be gained.
+
+    Parameters
+    ----------
+    tried : ndarray of bool, shape (N, cuts)
+    worth : callable
+        From numbers of cells and the halves of these to a value for each half: one that is more
+        than `enough` is closed.
+    size : float
+        A value that is large.
+
+    Returns
+    -------
+    ndarray of int, shape (N,)
+        -1 where none is tried.
+    """
+    scores = np.full(tried.shape, -np.inf)
+    for cut in np.flatnonzero(tried.any(axis=0)).tolist():
+        rows = np.flatnonzero(tried[:, cut])
+        values = worth(rows, cells[rows].halves(np.full(len(rows), cut))).reshape(-1, 2)
+        lacks = np.minimum(values, 0).sum(axis=1) / size
+        scores[rows, cut] = 1e6 * (values > enough).sum(axis=1) + lacks
+    return np.where(tried.any(axis=1), scores.argmax(axis=1), -1)
 
 
 def subdivide(

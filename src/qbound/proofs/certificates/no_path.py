@@ -27,7 +27,7 @@ from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import within_limits
 from qbound.proofs.certificates.witness import Evidence, place_of
 from qbound.proofs.exact.bounds import Cells as DyadicCells
-from qbound.proofs.subdivide import Boxes, Cells, Judged, subdivide
+from qbound.proofs.subdivide import Boxes, Cells, Judged, best_cuts, subdivide
 from qbound.proofs.subpaving.connection import all_round, joined, touching
 from qbound.proofs.subpaving.forbidden import BlockedRange
 from qbound.proofs.subpaving.paving import Paving
@@ -282,17 +282,16 @@ class _Judge:
         return things, best, shown
 
     def _cuts(self, cells: Boxes, things: Ints, shown: Sequence[Contacts]) -> Ints:
-        """Choose the cut that closes most halves, and then leaves the least to be gained."""
-        scores = np.full((len(cells), cells.cuts), -np.inf)
+        """Choose a joint that moves for each box; a half that meets no cell is closed."""
         twice, known = np.repeat(things, 2), [each for each in shown for _ in range(2)]
-        for j in self.moving:
-            halves = cells.halves(np.full(len(cells), j))
-            values, _ = self.task.values(twice, self.task.placed(halves), known)
-            empty = ~self._met(halves).any(axis=1)
-            closes = (empty | (values > self.task.arm.spare)).reshape(-1, 2).sum(axis=1)
-            lacks = np.where(empty, 0, np.minimum(values, 0)).reshape(-1, 2).sum(axis=1)
-            scores[:, j] = 1e6 * closes + lacks / self.task.arm.size
-        return np.asarray(scores.argmax(axis=1))
+
+        def worth(_: Ints, halves: Cells) -> Floats:
+            assert isinstance(halves, Boxes)
+            values, _contacts = self.task.values(twice, self.task.placed(halves), known)
+            return np.where(self._met(halves).any(axis=1), values, np.inf)
+
+        tried = np.tile(np.isin(np.arange(cells.cuts), self.moving), (len(cells), 1))
+        return best_cuts(cells, tried, worth, self.task.arm.spare, self.task.arm.size)
 
     def _leaf(self, thing: int, shown: Contacts) -> str:
         place = place_of(self.task.arm, thing, shown)
