@@ -16,7 +16,7 @@ from qbound import load_robot
 from qbound.arms.allowed import Contact, LinkContact, allowed_collisions, pair_forms
 from qbound.arms.links import links
 from qbound.model.robot import Robot
-from qbound.proofs.exact import exact_robot
+from qbound.proofs.exact.problem import exact_robot
 
 POSES = 10_000
 SEEDS = 100

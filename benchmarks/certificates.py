@@ -17,8 +17,10 @@ sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
 from qbound import check
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import safe, second, statements
-from qbound.proofs.certify import certify
+from qbound.proofs import second
+from qbound.proofs.certificates import search as safe
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import certify
 from support.six_joints import around_home, six_joint_arm
 from test_boxes import least_margins
 

@@ -29,10 +29,10 @@ from qbound.cli import main
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import save_robot
-from qbound.proofs.balls import precision
-from qbound.proofs.dyadic import magnitude
-from qbound.proofs.exact import exact_robot
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import magnitude
+from qbound.proofs.exact.numbers import precision
+from qbound.proofs.exact.problem import exact_robot
 
 Z = (0.0, 0.0, 1.0)
 

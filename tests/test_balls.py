@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, below, precision
-from qbound.proofs.dyadic import magnitude
+from qbound.proofs.exact.bounds import magnitude
+from qbound.proofs.exact.numbers import above, below, precision
 from support.forms import random_form
 
 

@@ -8,9 +8,9 @@ import pytest
 from qbound import find_region, load_robot
 from qbound.cli import main
 from qbound.model.robot import Capsule
-from qbound.proofs.connection import connection
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import Paving, pave
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.connection import connection
+from qbound.proofs.subpaving.paving import Paving, pave
 from support import scenes
 
 TABLE = "two-links-on-a-table"

@@ -11,10 +11,12 @@ import pytest
 from qbound import check
 from qbound.boundary.functions import clearance, margin_of
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import certify as prover
-from qbound.proofs import contact, inequality, safe, second, statements, subdivide
-from qbound.proofs.certify import Subject, certify
-from qbound.proofs.inequality import Arm, Seen, Step
+from qbound.proofs import second, subdivide
+from qbound.proofs.certificates import certify as prover
+from qbound.proofs.certificates import contact, inequality, statements
+from qbound.proofs.certificates import search as safe
+from qbound.proofs.certificates.certify import Subject, certify
+from qbound.proofs.certificates.inequality import Arm, Seen, Step
 from qbound.proofs.subdivide import Boxes, Forest, Simplices
 from qbound.urdf.arm import import_urdf
 from qbound.urdf.robot_text import robot_text as urdf_text

@@ -23,12 +23,12 @@ from qbound.geometry import polygon
 from qbound.measures.scaling import least
 from qbound.model.robot import Pair
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import certify as prover
-from qbound.proofs import second, statements
-from qbound.proofs.certify import bracket_scale, certify, certify_region
-from qbound.proofs.points import DECIMAL
-from qbound.proofs.triangulation import triangulate
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict, second
+from qbound.proofs.certificates import certify as prover
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
+from qbound.proofs.certificates.loops import triangulate
+from qbound.proofs.certificates.statements import DECIMAL
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
 from support.robots import OF_POINTS, drawn_robot, random_robot
@@ -385,8 +385,8 @@ def test_a_polygon_that_crosses_itself_is_refused():
 VERDICTS = """
 import ctypes
 import sys
-from qbound.proofs import statements
-from qbound.proofs.certify import certify
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import certify
 from qbound.model.robotfile import robot_text
 text, _ = robot_text("minervabot-v2")
 boxes = [(["-20", "-80"], ["30", "-40"], "0"), (["-60", "-140"], ["40", "20"], "0")]

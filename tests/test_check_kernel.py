@@ -290,8 +290,7 @@ def test_a_disc_lies_within_a_part_if_every_edge_is_that_far(seed):
 def test_leaves_that_nearly_touch_are_one_way_on():
     for gap, touch in ((check.TOUCH, True), (check.TOUCH + 2, False)):
         leaves = check.Leaves([(0, 0)])
-        leaves.add(check.Box((0, 0), (ONE, ONE)), True)
-        leaves.after[0] = 1
+        leaves.add(check.Box((0, 0), (ONE, ONE)), 0, True)
         beyond = check.Box((ONE + gap, ONE + gap), (2 * ONE, 2 * ONE))  # at a corner
         assert [*leaves.touching(beyond)] == [0] * touch
 

@@ -16,10 +16,10 @@ from qbound import find_region, load_robot
 from qbound.boundary.functions import clearance
 from qbound.cli import main
 from qbound.model.robot import HalfSpace, Pair, Point, Revolute, Robot
-from qbound.proofs.columns import ColumnPaving, pave_columns
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.numbers import ERROR, FARTHEST, cosine_sine
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.stacks import ColumnPaving, pave_columns
 from support.robots import random_robot
 
 TWO_JOINTS = (

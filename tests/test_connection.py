@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.ndimage import label
 
 from qbound import find_region, load_robot
-from qbound.proofs.connection import connection, outer_groups, separated, separating_cells
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import pave
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.connection import connection, outer_groups, separated, separating_cells
+from qbound.proofs.subpaving.paving import pave
 from qbound.region import solve
 from support.exact import stated
 from support.forms import RR

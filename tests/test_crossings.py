@@ -14,9 +14,9 @@ from scipy.optimize import root
 
 from qbound import find_region
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import precision
-from qbound.proofs.crossings import crossings, folds
-from qbound.proofs.exact import exact_problem, exact_robot
+from qbound.proofs.exact.crossings import crossings, folds
+from qbound.proofs.exact.numbers import precision
+from qbound.proofs.exact.problem import exact_problem, exact_robot
 from support.exact import stated
 from support.forms import PP, PR, RP, RR, SQUARE
 from support.robots import random_robot

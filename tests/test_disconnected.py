@@ -18,11 +18,11 @@ from qbound import check
 from qbound.arms.separations import separation, separations
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import second
-from qbound.proofs.blocked import blocked_ranges
-from qbound.proofs.connection import connection
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.no_path import certify_disconnected, certify_no_path
-from qbound.proofs.statements import units
+from qbound.proofs.certificates.no_path import certify_disconnected, certify_no_path
+from qbound.proofs.certificates.statements import units
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.connection import connection
+from qbound.proofs.subpaving.forbidden import blocked_ranges
 from support import brute_force, planar
 from support.elbow import SLIDE, arm
 

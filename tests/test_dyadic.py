@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import precision
-from qbound.proofs.dyadic import BoxBounds, Cells
+from qbound.proofs.exact.bounds import BoxBounds, Cells
+from qbound.proofs.exact.numbers import precision
 from support.forms import random_form
 
 
@@ -87,9 +87,9 @@ def test_bounds_without_forms_bounds_nothing():
 ROUNDING = """
 import ctypes, ctypes.util
 libm = ctypes.CDLL(ctypes.util.find_library("m"))
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import pave
-from qbound.proofs.connection import connection
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.paving import pave
+from qbound.proofs.subpaving.connection import connection
 problem, tiny = exact_problem(exact_robot("minervabot-v2")), float("1e-30")
 for mode in (0x000, 0x400, 0x800, 0xC00):  # nearest, down, up, towards zero
     assert libm.fesetround(mode) == 0

@@ -10,15 +10,15 @@ from flint import arb, fmpq
 from hypothesis import given
 from numpy.testing import assert_allclose
 
+from lizarraga2025.evidence.certainty import exact_windows_problem
 from qbound import load_robot, save_robot
 from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.balls import balls, precision
-from qbound.proofs.dyadic import magnitude
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
-from qbound.proofs.exact_windows import exact_windows_problem
+from qbound.proofs.exact.bounds import magnitude
+from qbound.proofs.exact.numbers import balls, precision
+from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
 from qbound.region import clearance_problem, paper_rule
 from support.oracles import packaged_table, robot_tables
 from support.robot_files import robot_file

@@ -18,7 +18,7 @@ from qbound.model.exact import written_numbers
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import Capsule, Disc, HalfSpace, Polygon
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.exact import exact_robot
+from qbound.proofs.exact.problem import exact_robot
 from qbound.region import Problem, clearance_problem, paper_rule
 from qbound.region.plane import BITS, ExactRows
 from support import arms_in_planes

@@ -80,5 +80,5 @@ def test_the_api_page_lists_every_module_once_and_no_other() -> None:
 
 
 def test_there_are_modules_and_methods_to_look_at() -> None:
-    assert {"qbound.region.region", "qbound.proofs.certify"} <= set(MODULES)
+    assert {"qbound.region.region", "qbound.proofs.certificates.certify"} <= set(MODULES)
     assert {"margins", "contains", "plot", "to_dict"} <= set(METHODS)

@@ -20,10 +20,9 @@ from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson
 from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.geometry.bisection import last_before
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import pave
-from qbound.proofs.points import joint_decimal, limits_as_decimals, read_points
-from qbound.proofs.reports import paving_document, paving_lines
+from qbound.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.paving import pave, paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.areas import workspace_report

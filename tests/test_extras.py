@@ -294,7 +294,7 @@ def test_a_command_says_how_to_install_what_it_misses(
 
 CALLS = {
     "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
-    "scipy": "from qbound.proofs.connection import joined; joined(2, [])",
+    "scipy": "from qbound.proofs.subpaving.connection import joined; joined(2, [])",
     "sympy": "qbound.symbols.with_symbols(robot)",
     "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
     "IPython": "qbound.figures.table(['a'], [[1]])",

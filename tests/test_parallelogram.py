@@ -21,10 +21,10 @@ from qbound.cli import main
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import HalfSpace, Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import parse_robot, robot_table
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.structure import prove_structure
+from qbound.proofs.exact.components import prove_structure
+from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.region import clearance_problem
-from qbound.region.exact import ExactRows
+from qbound.region.plane import ExactRows
 from support.urdf import BALL, joint, link, rotation, transform, written
 
 LABELS = ("0", "1", "bar", "2", "3")

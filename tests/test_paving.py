@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from qbound import find_region
 from qbound.cli import main
-from qbound.proofs.balls import precision
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot
-from qbound.proofs.paving import Paving, pave, start
+from qbound.proofs.exact.numbers import precision
+from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.subpaving.paving import Paving, pave, start
 from support.exact import stated
 from support.robots import random_robot
 

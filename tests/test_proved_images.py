@@ -8,11 +8,14 @@ import pytest
 from flint import arb
 from numpy.testing import assert_allclose
 
+from lizarraga2025.evidence.certainty import (
+    exact_windows_problem,
+    jacobian_determinant,
+    proved_images,
+)
 from qbound import load_robot
 from qbound.model.robot import Point, Revolute, Robot
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.proofs.proved_images import jacobian_determinant, proved_images
+from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.region import clearance_problem, paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm

@@ -8,12 +8,12 @@ import pytest
 from flint import arb
 from numpy.testing import assert_allclose
 
+from lizarraga2025.evidence.certainty import exact_windows_problem
 from qbound import find_region, load_robot
-from qbound.proofs.balls import precision
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.exact_windows import exact_windows_problem
-from qbound.proofs.proved_region import prove_region, proved_component
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved
+from qbound.proofs.exact.numbers import precision
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.exact.region import prove_region
 from qbound.region import Problem, Region, paper_rule, solve
 from support.exact import stated
 from support.forms import EDGES, LIMITS
@@ -180,33 +180,6 @@ def test_a_hole_that_is_not_proposed_is_found():
     outer = max(whole.loops, key=lambda loop: max(np.abs(a.points).max() for a in loop))
     with pytest.raises(Unproved, match="not proposed"):
         prove_region(exact, replace(region, found=(replace(whole, loops=(outer,)),)))
-
-
-# --- where a configuration lies -------------------------------------------------------------------
-
-
-def configurations(robot, count=12):
-    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
-    return np.random.default_rng(4).uniform(*ends.T, size=(count, 2))
-
-
-@pytest.mark.parametrize("robot", [MINERVA, *map(random_robot, range(4, 10))])
-def test_a_configuration_lies_in_the_component_that_the_float_engine_says(robot):
-    problem, region = exact_problem(exact_robot(robot)), find_region(robot)
-    proved = prove_region(problem, region)
-    for q in configurations(robot):
-        owner = region.component_of(q)
-        if owner is None:
-            with pytest.raises(Unproved, match="not proved to be feasible"):
-                proved_component(problem, proved, q)
-        else:
-            assert proved_component(problem, proved, q) == owner
-
-
-def test_on_the_boundary_nothing_is_said():
-    vertex = REGION.components[1].vertices[0].q
-    with pytest.raises(Unproved):
-        proved_component(CLEARANCE, prove_region(CLEARANCE, REGION), vertex)
 
 
 def test_of_bodies_the_components_are_proved_and_no_area_and_no_place_in_them():

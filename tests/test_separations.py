@@ -8,7 +8,7 @@ import pytest
 
 from qbound.arms.separations import separation, separations
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.blocked import blocked_ranges
+from qbound.proofs.subpaving.forbidden import blocked_ranges
 from support import brute_force
 from support.elbow import CLOSED, SLIDE, arm
 from support.robot_files import robot_file

@@ -24,7 +24,7 @@ from qbound.model.robot import BodyPair, Capsule, Disc, HalfSpace, Polygon
 from qbound.model.robotfile import parse_robot
 from qbound.model.rows import LARGEST
 from qbound.model.shapes import default_names
-from qbound.proofs.statements import with_extra_clearance
+from qbound.proofs.certificates.statements import with_extra_clearance
 
 Table = dict[str, Any]
 

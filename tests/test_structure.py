@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 from qbound import find_region, load_robot
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.proved_region import prove_region
-from qbound.proofs.stars import Stars, Undecided
-from qbound.proofs.structure import Structure, prove_structure
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved
+from qbound.proofs.exact.components import Structure, prove_structure
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.exact.region import prove_region
+from qbound.proofs.exact.stars import Stars, Undecided
 from qbound.region import Problem, Region, solve
 from support.arms_in_planes import scene
 from support.exact import stated
 from support.forms import EDGES, LIMITS
+from support.robots import random_robot
 from support.scenes import random_scene
 
 
@@ -43,6 +44,21 @@ def test_random_scenes_are_proved_as_the_float_engine_finds_them(seed):
     proved = prove_structure(exact_problem(exact_robot(robot)), region)
     assert [(part.loops, part.wraps) for part in proved] == loops(region)
     assert all(region.components_of(part.place) == (k,) for k, part in enumerate(proved))
+
+
+@pytest.mark.parametrize("robot", [load_robot("minervabot-v2"), *map(random_robot, range(4, 10))])
+def test_a_configuration_lies_in_the_component_that_the_float_engine_says(robot):
+    structure, region = Structure(exact_problem(exact_robot(robot))), find_region(robot)
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+    tried = np.random.default_rng(4).uniform(*ends.T, size=(40, 2))
+    pairs = {(structure.part_of(q), region.component_of(q)) for q in tried}
+    assert all((part < 0) == (owner is None) for part, owner in pairs)
+    assert len({part for part, _ in pairs}) == len({owner for _, owner in pairs}) == len(pairs)
+
+
+def test_on_the_boundary_nothing_is_said():
+    vertex = find_region(load_robot("minervabot-v2")).components[1].vertices[0].q
+    assert Structure(exact_problem(exact_robot("minervabot-v2"))).part_of(vertex) == -1
 
 
 @pytest.mark.parametrize("seed", [3, 46, 53])

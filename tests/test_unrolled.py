@@ -9,8 +9,10 @@ import pytest
 from qbound import check, find_region
 from qbound.geometry import polygon
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import second, statements, unrolled
-from qbound.proofs.certify import certify
+from qbound.proofs import second
+from qbound.proofs.certificates import loops as unrolled
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import certify
 
 ARM = """schema = 1
 name = "round"

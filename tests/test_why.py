@@ -17,12 +17,12 @@ from qbound.arms.why import least_margins, why, why_document, why_lines
 from qbound.cli import main
 from qbound.figures.why import why_picture
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import second, statements
-from qbound.proofs.certify import certify
-from qbound.proofs.connection import connection
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.structure import Structure
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved, second
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import certify
+from qbound.proofs.exact.components import Structure
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.connection import connection
 from support import brute_force
 from support.elbow import arm
 from support.planar import caged
@@ -181,12 +181,12 @@ def test_of_bodies_the_proved_structure_decides_where_no_paving_does(monkeypatch
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
     apart = why(BODIES, *APART)
     assert (apart.answer, apart.held, apart.certificate) == ("separated", None, None)
-    assert next(why_lines(apart)).endswith("start and goal lie in two components of it")
+    assert next(why_lines(apart)).endswith("start and goal lie in components 0 and 1 of it")
     valid(apart)
     home = load_robot(BODIES).home
     joined = why(BODIES, home, home + 0.05)
     assert (joined.answer, joined.path, joined.held) == ("connected", None, None)
-    assert "start and goal lie in one component of it" in next(why_lines(joined))
+    assert "start and goal lie in component 0 of it" in next(why_lines(joined))
 
 
 def test_an_end_that_turned_too_often_is_not_proved_to_lie_in_a_component():
@@ -224,7 +224,7 @@ def test_what_is_not_proved_of_a_region_is_suggested_by_floating_point(monkeypat
     found = why(WALLS[0], *np.radians([[20, 60], [-134.26, -130.08]]))
     assert found.answer == "undecided"
     said = " ".join(why_lines(found))
-    assert "the region is not proved (no crossing of tip, floor and tip, column" in said
+    assert "the region is not proved (tip, column and tip, floor: not decided near" in said
     assert "in floating point start and goal lie in components 0 and 1 of it" in said
 
 

@@ -501,9 +501,11 @@ class Simplex:
 
 Cell = Box | Simplex
 
+
+# --- the claims -----------------------------------------------------------------------------------
+
 MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
-
 
 LETTER = re.compile("[a-g]|(?:0|[1-9][0-9]{0,5})?[.]")
 
@@ -519,58 +521,55 @@ def tokens(tree: Any, where: str) -> Iterator[str]:
         at = found.end()
 
 
-def next_of(letters: Iterator[str], where: str) -> str:
-    """Return the next letter or leaf of a tree."""
-    token = next(letters, "")
-    demand(token, f"{where}: a tree ends before its last leaf")
-    return token
+Walk = Iterator[tuple[Any, int, dict[str, str]]]
 
 
-def ended(letters: Iterator[str], where: str) -> None:
-    """Refuse a tree that goes on after its last leaf."""
-    demand(not next(letters, ""), f"{where}: a tree goes on after its last leaf")
+def walk(cell: Cell, trees: dict[str, Any]) -> Walk:
+    """Walk some trees of a cell together: yield its parts, how often each was cut, and its leaves.
 
-
-# --- the claims -----------------------------------------------------------------------------------
+    A part that several trees have comes once, because the arm is placed there once. Trees, and the
+    leaves of a part without their dots, are known by the names of their places in the file.
+    """
+    letters = {where: tokens(tree, where) for where, tree in trees.items()}
+    todo = [(cell, [*trees], 0)]
+    while todo:
+        part, group, depth = todo.pop()
+        Work.add(10 * len(group))
+        cuts, leaves = dict[str, list[str]](), dict[str, str]()
+        for where in group:
+            token = next(letters[where], "")
+            demand(token, f"{where}: a tree ends before its last leaf")
+            if token[-1] == ".":
+                leaves[where] = token[:-1]
+            else:
+                demand(depth < MAX_DEPTH, f"{where}: more than {MAX_DEPTH} cuts in a tree")
+                cuts.setdefault(token, []).append(where)
+        yield part, depth, leaves
+        for letter, those in cuts.items():
+            first, second = part.halves(ord(letter) - ord("a"))
+            todo += [(second, those, depth + 1), (first, those, depth + 1)]
+    for where, rest in letters.items():
+        demand(not next(rest, ""), f"{where}: a tree goes on after its last leaf")
 
 
 def prove_safe(arm: "Arm", cells: Sequence[Cell], proof: Any) -> None:
-    """Verify the trees of all things to keep, cell by cell.
-
-    All trees of a cell are walked together, so that the arm is placed once in a part of the cell
-    that several trees have.
-    """
+    """Verify the trees of all things to keep, cell by cell."""
     count, some = len(arm.keeps), items(anything, 0, len(cells))
     spec = {"directions": items(_direction, 0, MAX_CELLS), "trees": items(some, count, count)}
-    directions, trees = (table(spec)(proof, "proof")[key] for key in spec)
-    for k, row in enumerate(trees):
+    found = table(spec)(proof, "proof")
+    for k, row in enumerate(found["trees"]):
         wanted = len(cells) if arm.needs_proof[k] else 0
         demand(len(row) == wanted, f"proof.trees[{k}]: {wanted} trees are wanted")
     for c, cell in enumerate(cells):
-        walked = [
-            (k, tokens(row[c], f"proof.trees[{k}][{c}]")) for k, row in enumerate(trees) if row
-        ]
-        todo = [(cell, walked, 0)]
-        while todo:
-            part, cursors, depth = todo.pop()
-            Work.add(10 * len(cursors))
-            cuts, pose = dict[str, list[tuple[int, Iterator[str]]]](), None
-            for k, letters in cursors:
-                where = f"proof.trees[{k}][{c}]"
-                token = next_of(letters, where)
-                if not token.endswith("."):
-                    cuts.setdefault(token, []).append((k, letters))
-                    continue
-                pose = pose or Pose(arm.steps, part.middle)
-                u = _direction_of(arm.keeps[k], token[:-1], directions, where)
-                kept = is_kept(arm.steps, pose, arm.keeps[k], u, part)
-                demand(kept, f"{where}: the bound of {shown(arm.keeps[k].name)} fails on a leaf")
-            demand(not cuts or depth < MAX_DEPTH, f"proof: more than {MAX_DEPTH} cuts in a tree")
-            for letter, group in cuts.items():
-                first, second = part.halves(ord(letter) - ord("a"))
-                todo += [(second, group, depth + 1), (first, group, depth + 1)]
-        for k, letters in walked:
-            ended(letters, f"proof.trees[{k}][{c}]")
+        things = {f"proof.trees[{k}][{c}]": k for k, row in enumerate(found["trees"]) if row}
+        trees = {where: found["trees"][k][c] for where, k in things.items()}
+        for part, _, leaves in walk(cell, trees):
+            pose = Pose(arm.steps, part.middle) if leaves else Pose([], ())
+            for where, number in leaves.items():
+                keep = arm.keeps[things[where]]
+                u = _direction_of(keep, number, found["directions"], where)
+                kept = is_kept(arm.steps, pose, keep, u, part)
+                demand(kept, f"{where}: the bound of {shown(keep.name)} fails on a leaf")
 
 
 def _direction(value: Any, where: str) -> tuple[Vector, list[int]]:
@@ -598,28 +597,27 @@ def _direction_of(
 
 def refute(arm: "Arm", claim: "Claim", value: Any) -> str:
     """Verify a witness, and say what is violated where."""
-    kind = "limit" if type(value) is dict and "limit" in value else "place"
-    spec: dict[str, Reader] = {kind: anything}
+    robot, kind = arm.robot, "limit" if type(value) is dict and "limit" in value else "place"
+    spec: Table = {kind: anything}
     if claim.kind == "box":
-        q = table(spec | {"at": configuration(arm.robot)})(value, "witness")["at"]
+        q = table({**spec, "at": configuration(robot)})(value, "witness")["at"]
         ends = zip(*claim.loops[0], q, strict=True)
         demand(all(a <= x <= b for a, b, x in ends), "witness.at: not in the box")
     else:
         spec |= {"cell": index(len(claim.corners)), "weights": weights(len(claim.corners[0]))}
         found = table(spec)(value, "witness")
         q = mean(found["weights"], claim.corners[found["cell"]])
-    robot, name = arm.robot, value[kind]
     values = (
-        f"{j.name!a} = {exactly(x)} {robot.unit_of(k)}"
-        for k, (j, x) in enumerate(zip(robot.joints, q, strict=True))
+        f"{name!a} = {exactly(x)} {robot.unit_of(j)}"
+        for j, (name, x) in enumerate(zip(robot.joints, q, strict=True))
     )
-    said = f"is violated at {', '.join(values)}"
+    said, named = f"is violated at {', '.join(values)}", value[kind]
     if kind == "limit":
-        beyond = type(name) is str and name in robot.beyond(q)
+        beyond = type(named) is str and named in robot.beyond(q)
         demand(beyond, "witness.limit: no limit of that name is violated")
-        return f"the limit {name!a} {said}"
+        return f"the limit {named!a} {said}"
     demand(not robot.beyond(q), "witness.place: a limit is violated there: name that")
-    keep, spots = read_spots(arm)(name, "witness.place")
+    keep, spots = read_spots(arm)(named, "witness.place")
     point = Box(arm.placed(q), arm.placed(q))
     pose, none_free = Pose(arm.steps, point.low), [False] * len(q)
     violated = is_violated(arm.steps, pose, keep, spots, point, none_free) or _cross(pose, keep)
@@ -645,23 +643,23 @@ def _cross(pose: Pose, keep: Keep) -> bool:
 
 def read_spots(arm: "Arm") -> Reader:
     """Return the reader of a place of each hull of a thing to keep, and the discs about them."""
-    radii = items(not_negative(decimal), 2, 2)
-    spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything, "inside?": radii}
+    radii = Maybe(items(not_negative(decimal), 2, 2), (ZERO, ZERO))
+    spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything, "inside": radii}
 
     def read(value: Any, where: str) -> tuple[Keep, Spots]:
         found = table(spec)(value, where)
-        keep, row = arm.keeps[found["keep"]], arm.robot.keeps[found["keep"]]
-        inside, sides = found.get("inside", [Fraction(0)] * 2), list[Vector]()
+        keep, row, inside = arm.keeps[found["keep"]], arm.rows[found["keep"]], found["inside"]
         demand(not any(inside) or keep.along is not None, f"{where}.inside: of bodies only")
-        for key, hull, radius in zip(("near", "far"), (row.near, row.far), inside, strict=True):
-            if hull is None:
+        sides = list[Vector]()
+        for key, radius in zip(("near", "far"), inside, strict=True):
+            if key not in row:
                 demand(found[key] == [], f"{where}.{key}: an empty list is wanted")
                 sides.append((0, 0, 0))
                 continue
-            frame, corners = arm.robot.hulls[hull]
-            at = mean(weights(len(corners))(found[key], f"{where}.{key}"), corners)
-            seen = [k for k in range(3) if k != arm.robot.flat.get(frame)]
-            within = not radius or _holds_disc(corners, seen, at, radius)
+            hull = arm.hulls[row[key]]
+            at = mean(weights(len(hull["corners"]))(found[key], f"{where}.{key}"), hull["corners"])
+            seen = [k for k in range(3) if k != arm.robot.flat.get(hull["frame"])]
+            within = not radius or _holds_disc(hull["corners"], seen, at, radius)
             demand(within, f"{where}.inside: the disc does not lie within the part")
             sides.append(arm.scaled(at))
         near, far = sides
@@ -689,17 +687,20 @@ TOUCH = 1 << BITS - 100
 
 
 class Leaves:
-    """The boxes of a tree in preorder: each is known with the number that follows its last part."""
+    """The boxes of a tree in preorder; `after` has for each the number that follows its parts."""
 
     def __init__(self, shifts: Sequence[Point]) -> None:
         self.spans, self.is_open, self.after = list[Box](), list[bool](), list[int]()
-        self.shifts = shifts
+        self.shifts, self.above = shifts, list[int]()
 
-    def add(self, cell: Box, is_open: bool) -> None:
+    def add(self, span: Box, depth: int, is_open: bool) -> None:
         """Add the next box."""
-        self.spans.append(cell)
+        while len(self.above) > depth:
+            self.after[self.above.pop()] = len(self.spans)
+        self.above.append(len(self.spans))
+        self.spans.append(span)
         self.is_open.append(is_open)
-        self.after.append(0)
+        self.after.append(MAX_FILE)  # the end, unless a box follows that is no part of this one
 
     def touching(self, box: Box) -> Iterator[int]:
         """Yield the open leaves that touch a box, over the seams of joints too."""
@@ -724,56 +725,41 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     """
     places = items(read_spots(arm), 0, MAX_CELLS)
     found = table({"places": places, "tree": anything})(proof, "proof")
-    places, letters = found["places"], tokens(found["tree"], "proof.tree")
-    [[start, goal]], joints = claim.loops, range(len(claim.joints))
-    demand(not arm.robot.beyond(start), "claim.points: the start is beyond a limit")
-    demand(not arm.robot.beyond(goal), "claim.points: the goal is beyond a limit")
+    [ends] = claim.loops
+    for end, q in zip(("start", "goal"), ends, strict=True):
+        demand(not arm.robot.beyond(q), f"claim.points: the {end} is beyond a limit")
     free, turns = [kind == "any" for kind in claim.joints], list[int]()
-    low, high = [*arm.placed(start)], [*arm.placed(start)]
-    for j in joints:
-        if claim.joints[j] != "held":
+    low, high = [*arm.placed(ends[0])], [*arm.placed(ends[0])]
+    for j, kind in enumerate(claim.joints):
+        if kind != "held":
             low[j], high[j] = arm.whole_range(j)
         if free[j]:  # of a slide the middle is where its sweep is measured from
             low[j] = high[j] = low[j] + high[j] >> 1
-        around_it = claim.joints[j] == "moves" and arm.robot.joints[j].limits is None
-        turns.append(TURN if around_it else 0)
+        turns.append(TURN if kind == "moves" and arm.joints[j]["limits"] is None else 0)
     leaves = Leaves([*itertools.product(*({-t, 0, t} for t in turns))])
-    todo, above = [(Box(tuple(low), tuple(high)), 0)], list[int]()
-    while todo:
-        cell, depth = todo.pop()
-        Work.add(100)  # a node takes half a kilobyte
-        token = next_of(letters, "proof.tree")
-        while len(above) > depth:
-            leaves.after[above.pop()] = len(leaves.spans)
-        above.append(len(leaves.spans))
-        leaves.add(cell, token == ".")
-        if not token.endswith("."):
-            demand(
-                depth < MAX_DEPTH, f"proof.tree: more than {MAX_DEPTH} cuts on top of each other"
-            )
-            first, second = cell.halves(ord(token) - ord("a"))
-            todo += [(second, depth + 1), (first, depth + 1)]
-        elif token != ".":
-            demand(int(token[:-1]) < len(places), "proof.tree: a leaf names no place of the list")
-            keep, spots = places[int(token[:-1])]
-            pose = Pose(arm.steps, cell.middle)
-            violated = is_violated(arm.steps, pose, keep, spots, cell, free)
+    root = Box(tuple(low), tuple(high))
+    for part, depth, found_leaf in walk(root, {"proof.tree": found["tree"]}):
+        Work.add(90)  # a node takes half a kilobyte
+        number = found_leaf.get("proof.tree")
+        leaves.add(part, depth, number == "")
+        if number:
+            known = int(number) < len(found["places"])
+            demand(known, "proof.tree: a leaf names no place of the list")
+            keep, spots = found["places"][int(number)]
+            violated = is_violated(arm.steps, Pose(arm.steps, part.middle), keep, spots, part, free)
             demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
-    ended(letters, "proof.tree")
-    for k in above:
-        leaves.after[k] = len(leaves.spans)
-    ends = []
-    for q in map(arm.placed, (start, goal)):
-        at = [x - (x + t // 2) // t * t if t else x for x, t in zip(q, turns, strict=True)]
+    sides = []
+    for end_at in map(arm.placed, ends):
+        at = [x - (x + t // 2) // t * t if t else x for x, t in zip(end_at, turns, strict=True)]
         place = tuple(a if f else x for a, x, f in zip(low, at, free, strict=True))
-        ends.append({*leaves.touching(Box(place, place))})
-        demand(ends[-1], "proof.tree: the start or the goal is on no open leaf")
-    reached, new = {*ends[0]}, [*ends[0]]
+        sides.append({*leaves.touching(Box(place, place))})
+        demand(sides[-1], "proof.tree: the start or the goal is on no open leaf")
+    reached, new = {*sides[0]}, [*sides[0]]
     while new:
         near = {*leaves.touching(leaves.spans[new.pop()])} - reached
         reached |= near
         new += near
-    demand(not reached & ends[1], "proof.tree: open leaves lead from the start to the goal")
+    demand(not reached & sides[1], "proof.tree: open leaves lead from the start to the goal")
 
 
 # --- reading: values ------------------------------------------------------------------------------
@@ -792,6 +778,8 @@ MAX_CELLS, MAX_KEEPS = 20_000, 20_000
 MAX_DIGITS, LARGEST = 40, Fraction(10**100)
 """Digits of a number, and its size; one that is not 0 is at least 1 / LARGEST."""
 
+ZERO = Fraction(0)
+
 
 def shown(value: Any) -> str:
     """Write a value for a message: short, in ASCII, on one line."""
@@ -801,17 +789,42 @@ def shown(value: Any) -> str:
     return names.get(type(value), "a value of another type")
 
 
-def table(spec: dict[str, Reader]) -> Reader:
-    """Return the reader of a table: a reader for each key; a key with ? may be missing."""
-    readers = {key.rstrip("?"): reader for key, reader in spec.items()}
+def anything(value: Any, where: str) -> Any:
+    """Return a value as it is: it is read later."""
+    del where
+    return value
+
+
+def such(test: Callable[[Any], object], wanted: str, reader: Reader = anything) -> Reader:
+    """Return the reader of a value that has to pass a test."""
+
+    def read(value: Any, where: str) -> Any:
+        found = reader(value, where)
+        demand(test(found), f"{where}: {wanted}")
+        return found
+
+    return read
+
+
+class Maybe(NamedTuple):
+    """What a key that may be missing holds, and what counts where it is missing."""
+
+    reader: Reader
+    missing: Any = None
+
+
+def table(spec: Table) -> Reader:
+    """Return the reader of a table: one row for each key that it may have."""
+    readers = {k: row.reader if isinstance(row, Maybe) else row for k, row in spec.items()}
+    missing = {k: row.missing for k, row in spec.items() if isinstance(row, Maybe)}
 
     def read(value: Any, where: str) -> Table:
         demand(type(value) is dict, f"{where}: a table is wanted")
         for key in value:
             demand(key in readers, f"{where}: unknown key {shown(key)}")
-        for key in spec:
-            demand(key[-1] == "?" or key in value, f"{where}: the key {key!r} is missing")
-        return {key: readers[key](value[key], f"{where}.{key}") for key in value}
+        for key in readers:
+            demand(key in value or key in missing, f"{where}: the key {key!r} is missing")
+        return missing | {key: readers[key](value[key], f"{where}.{key}") for key in value}
 
     return read
 
@@ -820,52 +833,32 @@ def items(reader: Reader, least: int, most: int) -> Reader:
     """Return the reader of a list of `least` to `most` values of one kind."""
     wanted = str(least) if least == most else f"{least} to {most}"
 
-    def read(value: Any, where: str) -> list[Any]:
+    def read(value: Any, where: str) -> tuple[Any, ...]:
         fits = type(value) is list and least <= len(value) <= most
         demand(fits, f"{where}: a list of {wanted} is wanted")
-        return [reader(item, f"{where}[{i}]") for i, item in enumerate(value)]
+        return tuple(reader(item, f"{where}[{i}]") for i, item in enumerate(value))
 
     return read
 
 
 def text(most: int) -> Reader:
     """Return the reader of a text of 1 to `most` characters, none of them half of one."""
-
-    def read(value: Any, where: str) -> str:
-        fits = type(value) is str and 1 <= len(value) <= most
-        demand(fits, f"{where}: a text of 1 to {most} characters is wanted")
-        demand(not re.search("[\ud800-\udfff]", value), f"{where}: half a character")
-        return str(value)
-
-    return read
+    wanted = f"a text of 1 to {most} characters is wanted"
+    written = such(lambda value: type(value) is str and 1 <= len(value) <= most, wanted)
+    return such(lambda value: not re.search("[\ud800-\udfff]", value), "half a character", written)
 
 
 def one_of(*choices: Any) -> Reader:
     """Return the reader of a value that is among some."""
     wanted = " or ".join(map(str, choices))
-
-    def read(value: Any, where: str) -> Any:
-        fits = any(type(value) is type(choice) and value == choice for choice in choices)
-        demand(fits, f"{where}: {wanted} is wanted")
-        return value
-
-    return read
+    return such(
+        lambda x: any(type(x) is type(c) and x == c for c in choices), f"{wanted} is wanted"
+    )
 
 
 def index(count: int) -> Reader:
     """Return the reader of a number from 0 to `count` - 1."""
-
-    def read(value: Any, where: str) -> int:
-        demand(type(value) is int and 0 <= value < count, f"{where}: 0 to {count - 1} is wanted")
-        return int(value)
-
-    return read
-
-
-def anything(value: Any, where: str) -> Any:
-    """Return a value as it is: it is read later."""
-    del where
-    return value
+    return such(lambda x: type(x) is int and 0 <= x < count, f"0 to {count - 1} is wanted")
 
 
 NUMBER = re.compile("[+-]?([0-9]+)(?:[.]([0-9]+))?(?:[eE][+-]?[0-9]{1,3})?")
@@ -892,44 +885,28 @@ def decimal(value: Any, where: str) -> Fraction:
 
 def not_negative(reader: Reader) -> Reader:
     """Return the reader of a number of 0 or more."""
-
-    def read(value: Any, where: str) -> Fraction:
-        found: Fraction = reader(value, where)
-        demand(found >= 0, f"{where}: a number of 0 or more is wanted")
-        return found
-
-    return read
+    return such(lambda x: x >= 0, "a number of 0 or more is wanted", reader)
 
 
 def weights(count: int) -> Reader:
     """Return the reader of the weights of a mean of corners."""
-
-    def read(value: Any, where: str) -> list[Fraction]:
-        found: list[Fraction] = items(not_negative(decimal), count, count)(value, where)
-        demand(sum(found) == 1, f"{where}: weights whose sum is 1 are wanted")
-        return found
-
-    return read
+    shares = items(not_negative(decimal), count, count)
+    return such(lambda row: sum(row) == 1, "weights whose sum is 1 are wanted", shares)
 
 
 def mean(shares: Sequence[Fraction], corners: Sequence[Exact]) -> Exact:
     """Return a mean of corners."""
     Work.add(20 * len(shares))
     columns = zip(*corners, strict=True)
-    return tuple(sum(map(mul, shares, column), Fraction(0)) for column in columns)
+    return tuple(sum(map(mul, shares, column), ZERO) for column in columns)
 
 
 def read_json(data: bytes) -> Any:
     """Read JSON of which no key stands twice, and whose only numbers are short integers."""
     demand(len(data) <= MAX_FILE, f"the file has more than {MAX_FILE} bytes")
+    numbers: Table = dict.fromkeys(("parse_int", "parse_float", "parse_constant"), _integer)
     try:
-        return json.loads(
-            data.decode("utf-8"),
-            object_pairs_hook=_unique,
-            parse_int=_integer,
-            parse_float=_integer,
-            parse_constant=_integer,
-        )
+        return json.loads(data.decode("utf-8"), object_pairs_hook=_unique, **numbers)
     except UnicodeDecodeError:
         raise Refused("the file is not UTF-8 text") from None
     except RecursionError:
@@ -1013,49 +990,53 @@ def number(value: Any, where: str) -> Fraction:
     return exact(value.text.replace("_", ""), where)
 
 
-def direction(value: Any, where: str) -> Exact:
-    """Read three numbers that are not all 0."""
-    found = tuple(vector(value, where))
-    demand(any(found), f"{where}: a direction must not be 0")
-    return found
-
-
 label, vector, size_of = text(200), items(number, 3, 3), not_negative(number)
 corner, two_labels = items(number, 2, 3), items(label, 2, 2)
+direction = such(any, "a direction must not be 0", vector)
+clearance, own_name = Maybe(size_of, ZERO), Maybe(label, "")
 
 KINDS = ("revolute", "prismatic", "parallelogram", "continuous")
-JOINT: dict[str, Reader] = {
+JOINT = {
     "name": label,
     "type": one_of(*KINDS),
     "parent": label,
     "frame": label,
     "origin": vector,
-    "rpy?": vector,
+    "rpy": Maybe(vector, (ZERO,) * 3),
     "axis": direction,
-    "limits?": items(number, 2, 2),
-    "velocity?": number,
-    "crank?": vector,
-    "bar?": label,
+    "limits": Maybe(such(lambda x: x[0] < x[1], "the first one must be less", items(number, 2, 2))),
+    "velocity": Maybe(such(lambda x: x > 0, "a number of more than 0 is wanted", number)),
+    "crank": Maybe(vector),
+    "bar": Maybe(label),
 }
-POINT: dict[str, Reader] = {"name": label, "frame": label, "at": vector, "radius?": size_of}
-SHAPES: dict[str, Reader] = {
-    "polygon?": items(corner, 3, MAX_CORNERS),
-    "capsule?": table({"from": corner, "to": corner, "radius": size_of}),
-    "disc?": table({"at": corner, "radius": size_of}),
+POINT = {"name": label, "frame": label, "at": vector, "radius": Maybe(size_of, ZERO)}
+SHAPES = {
+    "polygon": Maybe(items(corner, 3, MAX_CORNERS)),
+    "capsule": Maybe(table({"from": corner, "to": corner, "radius": size_of})),
+    "disc": Maybe(table({"at": corner, "radius": size_of})),
 }
-HEAD: dict[str, Reader] = {"name": label, "type": anything, "used?": one_of(True, False)}
-ABOVE: dict[str, Reader] = {"normal": direction, "offset": number, "point?": label, "body?": label}
 BOUNDARY = {
-    "pair": table({**HEAD, "points": two_labels, "clearance?": size_of}),
-    "bodies": table({**HEAD, "bodies": two_labels, "clearance?": size_of}),
-    "half-space": table({**HEAD, **ABOVE}),
+    "pair": {"points": two_labels, "clearance": clearance},
+    "bodies": {"bodies": two_labels, "clearance": clearance},
+    "half-space": {
+        "normal": direction,
+        "offset": number,
+        "point": Maybe(label),
+        "body": Maybe(label),
+    },
 }
 
 
 def boundary_row(value: Any, where: str) -> Any:
     """Read a boundary by its type."""
-    kind = value.get("type") if type(value) is dict else None
-    return BOUNDARY[one_of(*BOUNDARY)(kind, f"{where}.type")](value, where)
+    kind = one_of(*BOUNDARY)(value.get("type") if type(value) is dict else None, f"{where}.type")
+    head = {"name": label, "type": anything, "used": Maybe(one_of(True, False), True)}
+    return table({**head, **BOUNDARY[kind]})(value, where)
+
+
+def rows(spec: Table) -> Maybe:
+    """Return the row of a list of tables that may be missing."""
+    return Maybe(items(table(spec), 0, MAX_ROWS), ())
 
 
 FILE = table(
@@ -1068,34 +1049,16 @@ FILE = table(
         "tool": label,
         "joint": items(table(JOINT), 1, MAX_JOINTS),
         "point": items(table(POINT), 1, MAX_ROWS),
-        "boundary?": items(boundary_row, 0, MAX_ROWS),
-        "body?": items(table({"name?": label, "frame": label, **SHAPES}), 0, MAX_ROWS),
-        "obstacle?": items(table({"name?": label, **SHAPES}), 0, MAX_ROWS),
-        "collisions?": one_of("all"),
-        "clearance?": size_of,
-        "allowed?": items(two_labels, 0, MAX_ROWS),
+        "boundary": Maybe(items(boundary_row, 0, MAX_ROWS), ()),
+        "body": rows({"name": own_name, "frame": label, **SHAPES}),
+        "obstacle": rows({"name": own_name, **SHAPES}),
+        "collisions": Maybe(one_of("all")),
+        "clearance": clearance,
+        "allowed": Maybe(items(two_labels, 0, MAX_ROWS), ()),
     }
 )
 
 # --- reading: the robot ---------------------------------------------------------------------------
-
-
-class Joint(NamedTuple):
-    """A joint; its limits are in the units of the file."""
-
-    name: str
-    turns: bool
-    limits: tuple[Fraction, Fraction] | None
-
-
-class StepRow(NamedTuple):
-    """A step of the normal form, in the units of the file."""
-
-    joint: int
-    factor: int
-    origin: Exact
-    rpy: Exact
-    axis: Exact
 
 
 class Thing(NamedTuple):
@@ -1117,67 +1080,48 @@ class Boundary(NamedTuple):
     distance: Fraction
 
 
-class KeepRow(NamedTuple):
-    """A thing to keep of the normal form; `near` and `far` are numbers of hulls."""
-
-    name: str
-    near: int | None
-    far: int
-    gap: Fraction
-    along: int | None
-    normal: Exact | None
-
-
 @dataclass(frozen=True)
 class Robot:
     """What a robot's text says, as far as it bears on claims.
 
     Attributes
     ----------
+    exact : the normal form, see the page, with exact numbers
+    frames : names, the base first
+    boundaries : those in use
     left_out : what is not to be kept, in words
     flat : of each frame with bodies, its coordinate along the common axis
     """
 
-    name: str
-    length_unit: str
-    angle_unit: str
-    joints: tuple[Joint, ...]
-    steps: tuple[StepRow, ...]
+    exact: Table
     frames: tuple[str, ...]
     boundaries: tuple[Boundary, ...]
     left_out: tuple[str, ...]
     flat: dict[int, int]
-    hulls: tuple[tuple[int, tuple[Exact, ...]], ...]
-    keeps: tuple[KeepRow, ...]
+
+    @property
+    def joints(self) -> list[str]:
+        """Return the names of joints."""
+        return [joint["name"] for joint in self.exact["joints"]]
 
     def unit_of(self, j: int) -> str:
         """Return the unit of a joint's values."""
-        return self.angle_unit if self.joints[j].turns else self.length_unit
+        turns = self.exact["joints"][j]["turns"]
+        return str(self.exact["angle_unit" if turns else "length_unit"])
 
     def beyond(self, q: Exact) -> list[str]:
         """Return the names of the limits that a configuration is beyond: compared exactly."""
         found = []
-        for (name, _, limits), value in zip(self.joints, q, strict=True):
-            low, high = limits or (value, value)
-            found += [f"{name}.lower"] * (value < low) + [f"{name}.upper"] * (value > high)
+        for joint, value in zip(self.exact["joints"], q, strict=True):
+            low, high = joint["limits"] or (value, value)
+            found += [f"{joint['name']}.lower"] * (value < low)
+            found += [f"{joint['name']}.upper"] * (value > high)
         return found
 
     @cached_property
     def form(self) -> Table:
-        """Return the normal form."""
-        joints = [joint._asdict() for joint in self.joints]
-        steps = [step._asdict() | {"offset": Fraction(0)} for step in self.steps]
-        for step in steps:
-            step["factor"] = Fraction(step["factor"])
-        hulls = [{"frame": frame, "corners": corners} for frame, corners in self.hulls]
-        keeps = [keep._asdict() for keep in self.keeps]
-        for keep in keeps:
-            for key in ("normal",) if keep["normal"] is None else ("near", "along"):
-                del keep[key]
-        units = {"name": self.name, "length_unit": self.length_unit, "angle_unit": self.angle_unit}
-        found: Table = _written(
-            units | {"joints": joints, "steps": steps, "hulls": hulls, "keep": keeps}
-        )
+        """Return the normal form, its decimals written in full."""
+        found: Table = _written(self.exact)
         return found
 
 
@@ -1207,103 +1151,80 @@ def read_robot(written: str, parts: Any) -> Robot:
     """Read a robot's text and bring it to its normal form."""
     file = FILE(read_toml(written), "robot")
     joints, steps, frames = _joints(file)
-    bounds = {key: file[key] for key in ("name", "length_unit", "angle_unit")}
-
-    def frame_of(name: str) -> int:
-        demand(name in frames, f"robot: no frame is called {shown(name)}")
-        return frames.index(name)
-
-    points = _named(
-        "point",
-        (
-            Thing(
-                row["name"],
-                "point",
-                frame_of(row["frame"]),
-                (tuple(row["at"]),),
-                row.get("radius", Fraction(0)),
-            )
-            for row in file["point"]
-        ),
-    )
-    demand(not {*points} & {*frames}, "robot: a point has the name of a frame")
-    demand(file["tool"] in points, "robot: the tool is no point")
-    table({joint.name: number for joint in joints})(file["home"], "robot.home")
-    links = [_body(row, frame_of(row["frame"])) for row in file.get("body", [])]
-    others = [_body(row, 0) for row in file.get("obstacle", [])]
+    points = [_thing(row, frames) for row in file["point"]]
+    links = [_thing(row, frames) for row in file["body"]]
+    others = [_thing({**row, "frame": frames[0]}, frames) for row in file["obstacle"]]
+    known = _named("point", points)
+    demand(not {*known} & {*frames}, "robot: a point has the name of a frame")
+    demand(file["tool"] in known, "robot: the tool is no point")
+    table({joint["name"]: number for joint in joints})(file["home"], "robot.home")
     demand(len(links) + len(others) <= MAX_ROWS, f"robot: more than {MAX_ROWS} bodies")
     bodies = _named("body", _called([*links, *others], len(links), frames))
-    boundaries, left_out = _boundaries(file, points, bodies, joints)
-    used = [t for boundary in boundaries for t in boundary.things if t.kind != "point"]
-    flat = _common_axis(joints, steps, file["angle_unit"], {thing.frame for thing in used})
+    boundaries, left_out = _boundaries(file, known, bodies, joints)
+    used = {t.frame for boundary in boundaries for t in boundary.things if t.kind != "point"}
+    flat = _common_axis(joints, steps, file["angle_unit"], used)
     hulls, keeps = _keeps(boundaries, flat, parts)
-    return Robot(
-        **bounds,
-        joints=joints,
-        steps=steps,
-        frames=frames,
-        boundaries=boundaries,
-        left_out=left_out,
-        flat=flat,
-        hulls=hulls,
-        keeps=keeps,
-    )
+    form = {key: file[key] for key in ("name", "length_unit", "angle_unit")}
+    form |= {"joints": joints, "steps": steps, "hulls": hulls, "keep": keeps}
+    return Robot(form, tuple(frames), boundaries, left_out, flat)
 
 
 def _named(what: str, things: Iterable[Any]) -> dict[str, Any]:
     """Return things by name; refuse a name that stands for two."""
     found = dict[str, Any]()
     for thing in things:
-        demand(thing.name not in found, f"robot: {what}: two are called {shown(thing.name)}")
-        found[thing.name] = thing
+        called = thing["name"] if isinstance(thing, dict) else thing.name
+        demand(called not in found, f"robot: {what}: two are called {shown(called)}")
+        found[called] = thing
     return found
 
 
 LARGEST_ANGLE = {"deg": Fraction(1800), "rad": Fraction(30)}
 
 
-def _joints(file: Table) -> tuple[tuple[Joint, ...], tuple[StepRow, ...], tuple[str, ...]]:
+def _joints(file: Table) -> tuple[list[Table], list[Table], list[str]]:
     """Return joints, the steps that they make, and the names of frames, the base first."""
-    joints, steps, frames = list[Joint](), list[StepRow](), [file["joint"][0]["parent"]]
-    turn = {"deg": Fraction(360), "rad": 2 * PI}[file["angle_unit"]]
+    joints, steps, frames = list[Table](), list[Table](), [file["joint"][0]["parent"]]
+    most = 100 * {"deg": Fraction(360), "rad": 2 * PI}[file["angle_unit"]]
     for j, row in enumerate(file["joint"]):
-        where, turns, bar = f"robot.joint[{j}]", row["type"] != "prismatic", row["type"] == KINDS[2]
+        where, turns, limits = f"robot.joint[{j}]", row["type"] != "prismatic", row["limits"]
         demand(row["parent"] == frames[-1], f"{where}: its parent is not the frame before")
-        fits = ("crank" in row) == ("bar" in row) == bar
+        bars = [row[key] is not None for key in ("crank", "bar")]
+        fits = bars == [row["type"] == "parallelogram"] * 2
         demand(fits, f"{where}: crank and bar belong to a parallelogram")
-        demand(turns or "limits" in row, f"{where}: a prismatic joint needs limits")
+        demand(turns or limits, f"{where}: a prismatic joint needs limits")
         endless = row["type"] == "continuous"
-        demand(not endless or "limits" not in row, f"{where}: a continuous joint has no limits")
-        demand(row.get("velocity", 1) > 0, f"{where}.velocity: a number of more than 0 is wanted")
-        rpy = tuple(row.get("rpy", [Fraction(0)] * 3))
-        small = all(abs(angle) <= LARGEST_ANGLE[file["angle_unit"]] for angle in rpy)
+        demand(not (endless and limits), f"{where}: a continuous joint has no limits")
+        small = all(abs(angle) <= LARGEST_ANGLE[file["angle_unit"]] for angle in row["rpy"])
         demand(small, f"{where}.rpy: an angle of more than five turns")
-        low, high = row.get("limits", (0, 1))
-        demand(low < high, f"{where}.limits: the first one must be less")
-        demand(not turns or high - low <= 100 * turn, f"{where}.limits: more than 100 turns apart")
-        joints.append(Joint(row["name"], turns, (low, high) if "limits" in row else None))
-        steps.append(StepRow(j, 1, tuple(row["origin"]), rpy, row["axis"]))
-        if bar:
+        near = not (turns and limits) or limits[1] - limits[0] <= most
+        demand(near, f"{where}.limits: more than 100 turns apart")
+        joints.append({"name": row["name"], "turns": turns, "limits": limits})
+        step = {"joint": j, "factor": Fraction(1), "offset": ZERO, "axis": row["axis"]}
+        steps.append({**step, "origin": row["origin"], "rpy": row["rpy"]})
+        if all(bars):
             frames.append(row["bar"])
-            steps.append(StepRow(j, -1, tuple(row["crank"]), (Fraction(0),) * 3, row["axis"]))
+            back = {"factor": Fraction(-1), "origin": row["crank"], "rpy": (ZERO,) * 3}
+            steps.append({**step, **back})
         frames.append(row["frame"])
     _named("joint", joints)
     demand(len({*frames}) == len(frames), "robot: a frame has the name of another one")
-    return tuple(joints), tuple(steps), tuple(frames)
+    return joints, steps, frames
 
 
-def _body(row: Table, frame: int) -> Thing:
-    """Return a body; its corners have two numbers or three."""
-    [kind, *more] = [
-        shape for shape in ("polygon", "capsule", "disc", "") if shape in row or not shape
-    ]
-    demand(kind and more == [""], "robot: a body has one shape: a polygon, a capsule or a disc")
-    shape = row[kind]
-    corners = (
-        shape if kind == "polygon" else [shape[end] for end in ("at", "from", "to") if end in shape]
-    )
-    radius = Fraction(0) if kind == "polygon" else shape["radius"]
-    return Thing(row.get("name", ""), kind, frame, tuple(map(tuple, corners)), radius)
+def _thing(row: Table, frames: Sequence[str]) -> Thing:
+    """Return a point or a body; the corners of a body have two numbers or three."""
+    demand(row["frame"] in frames, f"robot: no frame is called {shown(row['frame'])}")
+    kinds = [kind for kind in SHAPES if row.get(kind)] or ["point"] * ("at" in row)
+    demand(len(kinds) == 1, "robot: a body has one shape: a polygon, a capsule or a disc")
+    shape = row.get(kinds[0], row)
+    corners, radius = shape, ZERO
+    if kinds != ["polygon"]:
+        corners, radius = (
+            [shape[end] for end in ("at", "from", "to") if end in shape],
+            shape["radius"],
+        )
+    return Thing(row["name"], kinds[0], frames.index(row["frame"]), tuple(corners), radius)
 
 
 def _called(bodies: Sequence[Thing], links: int, frames: Sequence[str]) -> list[Thing]:
@@ -1317,57 +1238,47 @@ def _called(bodies: Sequence[Thing], links: int, frames: Sequence[str]) -> list[
 
 
 def _boundaries(
-    file: Table, points: dict[str, Thing], bodies: dict[str, Thing], joints: Sequence[Joint]
+    file: Table, points: dict[str, Thing], bodies: dict[str, Thing], joints: Sequence[Table]
 ) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
     """Return the boundaries in use, those that `collisions` makes last, and what is left out."""
-    rows, found = file.get("boundary", []), list[Boundary]()
-    apart = [_things(names, bodies, "allowed", 2) for names in file.get("allowed", [])]
-    named = len(apart)
-    for i, row in enumerate(rows):
-        where = f"robot.boundary[{i}]"
-        if row["type"] == "half-space":
-            demand(("point" in row) != ("body" in row), f"{where}: a point or a body is wanted")
-            names, known = [row.get("point", row.get("body"))], points if "point" in row else bodies
-        else:
-            names = row.get("points", row.get("bodies"))
-            known = points if row["type"] == "pair" else bodies
-        things = _things(names, known, where, len(names))
-        frames = {thing.frame for thing in things}
-        demand(row["type"] != "bodies" or len(frames) == 2, f"{where}: two bodies of one frame")
-        apart += [things] if row["type"] == "bodies" else []
-        distance = row.get("offset", row.get("clearance", Fraction(0)))
+    found, unused = list[Boundary](), list[str]()
+    apart = [_things(names, bodies, "allowed") for names in file["allowed"]]
+    left_out = [f"{len(apart)} allowed pairs"] * bool(apart)
+    for i, row in enumerate(file["boundary"]):
+        where, kind = f"robot.boundary[{i}]", row["type"]
+        ends = [key for key in ("points", "bodies", "point", "body") if row.get(key)]
+        demand(len(ends) == 1, f"{where}: a point or a body is wanted")
+        names = (row[ends[0]],) if kind == "half-space" else row[ends[0]]
+        things = _things(names, points if ends[0][:5] == "point" else bodies, where)
+        same = kind == "bodies" and things[0].frame == things[1].frame
+        demand(not same, f"{where}: two bodies of one frame")
+        apart += [things] if kind == "bodies" else []
+        distance = row["offset"] if kind == "half-space" else row["clearance"]
         found.append(Boundary(row["name"], things, row.get("normal"), distance))
-    is_used = [row.get("used", True) for row in rows]
-    if "collisions" in file:
-        settled = {frozenset(thing.name for thing in pair) for pair in apart}
-        for pair in itertools.combinations(bodies.values(), 2):
-            Work.add(2)
-            names = [thing.name for thing in pair]
-            if pair[0].frame == pair[1].frame or frozenset(names) in settled:
-                continue
+        unused += [row["name"]] * (not row["used"])
+    settled = {frozenset(thing.name for thing in pair) for pair in apart}
+    for pair in itertools.combinations(bodies.values(), 2) if file["collisions"] else ():
+        Work.add(2)
+        names = [thing.name for thing in pair]
+        if pair[0].frame != pair[1].frame and frozenset(names) not in settled:
             demand(len(found) < 2 * MAX_ROWS, "robot: too many pairs of bodies")
-            found.append(Boundary(", ".join(names), pair, None, file.get("clearance", Fraction(0))))
-            is_used.append(True)
-    limits = {f"{joint.name}.{side}" for joint in joints for side in ("lower", "upper")}
+            found.append(Boundary(", ".join(names), pair, None, file["clearance"]))
+    limits = {f"{joint['name']}.{side}" for joint in joints for side in ("lower", "upper")}
     demand(not limits & {*_named("boundary", found)}, "robot: a boundary has the name of a limit")
-    used = tuple(b for b, is_in in zip(found, is_used, strict=True) if is_in)
+    without = {*unused}
+    used = tuple(boundary for boundary in found if boundary.name not in without)
     demand(len(used) <= MAX_BOUNDARIES, f"robot: more than {MAX_BOUNDARIES} boundaries in use")
-    left_out = [
-        f"{b.name!a} (used = false)" for b, is_in in zip(found, is_used, strict=True) if not is_in
-    ]
-    left_out += [f"{named} allowed pairs"] * bool(named)
-    left_out += ["bodies of one frame" if "collisions" in file else "other bodies"] * bool(bodies)
+    left_out = [*(f"{named!a} (used = false)" for named in unused), *left_out]
+    left_out += ["bodies of one frame" if file["collisions"] else "other bodies"] * bool(bodies)
     return used, tuple(left_out)
 
 
-def _things(
-    names: Sequence[str], known: dict[str, Thing], where: str, count: int
-) -> tuple[Thing, ...]:
+def _things(names: Sequence[str], known: dict[str, Thing], where: str) -> tuple[Thing, ...]:
     """Return some different things by their names."""
-    for name in names:
-        demand(name in known, f"{where}: nothing is called {shown(name)}")
-    demand(len({*names}) == count, f"{where}: two different names are wanted")
-    return tuple(known[name] for name in names)
+    for named in names:
+        demand(named in known, f"{where}: nothing is called {shown(named)}")
+    demand(len({*names}) == len(names), f"{where}: two different names are wanted")
+    return tuple(known[named] for named in names)
 
 
 # --- reading: the normal form ---------------------------------------------------------------------
@@ -1388,84 +1299,86 @@ def mount_of(rpy: Exact, unit_name: str) -> Matrix:
 
 
 def _common_axis(
-    joints: Sequence[Joint], steps: Sequence[StepRow], unit_name: str, frames: set[int]
+    joints: Sequence[Table], steps: Sequence[Table], unit_name: str, frames: set[int]
 ) -> dict[int, int]:
     """Return for each frame with bodies its coordinate along the common axis of the joints."""
     if not frames:
         return {}
-    turned, every, axes = AXES, [AXES], list[tuple[bool, Vector]]()
+    every, axes = [AXES], list[tuple[bool, Vector]]()
     for step in steps:
-        turned = product(turned, mount_of(step.rpy, unit_name))
-        axes.append((joints[step.joint].turns, image(turned, unit(step.axis))))
-        every.append(turned)
-    still = [
-        e for e in (AXES[1], AXES[2], AXES[0]) if all(abs(dot(e, z)) <= NEARLY for _, z in axes)
-    ]
-    common = next((axis for turns, axis in axes if turns), still[0] if still else None)
+        every.append(product(every[-1], mount_of(step["rpy"], unit_name)))
+        axes.append((joints[step["joint"]]["turns"], image(every[-1], unit(step["axis"]))))
+    still = (e for e in (AXES[1], AXES[2], AXES[0]) if all(_across(e, z) for _, z in axes))
+    common = next((axis for turns, axis in axes if turns), None) or next(still, None)
     if common is None:
         raise Refused("robot: the joints slide across no axis of the base: bodies have no plane")
     for turns, axis in axes:
-        off = size(cross(common, axis)) if turns else abs(dot(common, axis))
-        demand(off <= NEARLY, "robot: bodies keep apart in a plane only, and the arm leaves it")
+        fits = _parallel(common, axis) if turns else _across(common, axis)
+        demand(fits, "robot: bodies keep apart in a plane only, and the arm leaves it")
     flat = dict[int, int]()
     for frame in frames:
-        along = [k for k in range(3) if size(cross(common, every[frame][k])) <= NEARLY]
+        along = [k for k in range(3) if _parallel(common, every[frame][k])]
         demand(along, "robot: no axis of a frame with bodies is along the common axis")
         flat[frame] = along[0]
     return flat
 
 
+def _across(u: Vector, v: Vector) -> bool:
+    return abs(dot(u, v)) <= NEARLY
+
+
+def _parallel(u: Vector, v: Vector) -> bool:
+    return size(cross(u, v)) <= NEARLY
+
+
 def _keeps(
     boundaries: Sequence[Boundary], flat: dict[int, int], parts: Any
-) -> tuple[tuple[tuple[int, tuple[Exact, ...]], ...], tuple[KeepRow, ...]]:
+) -> tuple[list[Table], list[Table]]:
     """Return the hulls and the things to keep of the normal form."""
     pairs = [thing for boundary in boundaries if not boundary.normal for thing in boundary.things]
     outlines = {t.name: t for t in pairs if t.kind == "polygon"}
-    seen = {name: _seen(_lifted(t, flat), flat[t.frame]) for name, t in outlines.items()}
-    for name, outline in seen.items():
-        demand(doubled_area(outline), f"robot: the outline of {shown(name)} has no area")
+    seen = {key: _seen(_lifted(t, flat), flat[t.frame]) for key, t in outlines.items()}
+    for key, outline in seen.items():
+        demand(doubled_area(outline), f"robot: the outline of {shown(key)} has no area")
     pieces = items(items(anything, 3, MAX_CORNERS), 1, MAX_CORNERS)
-    cut = table({name: pieces for name, outline in seen.items() if not is_convex(outline)})(
+    cut = table({key: pieces for key, outline in seen.items() if not is_convex(outline)})(
         parts, "parts"
     )
-    for name, loops in cut.items():
-        where, known = f"parts.{name!a}", index(len(seen[name]))
-        corners = [[seen[name][known(k, where)] for k in loop] for loop in loops]
-        demand_filled([seen[name]], corners, where)
-    hulls, numbers, shapes = (
-        list[tuple[int, tuple[Exact, ...]]](),
-        dict[Any, int](),
-        dict[str, int](),
-    )
+    for key, loops in cut.items():
+        where, known = f"parts.{key!a}", index(len(seen[key]))
+        corners = [[seen[key][known(k, where)] for k in loop] for loop in loops]
+        demand_filled([seen[key]], corners, where)
+    hulls, numbers, shapes = list[Table](), dict[Any, int](), dict[str, int]()
 
     def hull(thing: Thing, loop: Sequence[int] | None = None) -> int:
-        key = thing.kind == "point", thing.name, None if loop is None else tuple(loop)
+        key = thing.kind == "point", thing.name, loop
         if key not in numbers:
             whole = _lifted(thing, flat)
             corners = whole if loop is None else tuple(whole[k] for k in loop)
             numbers[key] = shapes.setdefault(f"{thing.frame} {_written(corners)}", len(hulls))
-            hulls.extend([(thing.frame, corners)] * (len(shapes) > len(hulls)))
+            if numbers[key] == len(hulls):
+                hulls.append({"frame": thing.frame, "corners": corners})
         return numbers[key]
 
-    keeps = list[KeepRow]()
-    for name, things, normal, distance in boundaries:
-        gap = distance + sum(thing.radius for thing in things)
+    keeps = list[Table]()
+    for named, things, normal, distance in boundaries:
+        row = {"name": named, "gap": distance + sum(thing.radius for thing in things)}
         if normal is not None:
-            keeps.append(KeepRow(name, None, hull(things[0]), gap, None, normal))
+            keeps.append({**row, "far": hull(things[0]), "normal": normal})
             continue
         near, far = sorted(things, key=lambda thing: thing.frame)
-        along = None if near.kind == "point" else flat[near.frame]
+        row["along"] = None if near.kind == "point" else flat[near.frame]
         loops = [cut.get(t.name, [None]) if t.kind == "polygon" else [None] for t in (near, far)]
         for one, other in itertools.product(*loops):
             demand(len(keeps) < MAX_KEEPS, f"robot: more than {MAX_KEEPS} pairs of parts")
-            keeps.append(KeepRow(name, hull(near, one), hull(far, other), gap, along, None))
-    return tuple(hulls), tuple(keeps)
+            keeps.append({**row, "near": hull(near, one), "far": hull(far, other)})
+    return hulls, keeps
 
 
 def _lifted(thing: Thing, flat: dict[int, int]) -> tuple[Exact, ...]:
     """Return the corners of a thing; one of two numbers has a 0 along the common axis."""
-    k, zero = flat.get(thing.frame, 0), (Fraction(0),)
-    return tuple(p if len(p) == 3 else (*p[:k], *zero, *p[k:]) for p in thing.corners)
+    k = flat.get(thing.frame, 0)
+    return tuple(p if len(p) == 3 else (*p[:k], ZERO, *p[k:]) for p in thing.corners)
 
 
 def _seen(corners: Sequence[Exact], flat: int) -> list[tuple[int, int]]:
@@ -1505,8 +1418,8 @@ def demand_filled(
     """Refuse pieces that do not fill loops: convex, inner edges in pairs, all others the loops.
 
     Then the edges of all pieces add up to the loops. So around any place the loops wind as often as
-    pieces hold it, and a place that they wind around lies in a piece. Points are numbered by
-    sorting, because the hash of a number can be chosen and that of a text cannot.
+    pieces hold it, and a place that they wind around lies in a piece. Points are known by their
+    text, because the hash of a number can be chosen and that of a text cannot.
     """
     for piece in pieces:
         demand(is_convex(piece), f"{where}: a piece is not convex, flat, or goes clockwise")
@@ -1534,48 +1447,51 @@ class Arm:
     """A robot in units, and what it has to keep with the margin of a claim."""
 
     def __init__(self, robot: Robot, margin: Fraction) -> None:
-        self.robot = robot
-        gaps = [keep.gap + margin for keep in robot.keeps]
-        lengths = [x for _, corners in robot.hulls for p in corners for x in p] + gaps
-        lengths += [x for step in robot.steps for x in step.origin]
-        lengths += [x for joint in robot.joints if not joint.turns for x in joint.limits or ()]
-        self.largest = max(map(abs, lengths), default=Fraction(0)) or Fraction(1)
-        self.steps = [self._step(row) for row in robot.steps]
-        hulls = [Hull(frame, tuple(map(self.scaled, corners))) for frame, corners in robot.hulls]
+        self.robot, form = robot, robot.exact
+        self.joints, self.hulls, self.rows = form["joints"], form["hulls"], form["keep"]
+        gaps = [row["gap"] + margin for row in self.rows]
+        lengths = [x for hull in self.hulls for p in hull["corners"] for x in p] + gaps
+        lengths += [x for step in form["steps"] for x in step["origin"]]
+        lengths += [x for joint in self.joints if not joint["turns"] for x in joint["limits"]]
+        self.largest = max(map(abs, lengths), default=ZERO) or Fraction(1)
+        self.steps = [self._step(row) for row in form["steps"]]
+        hulls = [Hull(h["frame"], tuple(map(self.scaled, h["corners"]))) for h in self.hulls]
+        base = Hull(0, ((0, 0, 0),))
         self.keeps = [
             Keep(
-                row.name,
-                Hull(0, ((0, 0, 0),)) if row.near is None else hulls[row.near],
-                hulls[row.far],
+                row["name"],
+                hulls[row["near"]] if "near" in row else base,
+                hulls[row["far"]],
                 in_units(gap / self.largest),
                 gap != 0,
-                row.along,
-                None if row.normal is None else unit(row.normal),
+                row.get("along"),
+                unit(row["normal"]) if "normal" in row else None,
             )
-            for row, gap in zip(robot.keeps, gaps, strict=True)
+            for row, gap in zip(self.rows, gaps, strict=True)
         ]
         self.needs_proof = [
             keep.normal or keep.asked or len(keep.near.corners) + len(keep.far.corners) > 3
             for keep in self.keeps
         ]
+        self._demand_one_height()
 
-        bodies = [row for row in robot.keeps if row.along is not None]
-        if bodies:  # their corners have one height along the common axis
-            pose = Pose(self.steps, [0] * len(robot.joints))
-            frame = robot.hulls[bodies[0].far][0]
-            axis = pose.frames[frame][0][robot.flat[frame]]
-            both = {number or 0 for row in bodies for number in (row.near, row.far)}
-            places = (pose.place(hulls[k].frame, p) for k in both for p in hulls[k].corners)
-            heights = [dot(axis, place) for place in places]
-            level = max(heights) - min(heights) <= NEARLY
-            demand(level, "robot: two bodies to keep apart are not at one height")
+    def _demand_one_height(self) -> None:
+        """Refuse bodies whose corners have not one height along the common axis."""
+        ends = [(k.near, k.far) for k in self.keeps if k.along is not None]
+        hulls = {id(hull): hull for pair in ends for hull in pair}.values()
+        pose, heights = Pose(self.steps if ends else [], [0] * len(self.joints)), list[int]()
+        for hull in hulls:
+            axis = pose.frames[ends[0][0].frame][0][self.robot.flat[ends[0][0].frame]]
+            heights += [dot(axis, pose.place(hull.frame, p)) for p in hull.corners]
+        level = not heights or max(heights) - min(heights) <= NEARLY
+        demand(level, "robot: two bodies to keep apart are not at one height")
 
-    def _step(self, row: StepRow) -> Step:
-        turns, origin = self.robot.joints[row.joint].turns, self.scaled(row.origin)
-        low, high = (0, 0) if turns else self.whole_range(row.joint)
-        mount = mount_of(row.rpy, self.robot.angle_unit)
+    def _step(self, row: Table) -> Step:
+        turns, origin = self.joints[row["joint"]]["turns"], self.scaled(row["origin"])
+        low, high = (0, 0) if turns else self.whole_range(row["joint"])
+        mount, sweep = mount_of(row["rpy"], self.robot.exact["angle_unit"]), high - low + 3 >> 1
         return Step(
-            row.joint, turns, row.factor, origin, mount, unit(row.axis), high - low + 3 >> 1
+            row["joint"], turns, int(row["factor"]), origin, mount, unit(row["axis"]), sweep
         )
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
@@ -1588,13 +1504,13 @@ class Arm:
         return tuple(itertools.starmap(self._value, enumerate(q)))
 
     def _value(self, j: int, x: Fraction) -> int:
-        turns = self.robot.joints[j].turns
-        return in_radians(x, self.robot.angle_unit) if turns else in_units(x / self.largest)
+        turns = self.joints[j]["turns"]
+        return in_radians(x, self.robot.unit_of(j)) if turns else in_units(x / self.largest)
 
     def whole_range(self, j: int) -> tuple[int, int]:
         """Return the limits of a joint; without limits a turn, in radians a little more."""
-        ends = {"deg": Fraction(180), "rad": Fraction("3.1416")}[self.robot.angle_unit]
-        low, high = self.robot.joints[j].limits or (-ends, ends)
+        ends = {"deg": Fraction(180), "rad": Fraction("3.1416")}[self.robot.exact["angle_unit"]]
+        low, high = self.joints[j]["limits"] or (-ends, ends)
         return self._value(j, low), self._value(j, high)
 
 
@@ -1606,37 +1522,41 @@ class Claim(NamedTuple):
 
     kind: str
     margin: Fraction
-    loops: list[list[Exact]]
-    corners: list[Sequence[Exact]]
-    joints: list[str]
+    loops: Sequence[Sequence[Exact]]
+    corners: Sequence[Sequence[Exact]]
+    joints: Sequence[str]
 
 
 def configuration(robot: Robot) -> Reader:
     """Return the reader of one value for each joint; angles are not too large."""
-    count, largest = len(robot.joints), LARGEST_ANGLE[robot.angle_unit]
-
-    def read(value: Any, where: str) -> Exact:
-        q = tuple(items(decimal, count, count)(value, where))
-        fits = all(abs(x) <= largest for x, j in zip(q, robot.joints, strict=True) if j.turns)
-        demand(fits, f"{where}: an angle of more than {largest} {robot.angle_unit}")
-        return q
-
-    return read
+    unit_name = robot.exact["angle_unit"]
+    largest, turning = LARGEST_ANGLE[unit_name], [j["turns"] for j in robot.exact["joints"]]
+    return such(
+        lambda q: all(abs(x) <= largest for x, turns in zip(q, turning, strict=True) if turns),
+        f"an angle of more than {largest} {unit_name}",
+        items(decimal, len(turning), len(turning)),
+    )
 
 
 def read_claim(value: Any, robot: Robot) -> Claim:
     """Read a claim and the cells of its set."""
-    kinds, joint_kinds = one_of("box", "path", "polygon", "no path"), one_of("moves", "held", "any")
-    kind = kinds(value.get("set") if type(value) is dict else None, "claim.set")
-    most, least = (2, 2) if kind in ("box", "no path") else (MAX_CELLS, 2 + (kind == "polygon"))
-    loops = items(items(configuration(robot), least, most), 1, 1 if most == 2 else MAX_CELLS)
-    spec = {"set": kinds, "margin": not_negative(decimal), "points": loops}
-    count = len(robot.joints)
-    spec |= {"triangles": items(anything, 1, MAX_CELLS)} if kind == "polygon" else {}
-    spec |= {"joints": items(joint_kinds, count, count)} if kind == "no path" else {}
-    found = table(spec)(value, "claim")
-    loops, joints = found["points"], found.get("joints", [])
-    points, corners = [q for loop in loops for q in loop], list[Sequence[Exact]]()
+    q, count = configuration(robot), len(robot.joints)
+    two = {"points": items(items(q, 2, 2), 1, 1)}
+    kinds = one_of("moves", "held", "any")
+    specs = {
+        "box": two,
+        "path": {"points": items(items(q, 2, MAX_CELLS), 1, MAX_CELLS)},
+        "polygon": {
+            "points": items(items(q, 3, MAX_CELLS), 1, MAX_CELLS),
+            "triangles": items(anything, 1, MAX_CELLS),
+        },
+        "no path": {**two, "joints": items(kinds, count, count)},
+    }
+    kind = one_of(*specs)(value.get("set") if type(value) is dict else None, "claim.set")
+    head = {"set": anything, "margin": not_negative(decimal)}
+    found = table({**head, **specs[kind]})(value, "claim")
+    loops, joints, corners = found["points"], found.get("joints", ()), list[Sequence[Exact]]()
+    points = [q for loop in loops for q in loop]
     demand(len(points) <= MAX_CELLS, f"claim.points: more than {MAX_CELLS} configurations")
     if kind == "box":
         rises = all(a <= b for a, b in zip(*points, strict=True))
@@ -1650,10 +1570,10 @@ def read_claim(value: Any, robot: Robot) -> Claim:
             once = len({f"{x} {y}" for x, y in loop}) == len(loop)
             demand(once, "claim.points: a loop passes a configuration twice")
         numbered = items(items(index(len(points)), 3, 3), 1, MAX_CELLS)
-        rows = numbered(found["triangles"], "claim.triangles")
+        triangles = numbered(value["triangles"], "claim.triangles")
         places = [place for loop in flat for place in loop]
-        demand_filled(flat, [[places[k] for k in row] for row in rows], "claim.triangles")
-        corners = [tuple(points[k] for k in row) for row in rows]
+        demand_filled(flat, [[places[k] for k in row] for row in triangles], "claim.triangles")
+        corners = [[points[k] for k in row] for row in triangles]
     else:
         demand("moves" in joints, "claim.joints: at least one joint moves")
         held = [a == b for a, b, each in zip(*points, joints, strict=True) if each == "held"]
@@ -1732,87 +1652,88 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
         robot = told  # what is said is said in the words of the file that the reader has
         compared = f"compared with {shown(file)}: the same"
     claim = read_claim(content["claim"], robot)
-    arm = Arm(robot, claim.margin)
+    arm, evidence = Arm(robot, claim.margin), content.get("witness", content.get("proof"))
     if "witness" in content:
         demand(claim.kind != "no path", "witness: a claim of no path has a proof")
-        said = (
-            f"refuted: {refute(arm, claim, content['witness'])}\nthe claim was that the set keeps"
-        )
+        said = f"refuted: {refute(arm, claim, evidence)}\nthe claim was that the set keeps"
     elif claim.kind == "no path":
-        prove_no_path(arm, claim, content["proof"])
-        start, goal = (f"({', '.join(map(exactly, q))})" for q in claim.loops[0])
-        said = f"proved: no path from {start} to {goal} keeps all of the following"
+        prove_no_path(arm, claim, evidence)
+        said = "proved: no path from {} to {} keeps all of the following".format(
+            *map(_in_brackets, claim.loops[0])
+        )
     else:
         for q in (q for cell in claim.corners for q in cell):  # the limits of cells, exactly
             beyond = robot.beyond(q)
             demand(not beyond, f"claim: beyond the limit {shown(next(iter(beyond), ''))}")
-        placed = ([*map(arm.placed, corners)] for corners in claim.corners)
+        placed = [[*map(arm.placed, corners)] for corners in claim.corners]
         box = claim.kind == "box"
-        prove_safe(arm, [Box(*c) if box else Simplex(tuple(c)) for c in placed], content["proof"])
+        prove_safe(arm, [Box(*c) if box else Simplex(tuple(c)) for c in placed], evidence)
         said = "proved: at every configuration of the set all of the following is kept"
-    heading = f"robot {robot.name!a}, sha256 of its normal form {content['sha256']}, {compared}"
-    lines = [heading, said, *kept(robot, claim), *described(robot, claim)]
+    heading = f"robot {robot.exact['name']!a}, sha256 of its normal form {content['sha256']}"
+    lines = [f"{heading}, {compared}", said, *kept(robot, claim), *described(robot, claim)]
     return Answer("witness" in content, "\n".join(lines))
 
 
 def kept(robot: Robot, claim: Claim) -> Iterator[str]:
     """Say what was to be kept, and what was not."""
-    margin = f"{exactly(claim.margin)} {robot.length_unit}"
-    yield f"all limits of joints, and with {margin} to spare each of"
-    shapes = {"polygon": "outline", "point": "point", "capsule": "capsule", "disc": "disc"}
-    for name, things, normal, distance in robot.boundaries:
-        ends = []
-        for thing in things:
-            radius = f", radius {exactly(thing.radius)} {robot.length_unit}" if thing.radius else ""
-            frame = f"frame {robot.frames[thing.frame]!a}"
-            ends.append(f"{shapes[thing.kind]} {thing.name!a} of {frame}{radius}")
-        least = f"at least {exactly(distance)} {robot.length_unit}"
+    length = robot.exact["length_unit"]
+    yield f"all limits of joints, and with {exactly(claim.margin)} {length} to spare each of"
+    for named, things, normal, distance in robot.boundaries:
+        ends = [
+            f"{'outline' if thing.kind == 'polygon' else thing.kind} {thing.name!a}"
+            f" of frame {robot.frames[thing.frame]!a}"
+            + (f", radius {exactly(thing.radius)} {length}" if thing.radius else "")
+            for thing in things
+        ]
+        told = f"at least {exactly(distance)} {length}"
         if normal is not None:
-            vector = ", ".join(map(exactly, normal))
-            told = f"{least} of height along ({vector}), in all its places"
+            told += f" of height along {_in_brackets(normal)}, in all its places"
         else:
-            told = f"{least} apart" if distance else "not overlapping"
+            told = f"{told} apart" if distance else "not overlapping"
             told += "" if things[0].kind == "point" else ", seen along the common axis"
-        yield f"  {name!a}: {' and '.join(ends)}: {told}"
+        yield f"  {named!a}: {' and '.join(ends)}: {told}"
     if robot.left_out:
         yield f"not claimed: {', '.join(robot.left_out)}"
+
+
+def _in_brackets(numbers: Exact) -> str:
+    return f"({', '.join(map(exactly, numbers))})"
 
 
 MOST_SHOWN = 50
 """Configurations that are printed; of larger sets their hash is, and what else names them."""
 
+LOOPS = {"box": "from low to high", "no path": "from start to goal", "path": "path"}
+JOINTS = {"any": "takes any value, even jumps", "held": "is held", "moves": "moves"}
+
 
 def described(robot: Robot, claim: Claim) -> Iterator[str]:
     """Describe the set by the numbers that were verified."""
     points = [q for loop in claim.loops for q in loop]
-    printed = [" ".join(f"({', '.join(map(exactly, q))})" for q in loop) for loop in claim.loops]
-    names = ", ".join(
-        f"{joint.name!a} / {robot.unit_of(j)}" for j, joint in enumerate(robot.joints)
-    )
-    kinds = {"box": ["from low to high"], "no path": ["from start to goal"]}
-    told = kinds.get(claim.kind, ["path"] * len(printed))
+    printed = [" ".join(map(_in_brackets, loop)) for loop in claim.loops]
+    units = [robot.unit_of(j) for j in range(len(robot.joints))]
+    names = ", ".join(f"{name!a} / {u}" for name, u in zip(robot.joints, units, strict=True))
+    told = [LOOPS.get(claim.kind, "")] * len(printed)
     if claim.kind == "polygon":
-        areas = map(doubled_area, _flat(claim.loops))
-        told = ["outline" if area > 0 else "hole" for area in areas]
+        told = ["outline" if doubled_area(loop) > 0 else "hole" for loop in _flat(claim.loops)]
     counted = [f"{told.count(kind)} {kind}(s)" for kind in ("outline", "hole") if kind in told]
     yield f"set: {', '.join([claim.kind, *counted])}; {len(points)} configurations ({names})"
     if len(points) <= MOST_SHOWN:
         yield from (f"  {kind}: {said}" for kind, said in zip(told, printed, strict=True))
     else:
         yield f"  their text is in the certificate; its sha256 is {digest(chr(10).join(printed))}"
-        for said in printed if claim.kind == "path" else ():
-            yield f"  path from {said[: said.index(')') + 1]} to {said[said.rindex('(') :]}"
-    for j, (joint, column) in enumerate(zip(robot.joints, zip(*points, strict=True), strict=True)):
-        unit_name, kind = robot.unit_of(j), claim.joints[j] if claim.joints else ""
-        moved = {"any": "takes any value, even jumps", "held": "is held", "moves": "moves"}
-        if kind:
-            yield f"  {joint.name!a} {moved[kind]}"
-        elif len(points) > MOST_SHOWN:
-            ends = f"{exactly(min(column))} and {exactly(max(column))} {unit_name}"
-            yield f"  {joint.name!a} is between {ends} in the set"
-        turn = 360 if robot.angle_unit == "deg" else 2 * PI + Fraction(1, 10**70)
-        if joint.turns and not kind and _longest(claim, j) >= turn:
-            yield f"  {joint.name!a} takes every angle"
+        for loop in claim.loops if claim.kind == "path" else ():
+            yield f"  path from {_in_brackets(loop[0])} to {_in_brackets(loop[-1])}"
+    turn = 360 if robot.exact["angle_unit"] == "deg" else 2 * PI + Fraction(1, 10**70)
+    for j, (name, column) in enumerate(zip(robot.joints, zip(*points, strict=True), strict=True)):
+        if claim.joints:
+            yield f"  {name!a} {JOINTS[claim.joints[j]]}"
+            continue
+        if len(points) > MOST_SHOWN:
+            ends = f"{exactly(min(column))} and {exactly(max(column))}"
+            yield f"  {name!a} is between {ends} {units[j]} in the set"
+        if robot.exact["joints"][j]["turns"] and _longest(claim, j) >= turn:
+            yield f"  {name!a} takes every angle"
 
 
 def _longest(claim: Claim, j: int) -> Fraction:
@@ -1894,7 +1815,7 @@ def _read_file(file: str) -> bytes:
 
 def _printed(said: str) -> bool:
     """Print a text in ASCII and tell whether it arrived."""
-    safe = "".join(c if c == "\n" or " " <= c <= "~" else ascii(c)[1:-1] for c in said)
+    safe = re.sub(r"[^\n -~]", lambda found: ascii(found[0])[1:-1], said)
     try:
         sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
         sys.stdout.flush()

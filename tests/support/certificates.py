@@ -106,7 +106,7 @@ def longest(cell: check.Cell, joints: Sequence[int]) -> int:
 def proved(robot: str, claim: Json, parts: Json = None, depth: int = 14) -> Json:
     """Prove that all is kept on a set: halve cells until a direction holds."""
     draft, known = Draft(robot, claim, parts), dict[tuple[int, ...], int]()
-    joints, cells = range(len(draft.robot.joints)), draft.cells
+    joints, cells = range(len(draft.arm.joints)), draft.cells
 
     def tree(keep: check.Keep, cell: check.Cell, left: int) -> str:
         pose = check.Pose(draft.steps, cell.middle)
@@ -159,13 +159,13 @@ def seen(pose: check.Pose, near: int, frame: int, corner: check.Vector) -> list[
 def places(draft: Draft) -> list[Json]:
     """Return places of each pair of hulls: corners and middles, with discs as large as may be."""
     found = []
-    for number, row in enumerate(draft.robot.keeps):
+    for number, row in enumerate(draft.arm.rows):
         choices = []
-        for hull in (row.near, row.far):
-            if hull is None:
+        for end in ("near", "far"):
+            if end not in row:
                 choices.append([([], Fraction(0))])
                 continue
-            frame, corners = draft.robot.hulls[hull]
+            frame, corners = (draft.arm.hulls[row[end]][key] for key in ("frame", "corners"))
             flat = [k for k in range(3) if k != draft.robot.flat.get(frame)]
             shares = [[int(k == j) for j in range(len(corners))] for k in range(len(corners))]
             shares += [[1, 1], [1, 3], [3, 1]] if len(corners) == 2 else []
@@ -173,7 +173,7 @@ def places(draft: Draft) -> list[Json]:
             choices.append([(w, disc(w, corners, flat)) for w in map(weights, shares)])
         for near, far in itertools.product(*choices):
             place = {"keep": number, "near": near[0], "far": far[0]}
-            if row.along is not None:
+            if row.get("along") is not None:
                 place["inside"] = [written(near[1]), written(far[1])]
             found.append(place)
     return found

@@ -4,7 +4,7 @@ import numpy as np
 from flint import arb, fmpq
 
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.exact import ExactProblem
+from qbound.proofs.exact.problem import ExactProblem
 from support.forms import LIMITS, ROUND, forms
 
 

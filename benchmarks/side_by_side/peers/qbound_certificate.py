@@ -10,8 +10,8 @@ from certified import rings_of, text_of
 from serve import Refused, Timed, serve, timed
 
 from qbound.model.robotfile import parse_robot
-from qbound.proofs.certify import Certificate, certify_region
-from qbound.proofs.statements import usual_inset
+from qbound.proofs.certificates.certify import Certificate, certify_region
+from qbound.proofs.certificates.statements import usual_inset
 
 
 @lru_cache(maxsize=4)

@@ -8,9 +8,9 @@ from typing import Any
 import scenes
 from serve import Timed, serve, timed
 
-from qbound.proofs.columns import pave_columns
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import pave
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.paving import pave
+from qbound.proofs.subpaving.stacks import pave_columns
 
 
 @lru_cache(maxsize=8)

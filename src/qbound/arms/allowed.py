@@ -4,8 +4,8 @@ Other programs draw ten thousand poses and call a pair that was in contact in no
 Here the proofs use cells that fill the ranges of the joints between both links. "Never": every form
 has a bound above zero in each cell. "Always": in each cell one form has a bound below zero.
 "Sometimes": there are two configurations, one with contact and one without. The bounds are those of
-`qbound.proofs.dyadic` and include rounding. Not in the paper, whose Table 6 has the case of one
-joint.
+`qbound.proofs.exact.bounds` and include rounding. Not in the paper, whose Table 6 has the case
+of one joint.
 
 The forms of two links are those of all pairs of their spheres,
 :math:`\beta_{ij} = |B_{ij}|^2 - (r_i + r_j)^2` (eq. 11 without a clearance), in the joints between
@@ -43,10 +43,10 @@ from qbound.forms.harmonic import HarmonicForm, Kind, add_constant
 from qbound.model.robot import Joint, Pair, Robot
 from qbound.model.robotfile import load_robot
 from qbound.printable import printable
-from qbound.proofs.balls import above, arb, ball, balls, below, pi, precision
-from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells, magnitude
-from qbound.proofs.exact import exact_robot
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells, magnitude
+from qbound.proofs.exact.numbers import above, arb, ball, balls, below, pi, precision
+from qbound.proofs.exact.problem import exact_robot
 from qbound.tolerances import ZERO_AMPLITUDE
 from qbound.units import counted, joint_text, joint_units
 

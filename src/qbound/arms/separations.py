@@ -1,9 +1,9 @@
 """Ranges of one joint that something blocks, whatever the other joints do.
 
 Balls of two links of which only one joint changes the distance block a range of that joint, in
-closed form (`proofs.blocked`). Where the ranges of all boundaries end, the joint's travel falls
-apart: no path leads from one part to another. Limits of two turns may leave three parts that the
-eye takes for one.
+closed form (`proofs.subpaving.forbidden`). Where the ranges of all boundaries end, the joint's
+travel falls apart: no path leads from one part to another. Limits of two turns may leave three
+parts that the eye takes for one.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pathlib import Path
 from qbound.arms.links import link_pair
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
-from qbound.proofs.balls import above, ball, below, pi, precision, turns
-from qbound.proofs.blocked import BITS, BlockedRange, blocked_ranges
+from qbound.proofs.exact.numbers import above, ball, below, pi, precision, turns
+from qbound.proofs.subpaving.forbidden import BITS, BlockedRange, blocked_ranges
 
 Span = tuple[float, float]
 

@@ -28,16 +28,15 @@ from qbound.boundary.parts import bounds_bodies
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import statements
-from qbound.proofs.blocked import BlockedRange
-from qbound.proofs.certify import Certificate, Subject, certify, no_certificate
-from qbound.proofs.connection import Connection, connection
-from qbound.proofs.exact import ExactProblem, exact_problem, exact_robot, paving_bytes
-from qbound.proofs.no_path import certify_disconnected, certify_no_path
-from qbound.proofs.paving import Paving
-from qbound.proofs.proved_region import prove_region, proved_component
-from qbound.proofs.structure import Structure
-from qbound.proofs.verdict import Unproved, Verdict
+from qbound.proofs import Unproved, Verdict
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import Certificate, Subject, certify, no_certificate
+from qbound.proofs.certificates.no_path import certify_disconnected, certify_no_path
+from qbound.proofs.exact.components import Structure
+from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot, paving_bytes
+from qbound.proofs.subpaving.connection import Connection, connection
+from qbound.proofs.subpaving.forbidden import BlockedRange
+from qbound.proofs.subpaving.paving import Paving
 from qbound.region import Region, find_region, violated
 from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
 
@@ -56,9 +55,6 @@ FORM = 75
 
 MOST_PAVED = 3
 """Joints that a paving takes."""
-
-MOST_PROVED = 40
-"""Boundaries of a region that is proved: any two may cross, and are looked at."""
 
 FEW_CELLS = 50_000
 """Undecided cells of a paving that is made for a certificate alone, of what is proved before."""
@@ -422,40 +418,20 @@ def _by_region(asked: _Asked) -> Why | str:
     if asked.region is None:
         return ""
     try:
-        one, other = _proved_components(asked, asked.region)
+        structure = Structure(asked.problem)
+        one, other = (structure.part_of(q) for q in asked.ends[:, asked.moving])
+        if -1 in (one, other):
+            raise Unproved("an end is not proved to be feasible")
     except Unproved as reason:
         return f"the region is not proved ({reason}); {_said_of_components(asked)}"
-    what, where = "boundary", f"component {one} of it"
-    if one != other:
-        where = f"components {one} and {other} of it"
-    if asked.problem.bodies:  # whose components nothing but the proof numbers
-        what, where = "structure", f"{'one component' if one == other else 'two components'} of it"
-    said = f"the {what} of the region is proved, and start and goal lie in {where}"
+    where = "one component" if one == other else "two components"
+    if len({*asked.components}) == (1 if one == other else 2):  # as floating point numbers them
+        where = _numbered(asked.components)
+    said = f"the structure of the region is proved, and start and goal lie in {where} of it"
     if one != other:
         return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
     found = _joined(asked, SEEDS, TRIES)
     return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
-
-
-def _proved_components(asked: _Asked, region: Region) -> tuple[int, int]:
-    """Return the component that each end is proved to lie in; of bodies by cells (`structure`).
-
-    Raises
-    ------
-    Unproved
-        If the components of the region are not proved, or in which one an end lies.
-    """
-    problem, (start, goal) = asked.problem, asked.ends[:, asked.moving]
-    if problem.bodies:
-        structure = Structure(problem)
-        one, other = structure.part_of(start), structure.part_of(goal)
-        if -1 in (one, other):
-            raise Unproved("an end is not proved to be feasible")
-        return one, other
-    if len(problem.names) > MOST_PROVED:
-        raise Unproved(f"{len(problem.names)} boundaries; {MOST_PROVED} are the most")
-    proved = prove_region(problem, region)
-    return proved_component(problem, proved, start), proved_component(problem, proved, goal)
 
 
 def _for_file(asked: _Asked) -> Certificate | None:
@@ -470,11 +446,14 @@ def _for_file(asked: _Asked) -> Certificate | None:
 def _said_of_components(asked: _Asked) -> str:
     if not asked.components:
         return "floating point does not decide it"
-    one, other = asked.components
-    if one is None or other is None:
+    if None in asked.components:
         return "in floating point an end lies on its boundary"
-    where = f"components {one} and {other}" if one != other else f"component {one}"
-    return f"in floating point start and goal lie in {where} of it"
+    return f"in floating point start and goal lie in {_numbered(asked.components)} of it"
+
+
+def _numbered(components: list[int | None]) -> str:
+    one, other = components
+    return f"components {one} and {other}" if one != other else f"component {one}"
 
 
 # --- a paving -------------------------------------------------------------------------------------

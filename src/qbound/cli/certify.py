@@ -20,18 +20,19 @@ from qbound.cli.values import box, held
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import statements
-from qbound.proofs.certify import (
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import (
     Bracket,
     Certificate,
     Subject,
     bracket_scale,
+    certificate_lines,
     certify,
     certify_region,
+    folded,
     no_certificate,
 )
-from qbound.proofs.points import as_decimal, read_points
-from qbound.proofs.reports import certificate_lines, folded
+from qbound.proofs.certificates.statements import as_decimal, read_points
 from qbound.region import find_region
 from qbound.units import counted, joint_text, limited_joints, margin_text
 

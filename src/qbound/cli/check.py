@@ -9,7 +9,7 @@ from typing import Any
 from qbound import check
 from qbound.cli.terminal import say
 from qbound.model.robotfile import robot_text
-from qbound.proofs.reports import folded
+from qbound.proofs.certificates.certify import folded
 
 
 def add_to(commands: Any) -> None:

@@ -11,15 +11,9 @@ from qbound.cli.progress import progress
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
-from qbound.proofs.columns import pave_columns
-from qbound.proofs.exact import exact_problem, exact_robot, paving_bytes
-from qbound.proofs.paving import pave
-from qbound.proofs.reports import (
-    columns_document,
-    columns_lines,
-    paving_document,
-    paving_lines,
-)
+from qbound.proofs.exact.problem import exact_problem, exact_robot, paving_bytes
+from qbound.proofs.subpaving.paving import pave, paving_document, paving_lines
+from qbound.proofs.subpaving.stacks import columns_document, columns_lines, pave_columns
 
 STEPS = 1000
 """Of the progress that is shown."""

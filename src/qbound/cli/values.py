@@ -72,7 +72,9 @@ def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
 
     Decimals of the robot file's units; a joint that is not named has its limits.
     """
-    from qbound.proofs.points import limits_as_decimals  # with the decimals of certificates
+    from qbound.proofs.certificates.statements import (
+        limits_as_decimals,  # with the decimals of certificates
+    )
 
     found = {}
     for text in texts:
@@ -124,7 +126,7 @@ def _whole_range(robot: Robot, name: str) -> str:
 
 
 def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:
-    from qbound.proofs.points import joint_decimal
+    from qbound.proofs.certificates.statements import joint_decimal
 
     if len(texts) != 2:
         raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qbound.proofs.dyadic import BoxBounds, Cells
+from qbound.proofs.exact.bounds import BoxBounds, Cells
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

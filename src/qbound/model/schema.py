@@ -89,7 +89,7 @@ def _follow(where: str, value: Any, schema: Node) -> tuple[JsonPath, Any, Node]:
     path: list[str | int] = []
     node = _resolved(schema, schema, value)
     for key, index in re.findall(r"\.(\w+)|\[([\d.]+)\]", where):
-        step = key or (_no_number(value) if index == "..." else int(index))
+        step = key or (_wrong_number(value, node) if index == "..." else int(index))
         inner = (
             node["properties"][key] if key else node.get("items", node.get("additionalProperties"))
         )
@@ -115,9 +115,10 @@ def _resolved(node: Node, schema: Node, value: Any) -> Node:
     return {**tables[0], "required": needed, "properties": {"type": {"enum": [*choices]}}}
 
 
-def _no_number(table: Mapping[str, Any]) -> str:
+def _wrong_number(table: Mapping[str, Any], node: Node) -> str:
     """Return the key that msgspec leaves out of a place in a table of numbers."""
-    return next(key for key, item in table.items() if type(item) not in (int, float))
+    most = node["additionalProperties"].get("maximum", sys.float_info.max)
+    return next(k for k, x in table.items() if type(x) not in (int, float) or not abs(x) <= most)
 
 
 def _unknown_key(found: Any, node: Node) -> str:

@@ -1,25 +1,41 @@
-"""Proofs: exact numbers, balls, cells, and certificates that a checker accepts.
+"""Proofs: exact numbers, balls, cells, and certificates that a checker accepts. Optional.
 
-- answers: `verdict` (proved, refuted, undecided: of every prover);
-- numbers: `exact` (a robot as its file writes it), `exact_bodies` (what separates its bodies),
-  `balls` (python-flint's, and their precision);
-- boundaries: `crossings` (where two curves meet, none left out), `runs` (pieces between them),
-  `proved_region` (regions and their areas), `proved_images` (areas of the tool's plane),
-  `exact_windows` (the paper's rule, Table 6);
-- components, with bodies or without: `stars` (cells on which what is free is connected) and
-  `structure` (how many components, of how many loops);
-- cells: `dyadic` (cells and bounds over them), `paving` (feasible, infeasible, undecided),
-  `columns` (pavings of which one joint is solved for), `sectors` (of that joint, over cells),
-  `trigonometry` (cosines and sines of arrays, with a proved error),
-  `connection` (what is joined, and what is not), `blocked` (ranges of one joint that nothing
-  passes);
-- bodies: `parts` (convex parts of outlines);
-- certificates: `statements` (what is claimed), `points` (read from files), `triangulation` (of
-  which polygon), `unrolled` (what goes all the way round a joint, cut open), `certify` (prove,
-  refute, and write the file), `inequality` (the one inequality, in floats), `subdivide` (cells,
-  their halves, the search that cuts them), `safe` (a direction for each leaf), `contact` (places
-  of two hulls that are too near), `witness` (what refutes), `no_path` (that nothing leads from
-  start to goal), `separator` (few boxes that separate), `minorant` (other bounds, to compare);
-- `second`: the second checker, which shares nothing with `qbound.check` nor with the provers;
-- `reports`: what was proved, as JSON and in words.
+Every prover answers with a `Verdict`.
+
+- `exact`: a robot as its file writes it (`problem`, `bodies` and their convex `parts`), `numbers`
+  with a proved error, `bounds` of forms over cells, where curves cross (`crossings`), the pieces
+  between (`runs`), regions and their areas (`region`), and how many components of how many loops
+  there are (`components`, from cells on which what is free is connected: `stars`);
+- `subpaving`: cells that are feasible, infeasible or undecided (`paving`), stacks of which one
+  joint is solved for (`stacks`, by `sectors`), what is joined and what is not (`connection`),
+  values of one joint that nothing passes (`forbidden`);
+- `certificates`: what is claimed (`statements`, whose `loops` are filled with triangles), the one
+  `inequality`, a direction for each leaf (`search`), places of two hulls that are too near
+  (`contact`), what refutes (`witness`), that no path leads over (`no_path`), and the file
+  (`certify`);
+- `subdivide`: boxes and simplices, their halves, and the search that cuts them;
+- `second`: the second checker, which shares nothing with `qbound.check` nor with the provers.
 """
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """What is known of a statement."""
+
+    PROVED = "proved"
+    REFUTED = "refuted"
+    UNDECIDED = "undecided"
+
+    @classmethod
+    def of(cls, proved: bool, refuted: bool) -> Verdict:
+        """Return the verdict on a statement that is proved, or refuted, or neither."""
+        if proved:
+            return cls.PROVED
+        return cls.REFUTED if refuted else cls.UNDECIDED
+
+
+class Unproved(ValueError):
+    """Something about a region could not be proved; the message says what."""

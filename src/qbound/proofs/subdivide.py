@@ -6,17 +6,16 @@ halved. Cells have joint values in rad or length. Doubles: the checkers decide.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arrays import Bools, Floats
+from qbound.arrays import Bools, Floats, Ints
 from qbound.geometry import simplices
 
 Tell = Callable[[float], None]
@@ -31,8 +30,29 @@ def silent(part: float) -> None:
     del part
 
 
+class Rows:
+    """Base of dataclasses of arrays that have one row for each of some things."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def __len__(self) -> int:
+        """Return how many things there are."""
+        return next(len(x) for x in vars(self).values() if isinstance(x, np.ndarray))
+
+    def __getitem__(self, chosen: Any) -> Self:
+        """Take some of the rows; what is no array belongs to all."""
+        fields = (getattr(self, name) for name in self.__dataclass_fields__)
+        return type(self)(*(x[chosen] if isinstance(x, np.ndarray) else x for x in fields))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Put the rows of several tables one after the other."""
+        columns = ([getattr(part, name) for part in parts] for name in cls.__dataclass_fields__)
+        return cls(*map(np.concatenate, columns))
+
+
 @dataclass(frozen=True, eq=False)
-class Boxes:
+class Boxes(Rows):
     """Boxes by their centres and half widths, shape (N, n); joint j is cut by number j."""
 
     centres: Floats
@@ -42,14 +62,6 @@ class Boxes:
     def between(cls, low: Floats, high: Floats) -> Boxes:
         """Return the boxes with these corners, shape (N, n)."""
         return cls((low + high) / 2, (high - low) / 2)
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self.centres)
-
-    def __getitem__(self, chosen: Any) -> Boxes:
-        """Take some of them."""
-        return Boxes(self.centres[chosen], self.halfwidths[chosen])
 
     @property
     def reach(self) -> Floats:
@@ -109,18 +121,10 @@ class Boxes:
 
 
 @dataclass(frozen=True, eq=False)
-class Simplices:
+class Simplices(Rows):
     """Simplices by their corners, shape (N, k, n); cuts number the edges as the page does."""
 
     corners: Floats
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self.corners)
-
-    def __getitem__(self, chosen: Any) -> Simplices:
-        """Take some of them."""
-        return Simplices(self.corners[chosen])
 
     @cached_property
     def centres(self) -> Floats:
@@ -200,28 +204,6 @@ class Forest:
         return "".join(written)
 
 
-def leaves(corners: Floats, trees: Sequence[str]) -> Floats:
-    """Return the simplices on which a proof rests, shape (M, k, n).
-
-    Parameters
-    ----------
-    corners : ndarray, shape (N, k, n)
-        Of the cells, in any unit.
-    trees : sequence of str
-        One for each cell.
-    """
-    found = []
-    for cell, tree in zip(corners, trees, strict=True):
-        todo = [cell]
-        for token in re.findall("[a-z]|[0-9]*[.]", tree):
-            top = todo.pop()
-            if token.endswith("."):
-                found.append(top)
-            else:
-                todo += [*simplices.halved(top[None], np.array([ord(token) - ord("a")]))[::-1]]
-    return np.array(found)
-
-
 # --- the driver -----------------------------------------------------------------------------------
 
 
@@ -274,6 +256,38 @@ class Search:
     left: int
     part_left: float
     violation: tuple[int, Floats] | None = None
+
+
+def best_cuts(
+    cells: Cells,
+    tried: Bools,
+    worth: Callable[[Ints, Cells], Floats],
+    enough: float,
+    size: float,
+) -> Ints:
+    """Choose the cut of each cell that closes most halves, and then leaves the least to be gained.
+
+    Parameters
+    ----------
+    tried : ndarray of bool, shape (N, cuts)
+    worth : callable
+        From numbers of cells and the halves of these to a value for each half: one that is more
+        than `enough` is closed.
+    size : float
+        A value that is large.
+
+    Returns
+    -------
+    ndarray of int, shape (N,)
+        -1 where none is tried.
+    """
+    scores = np.full(tried.shape, -np.inf)
+    for cut in np.flatnonzero(tried.any(axis=0)).tolist():
+        rows = np.flatnonzero(tried[:, cut])
+        values = worth(rows, cells[rows].halves(np.full(len(rows), cut))).reshape(-1, 2)
+        lacks = np.minimum(values, 0).sum(axis=1) / size
+        scores[rows, cut] = 1e6 * (values > enough).sum(axis=1) + lacks
+    return np.where(tried.any(axis=1), scores.argmax(axis=1), -1)
 
 
 def subdivide(

@@ -20,8 +20,8 @@ from qbound.arms.fibres import Fibres, fibres
 from qbound.arms.reach import Reach, reach
 from qbound.design import home_area, region_area, workspace_area
 from qbound.model.robot import Robot
-from qbound.proofs.exact import exact_problem, exact_robot
-from qbound.proofs.paving import Paving, pave
+from qbound.proofs.exact.problem import exact_problem, exact_robot
+from qbound.proofs.subpaving.paving import Paving, pave
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_units
 

@@ -36,7 +36,7 @@ from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots
 from qbound.model.rows import LARGEST, Label, Number, Row
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.printable import printable
-from qbound.proofs.exact import paving_bytes
+from qbound.proofs.exact.problem import paving_bytes
 from qbound.sweeps.cells import HELD
 from qbound.sweeps.measures import MEASURES
 

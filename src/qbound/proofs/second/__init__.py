@@ -7,7 +7,7 @@ and their trees, `waves` bounds what a robot does over a cell, and `proof` puts 
 
 from __future__ import annotations
 
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
 
 __all__ = ["verify"]
 

@@ -16,7 +16,7 @@ from qbound.model.boundaries import BodyPair, HalfSpace, Pair
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.model.source import Source
-from qbound.proofs.parts import check_parts
+from qbound.proofs.exact.parts import check_parts
 from qbound.proofs.second.reading import (
     LARGEST,
     LARGEST_ANGLE,

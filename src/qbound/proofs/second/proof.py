@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from flint import acb, acb_mat, arb, ctx, fmpq
 
+from qbound.proofs import Verdict
 from qbound.proofs.second.cells import HOLDS, Box, Cell, Node, cells_of, holds, nodes
 from qbound.proofs.second.normal import Form as NormalForm
 from qbound.proofs.second.normal import canonical, normal_form
@@ -48,7 +49,6 @@ from qbound.proofs.second.waves import (
     norm,
     swing,
 )
-from qbound.proofs.verdict import Verdict
 
 BITS = 192
 WITNESS_BITS = 640

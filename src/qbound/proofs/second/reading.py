@@ -101,7 +101,8 @@ def index(value: Any, where: str, size: int) -> int:
 
 def decimal(value: Any, where: str) -> Any:
     """Return a decimal of the file, a string, as a rational."""
-    digits = sum("0" <= x <= "9" for x in value) if isinstance(value, str) else 0
+    found = DECIMAL.fullmatch(value) if isinstance(value, str) and len(value) <= 60 else None
+    digits = len(found[2] + (found[3] or "")) if found else 0
     demand(0 < digits <= MOST_DIGITS, f"{where}: {shown(value)} is not a decimal")
     number = exact(value, where)
     demand(number == 0 or 1 / LARGEST <= abs(number) <= LARGEST, f"{where}: a number out of range")

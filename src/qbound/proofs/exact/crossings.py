@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from qbound.arrays import Array, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import arb, ball, balls, precision, turns
-from qbound.proofs.dyadic import BoxBounds, Cells
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import BoxBounds, Cells
+from qbound.proofs.exact.numbers import arb, ball, balls, precision, turns
+from qbound.proofs.exact.problem import ExactProblem
 
 Balls = tuple[arb, arb]
 

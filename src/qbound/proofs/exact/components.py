@@ -25,9 +25,9 @@ import numpy as np
 
 from qbound.arrays import Floats, Ints
 from qbound.forms.angles import TURN, whole_turns
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.stars import WHOLE, Stars, Undecided
-from qbound.proofs.verdict import Unproved
+from qbound.proofs import Unproved
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.exact.stars import WHOLE, Stars, Undecided
 from qbound.region import Component, Region
 
 Steps = tuple[int, int]
@@ -305,7 +305,7 @@ def prove_structure(problem: ExactProblem, region: Region) -> tuple[ProvedPart, 
     Examples
     --------
     >>> from qbound import find_region, load_robot
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> from qbound.proofs.exact.problem import exact_problem, exact_robot
     >>> region = find_region(load_robot("minervabot-v2"))
     >>> parts = prove_structure(exact_problem(exact_robot("minervabot-v2")), region)
     >>> [part.loops for part in parts]

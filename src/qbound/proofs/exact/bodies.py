@@ -28,8 +28,8 @@ from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.exact import rational, rationals
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.printable import printable
-from qbound.proofs import parts
-from qbound.proofs.balls import ball
+from qbound.proofs.exact import parts
+from qbound.proofs.exact.numbers import ball
 
 
 @dataclass(frozen=True, eq=False)

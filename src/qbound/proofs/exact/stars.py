@@ -26,16 +26,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 
 from qbound.arrays import Array, Bools, Floats, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, ball, precision, turns
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.trigonometry import cosine_sine
+from qbound.proofs.exact.numbers import above, ball, cosine_sine, precision, turns
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.subdivide import Rows
 
 WHOLE = 2**36
 """Steps across each range: a cell one step wide is given up."""
@@ -141,7 +141,7 @@ def _rounded(exact: Array) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
+class Cells(Rows):
     """Cells whose free places are empty, all, or a star.
 
     Attributes
@@ -154,8 +154,8 @@ class Cells:
         What is neither is open: free all over.
     middle : ndarray, shape (k, 2)
         A free place to which all others of the cell lead straight; of no meaning if blocked.
-    contacts : tuple of ndarray of int
-        The contacts that each cell may hold.
+    contacts : ndarray of object, shape (k,)
+        The contacts that each cell may hold, an ndarray of int each.
     """
 
     low: Ints
@@ -164,23 +164,7 @@ class Cells:
     blocked: Bools
     star: Bools
     middle: Floats
-    contacts: tuple[Ints, ...]
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self.low)
-
-    def __getitem__(self, kept: Bools) -> Cells:
-        """Take some of them."""
-        return Cells(
-            self.low[kept],
-            self.high[kept],
-            self.origin[kept],
-            self.blocked[kept],
-            self.star[kept],
-            self.middle[kept],
-            tuple(rows for rows, keep in zip(self.contacts, kept, strict=True) if keep),
-        )
+    contacts: Array
 
 
 class Stars:
@@ -279,7 +263,7 @@ class Stars:
                 raise Undecided(f"{' and '.join(names)}: not decided near ({place})")
             joint = self._joint(low, high, wide, box, row, values)
             low, high, origin, box, row = _halved(low, high, origin, joint, ~closed, lists)
-        return _joined(done)
+        return Cells.joined(done)
 
     def _left(
         self, middle: Floats, half: Floats, box: Ints, row: Ints
@@ -388,14 +372,16 @@ def _alone(form: Array) -> Array:
     return rows
 
 
-def _listed(box: Ints, row: Ints, count: int) -> tuple[Ints, ...]:
+def _listed(box: Ints, row: Ints, count: int) -> Array:
     """Return the rows of each cell; cells ascend."""
-    ends = np.searchsorted(box, np.arange(count + 1))
-    return tuple(row[a:b] for a, b in pairwise(ends))
+    found = np.empty(count, dtype=object)
+    for k, (a, b) in enumerate(pairwise(np.searchsorted(box, np.arange(count + 1)))):
+        found[k] = row[a:b]
+    return found
 
 
 def _halved(
-    low: Ints, high: Ints, origin: Ints, joint: Ints, chosen: Bools, lists: Sequence[Ints]
+    low: Ints, high: Ints, origin: Ints, joint: Ints, chosen: Bools, lists: Array
 ) -> tuple[Ints, Ints, Ints, Ints, Ints]:
     """Cut some cells, each along a joint; both halves keep their rows."""
     low, high, joint = low[chosen], high[chosen], joint[chosen]
@@ -408,16 +394,3 @@ def _halved(
     low, high = (np.stack(x, axis=1).reshape(-1, 2) for x in ((low, second), (first, high)))
     box = np.repeat(np.arange(len(low)), [len(r) for r in rows])
     return low, high, origin, box, np.concatenate([np.zeros(0, dtype=np.int64), *rows])
-
-
-def _joined(parts: Sequence[Cells]) -> Cells:
-    """Return all cells as one."""
-    return Cells(
-        np.concatenate([part.low for part in parts]),
-        np.concatenate([part.high for part in parts]),
-        np.concatenate([part.origin for part in parts]),
-        np.concatenate([part.blocked for part in parts]),
-        np.concatenate([part.star for part in parts]),
-        np.concatenate([part.middle for part in parts]),
-        tuple(chain.from_iterable(part.contacts for part in parts)),
-    )

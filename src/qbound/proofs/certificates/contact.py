@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.inequality import (
+from qbound.proofs.certificates.inequality import (
     Arm,
     Kind,
 )
-from qbound.proofs.subdivide import Cells
+from qbound.proofs.subdivide import Cells, Rows
 
 ALONG = 17
 """Places of a segment that are compared in a round."""
@@ -36,7 +36,7 @@ DECIMALS = 9
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
+class Contacts(Rows):
     """Places of the two hulls of things, T rows.
 
     Attributes
@@ -50,16 +50,6 @@ class Contacts:
     near: Floats
     far: Floats
     inside: Floats
-
-    def __getitem__(self, chosen: slice) -> Contacts:
-        """Take some of the rows."""
-        return Contacts(self.near[chosen], self.far[chosen], self.inside[chosen])
-
-    @classmethod
-    def joined(cls, rows: Sequence[Contacts]) -> Contacts:
-        """Put rows of things of one kind together."""
-        tables = ([getattr(row, name) for row in rows] for name in ("near", "far", "inside"))
-        return cls(*map(np.concatenate, tables))
 
 
 def contacts(arm: Arm, kind: Kind, rows: Ints, cells: Cells) -> Contacts:

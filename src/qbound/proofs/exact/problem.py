@@ -17,8 +17,8 @@ from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.exact import ExactNumbers, frozen
 from qbound.model.robot import Boundary, Robot
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.balls import arb, ball, pi, precision
-from qbound.proofs.exact_bodies import ExactSeparation, exact_separations
+from qbound.proofs.exact.bodies import ExactSeparation, exact_separations
+from qbound.proofs.exact.numbers import arb, ball, pi, precision
 
 BITS = 512
 """Precision of what is no rational: far above that of any proof, so that it never shows."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from qbound.arrays import Bools, Floats
 from qbound.forms.angles import TURN
-from qbound.proofs.trigonometry import ERROR, cosine_sine
+from qbound.proofs.exact.numbers import ERROR, cosine_sine
 
 Interval = tuple[Floats, Floats]
 

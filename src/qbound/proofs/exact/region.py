@@ -20,13 +20,13 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.forms.angles import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import arb, ball, precision, turns
-from qbound.proofs.crossings import (
+from qbound.proofs import Unproved, Verdict
+from qbound.proofs.exact.components import prove_structure
+from qbound.proofs.exact.crossings import (
     Balls,
     Crossing,
     Crossings,
@@ -37,12 +37,18 @@ from qbound.proofs.crossings import (
     placed_at,
     side_roots,
     sides,
-    within_ranges,
 )
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.runs import Curve, Run, area_under, lies_on, on_the_left, root_near, sign_along
-from qbound.proofs.structure import prove_structure
-from qbound.proofs.verdict import Unproved, Verdict
+from qbound.proofs.exact.numbers import arb, ball, precision, turns
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.exact.runs import (
+    Curve,
+    Run,
+    area_under,
+    lies_on,
+    on_the_left,
+    root_near,
+    sign_along,
+)
 from qbound.region import Component, Region
 from qbound.region.outline import Arc
 
@@ -402,92 +408,3 @@ def _dense(points: Floats) -> Floats:
         for a, b, n in zip(points[:-1], points[1:], legs, strict=True)
     ]
     return np.concatenate([*pieces, points[-1:]])
-
-
-# --- where a configuration lies -------------------------------------------------------------------
-
-
-def proved_component(problem: ExactProblem, proved: ProvedRegion, q: ArrayLike) -> int:
-    """Return the number of the component of a proved region that a configuration lies in.
-
-    From the configuration a line of one joint value leads to the nearest zero of any form, or to
-    the end of the range. All forms are positive before that; so the run that holds the place found
-    bounds the component of the configuration.
-
-    Parameters
-    ----------
-    problem : ExactProblem
-        Whose region is proved.
-    proved : ProvedRegion
-    q : array_like, shape (2,)
-        rad or length; each double counts as it is.
-
-    Raises
-    ------
-    Unproved
-        If the configuration is not proved to be feasible, or no such place is proved to be nearest
-        and to lie on a run.
-
-    Examples
-    --------
-    >>> from qbound import find_region, load_robot
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
-    >>> problem = exact_problem(exact_robot("minervabot-v2"))
-    >>> proved = prove_region(problem, find_region(load_robot("minervabot-v2")))
-    >>> proved_component(problem, proved, [0.0, 0.0]), proved_component(problem, proved, [0.0, 2.5])
-    (0, 1)
-    """
-    _refuse_bodies(problem)
-    with precision(BITS):
-        one, other = (ball(float(value)) for value in np.asarray(q, dtype=float))
-        place = one, other
-        inside = within_ranges(problem, place) and classify(problem, place, ("", ""), ()).others
-        if inside is not Verdict.PROVED:
-            raise Unproved("a configuration is not proved to be feasible")
-        if len(proved.components) == 1:
-            return 0
-        for joint in (1, 0):
-            nearest = _nearest_above(problem, place, joint)
-            if nearest is None:
-                continue
-            for k, component in enumerate(proved.components):
-                runs = (r for loop in component.loops for r in loop if r.curve == nearest[0])
-                if any(lies_on(problem, run, nearest[1]) for run in runs):
-                    return k
-    raise Unproved("no piece of boundary is proved to be nearest to a configuration")
-
-
-def _refuse_bodies(problem: ExactProblem) -> None:
-    if problem.bodies:
-        raise Unproved("its boundaries about bodies have no single form")
-
-
-def _nearest_above(problem: ExactProblem, q: Balls, joint: int) -> tuple[int, Balls] | None:
-    """Return the first zero of a form above a configuration, along one joint, with its curve.
-
-    None if there is none, or none is proved to be the first.
-    """
-    line = Side(1 - joint, q[1 - joint], "")
-    found = list[tuple[int, Balls]]()
-    for form in range(len(problem.names)):
-        roots = side_roots(problem, form, line)
-        if roots is None:
-            return None
-        found += [(form, root) for root in roots]
-    ends = enumerate(sides(problem), start=len(problem.names))
-    found += [
-        (k, placed_at(line.joint, line.value, end.value)) for k, end in ends if end.joint == joint
-    ]
-    above = list[tuple[arb, int]]()
-    for k, place in found:
-        value = place[joint]
-        if problem.ranges[joint] is None:
-            value = value + turns(int(np.ceil(float((q[joint] - value) / turns(1)))))
-        if value > q[joint]:
-            above.append((value, k))
-        elif not value < q[joint] or problem.ranges[joint] is None:
-            return None
-    above.sort(key=lambda item: float(item[0]))
-    if not above or not all(above[0][0] < value for value, _ in above[1:]):
-        return None
-    return above[0][1], placed_at(line.joint, line.value, above[0][0])

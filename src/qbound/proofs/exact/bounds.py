@@ -18,14 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from qbound.arrays import Floats, Ints
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.balls import above, arb, ball, balls, precision
+from qbound.proofs.exact.numbers import above, arb, ball, balls, precision
+from qbound.proofs.subdivide import Rows
 
 Ends = Sequence[tuple[arb, arb]]
 
@@ -37,7 +37,7 @@ DEEPEST = 60
 
 
 @dataclass(frozen=True, eq=False)
-class Cells:
+class Cells(Rows):
     """Cells of one size: a range halved `level` times, the joints taking turns.
 
     Attributes
@@ -64,14 +64,6 @@ class Cells:
         high = low.copy()
         high[:, joint] += 1
         return Cells(self.level + 1, np.concatenate([low, high]))
-
-    def __getitem__(self, chosen: Any) -> Cells:
-        """Take some of the cells, by a mask or by numbers."""
-        return Cells(self.level, self.index[chosen])
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self.index)
 
 
 @dataclass(eq=False)

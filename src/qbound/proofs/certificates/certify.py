@@ -6,34 +6,45 @@ book's page "The certificate", and the checkers decide.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from textwrap import wrap
 from typing import Any
 
 from qbound import check
 from qbound.arrays import Floats
+from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import as_written, parse_robot
-from qbound.proofs import safe
-from qbound.proofs.inequality import (
+from qbound.proofs import Verdict
+from qbound.proofs.certificates import search as safe
+from qbound.proofs.certificates.inequality import (
     Arm,
 )
-from qbound.proofs.parts import parts_of
-from qbound.proofs.statements import (
+from qbound.proofs.certificates.loops import CrossesItself
+from qbound.proofs.certificates.statements import (
     Statement,
     decimal,
     home_vertices,
     inner_polygon,
     scaled_polygon,
 )
+from qbound.proofs.certificates.witness import (
+    Evidence,
+    Witness,
+    beyond_limits,
+    cells_of,
+    deepest,
+    witness,
+)
+from qbound.proofs.exact.parts import parts_of
 from qbound.proofs.subdivide import Search, Tell, silent
-from qbound.proofs.triangulation import CrossesItself
-from qbound.proofs.verdict import Verdict
-from qbound.proofs.witness import Evidence, Witness, beyond_limits, cells_of, deepest, witness
+from qbound.units import file_units
 
 MOST_CELLS = 200_000
 """Cells that a search opens for one boundary before it gives up."""
@@ -184,7 +195,7 @@ def certify(
     Examples
     --------
     >>> from qbound.model.robotfile import robot_text
-    >>> from qbound.proofs.statements import box
+    >>> from qbound.proofs.certificates.statements import box
     >>> text, _ = robot_text("minervabot-v2")
     >>> answer = certify(text, box(["-10", "-10"], ["10", "10"]))  # in degrees, as the file
     >>> answer.verdict.value, answer.leaves
@@ -344,3 +355,35 @@ def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Cer
         return "", None
     statement = scaled_polygon(subject.robot, corners, scale)
     return decimal(scale), _certified(subject, statement, MOST_CELLS, silent)
+
+
+# --- in words -------------------------------------------------------------------------------------
+
+WIDEST = 100
+"""Letters of a line that is read on a terminal."""
+
+
+def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
+    """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
+    if answer.witness is not None:
+        yield _depth(robot, answer.witness)
+    elif answer.verdict is Verdict.PROVED:
+        cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
+        yield f"cells: {answer.leaves} ({cells})"
+
+
+def _depth(robot: Robot, found: Witness) -> str:
+    """Write the depth with its unit, a length or that of a joint limit, and the configuration."""
+    joints = list(zip(robot.joints, found.q, file_units(robot), strict=True))
+    units = {name: unit for joint, _, unit in joints for name in limit_names(joint.name)}
+    unit = units.get(found.boundary, robot.length_unit)
+    place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
+    return f"depth {found.depth:.9g} {unit} at {place}"
+
+
+def folded(text: str) -> Iterator[str]:
+    """Break the lines of a checker's answer where they are long, between words or points."""
+    for line in text.splitlines():
+        whole = re.sub(r", (?=[^()]*\))", ",\u00a0", line)  # a point is not broken
+        rows = wrap(whole, WIDEST, subsequent_indent="  ", break_long_words=False)
+        yield from (row.replace("\u00a0", " ") for row in rows)

@@ -1,4 +1,7 @@
-"""Areas in the plane of the tool, as balls: the image of each aspect of a region of two joints.
+"""What chapter 15 proves of the paper's arm: its rule in exact numbers, and areas of its images.
+
+The windows of Table 6 are balls, and half-spaces cut them. Areas in the plane of the tool are
+balls too: of the image of each aspect of a region of two joints.
 
 det J depends on the second joint alone, so it is a boundary like any other: the region of one sign
 is proved with it as one more form, and its image has the area of the integral of abs(det J), which
@@ -12,24 +15,57 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from qbound.region.exact import window_end
 
 from qbound.arrays import Array
 from qbound.boundary.functions import position
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Robot
-from qbound.proofs.balls import (
-    arb,
-    ball,
-    balls,
-    precision,
-)
-from qbound.proofs.exact import BITS, ExactProblem
-from qbound.proofs.proved_region import BITS as AREA_BITS
-from qbound.proofs.proved_region import ProvedComponent, prove_region
-from qbound.proofs.runs import area_under
-from qbound.region import Problem, solve
+from qbound.model.robot import HalfSpace, Robot
+from qbound.proofs.exact.numbers import arb, ball, balls, precision, turns
+from qbound.proofs.exact.problem import BITS, ExactProblem, exact_state
+from qbound.proofs.exact.region import BITS as AREA_BITS
+from qbound.proofs.exact.region import ProvedComponent, prove_region
+from qbound.proofs.exact.runs import area_under
+from qbound.region import Problem, paper_rule, solve
 from qbound.workspace import planar
 from qbound.workspace.areas import SINGULAR
+
+
+def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
+    """State the paper's rule: the box of all windows, cut by the half-spaces in use (Table 6).
+
+    Parameters
+    ----------
+    robot : Robot
+        With floats: it tells which windows there are and which turn each takes.
+    exact : Robot
+        The same robot from `exact_robot`.
+
+    Raises
+    ------
+    ValueError
+        If the paper's rule says nothing about the robot, or it is not proved which window binds.
+    """
+    stated = paper_rule.problem(robot)
+    with precision(BITS):
+        sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]
+    cuts = [b for b in exact.used if isinstance(b, HalfSpace)]
+    return exact_state(exact, cuts, sides, stated.limits)
+
+
+def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
+    """Return the highest lower end and the lowest upper end of a joint's windows and limits."""
+    own = [window for window in paper_rule.windows(robot) if window.joint == joint]
+    upper = [window_end(exact, window) for window in own]
+    lower = [end - turns(1) for end in upper]
+    home = ball(exact.home[joint])
+    on_turn = all(x < home < y for x, y in zip(lower, upper, strict=True))
+    if limits := exact.joints[joint].limits:  # eq. (10)
+        lower, upper = [*lower, ball(limits[0])], [*upper, ball(limits[1])]
+    low, high = max(lower, key=float), min(upper, key=float)
+    if any(x > low for x in lower) or any(x < high for x in upper) or not on_turn:
+        raise ValueError(f"joint {joint + 1}: rounding hides which window binds, or on which turn")
+    return low, high
 
 
 @dataclass(frozen=True, eq=False)

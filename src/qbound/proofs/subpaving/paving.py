@@ -10,20 +10,25 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Bools, Ints
-from qbound.proofs.balls import arb, ball, below, precision
-from qbound.proofs.dyadic import BITS, DEEPEST, BoxBounds, Cells
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.exact_bodies import ExactSeparation
-from qbound.proofs.verdict import Verdict
+from qbound.export.formats import heading
+from qbound.model.robot import Robot
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bodies import ExactSeparation
+from qbound.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells
+from qbound.proofs.exact.numbers import above, arb, ball, below, precision
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.units import counted
 
 Run = tuple[int, Ints]
 
@@ -217,7 +222,7 @@ def pave(
 
     Examples
     --------
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> from qbound.proofs.exact.problem import exact_problem, exact_robot
     >>> paving = pave(exact_problem(exact_robot("minervabot-v2")), 0.1)
     >>> float(paving.undecided_fraction) <= 0.1
     True
@@ -353,3 +358,60 @@ def _some(cells: Cells) -> tuple[Cells, ...]:
 
 def _fraction(cells: Cells) -> Fraction:
     return Fraction(len(cells), 2**cells.level)
+
+
+# --- as others read it ----------------------------------------------------------------------------
+
+SMALLEST = 1e-300
+"""A volume rounded up from zero is below it."""
+
+
+def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
+    """Return the JSON form of a paving, schema qbound/paving/1: cells by level and index.
+
+    A cell of level L has halved joint j (counted from 0) ``(L + n - 1 - j) // n`` times; its index
+    counts cells of that width from the lower end of the range.
+    """
+    inner, outer = paving.bracket
+    return {
+        **heading("qbound/paving/1", robot),
+        "volume": {"inner": below(inner), "outer": above(outer)},
+        "undecided": float(paving.undecided_fraction),
+        "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
+        "cells": {
+            word: [{"level": c.level, "index": c.index.tolist()} for c in groups]
+            for word, groups in _groups(paving).items()
+        },
+    }
+
+
+def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
+    """Say in sentences what a paving encloses."""
+    inner, outer = (float(below(paving.bracket[0])), float(above(paving.bracket[1])))
+    undecided = float(paving.undecided_fraction)
+    yield from bracket_lines(volume_unit(robot, paving.problem.kinds), inner, outer, undecided)
+    counts = {word: sum(map(len, cells)) for word, cells in _groups(paving).items()}
+    yield ", ".join(f"{counted(count, 'cell')} {word}" for word, count in counts.items())
+
+
+def bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
+    """Say between which volumes a region lies."""
+    if not undecided and outer < SMALLEST:
+        yield f"volume 0 {unit}: nothing is feasible, proved"
+    else:
+        yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
+    yield f"{100 * undecided:.3g} % of the range is undecided"
+
+
+def volume_unit(robot: Robot, kinds: Iterable[str]) -> str:
+    """Write the product of the joints' units, such as rad^2 cm."""
+    units = Counter("rad" if kind == "revolute" else robot.length_unit for kind in kinds)
+    return " ".join(unit if n == 1 else f"{unit}^{n}" for unit, n in units.items())
+
+
+def _groups(paving: Paving) -> dict[str, tuple[Any, ...]]:
+    return {
+        "feasible": paving.feasible,
+        "infeasible": paving.infeasible,
+        "undecided": (paving.undecided,),
+    }

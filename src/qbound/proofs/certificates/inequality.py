@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.subdivide import Cells
+from qbound.proofs.subdivide import Cells, Rows
 
 SPARE = 1e-12
 """Part of an arm's length by which an inequality has to hold here: rounding takes less."""
@@ -269,7 +269,7 @@ def _bend(
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class Seen(Rows):
     """Both hulls from the near frame at the middle of each leaf, T rows.
 
     Attributes
@@ -296,13 +296,6 @@ class Seen:
     distances: Floats
     normals: Floats | None
     along: int | None
-
-    def __getitem__(self, chosen: Any) -> Seen:
-        """Take some of the rows."""
-        normals = None if self.normals is None else self.normals[chosen]
-        hulls = self.places[chosen], self.r[chosen], self.slopes[chosen]
-        sizes = self.bend[chosen], self.spread[chosen], self.distances[chosen]
-        return Seen(*hulls, *sizes, normals, self.along)
 
     def margins(self, u: Floats) -> Floats:
         """Return by how much the hulls are farther apart than asked at the middle, along u."""

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.inequality import (
+from qbound.proofs.certificates.inequality import (
     Arm,
     Kind,
     Seen,
 )
-from qbound.proofs.subdivide import Cells, Judged, Search, Tell, silent, subdivide
+from qbound.proofs.subdivide import Cells, Judged, Search, Tell, best_cuts, silent, subdivide
 
 FIRST_LOOK = 1000
 """Cells opened for one thing once another is violated: enough to see what else is."""
@@ -154,25 +154,15 @@ class _Judge:
         return np.where(certain, margins, 0), places
 
     def _cuts(self, kind: Kind, rows: Ints, cells: Cells, seen: Seen) -> NDArray[Any]:
-        """Choose the cut that closes most halves, and then leaves the least to be gained.
-
-        Both halves of all cuts are bounded, but for those of edges along which little moves. Where
-        nothing moves no cut helps.
-        """
+        """Choose a cut of each cell; not of edges along which little moves, or nothing."""
         moved = np.einsum("ten,tncx->tecx", cells.edges, seen.slopes)
         moved = np.linalg.norm(moved, axis=3).max(axis=2)
         wide = (moved > 0) & (moved >= NARROW * moved.max(axis=1, keepdims=True))
-        scores = np.full(wide.shape, -np.inf)
-        for cut in range(cells.cuts):
-            tried = np.flatnonzero(wide[:, cut])
-            if len(tried):
-                halves = cells[tried].halves(np.full(len(tried), cut))
-                half = self.arm.seen(kind, np.repeat(rows[tried], 2), halves)
-                value = half.refined(halves)[1].reshape(-1, 2)
-                closes = (value > self.arm.spare).sum(axis=1)
-                lacks = np.minimum(value, 0).sum(axis=1) / self.arm.size
-                scores[tried, cut] = 1e6 * closes + lacks
-        return np.where(wide.any(axis=1), scores.argmax(axis=1), -1)
+
+        def worth(tried: Ints, halves: Cells) -> Floats:
+            return self.arm.seen(kind, np.repeat(rows[tried], 2), halves).refined(halves)[1]
+
+        return best_cuts(cells, wide, worth, self.arm.spare, self.arm.size)
 
 
 def batch(kind: Kind, joints: int) -> int:

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats
-from qbound.proofs.contact import Contacts, contacts
-from qbound.proofs.inequality import (
+from qbound.proofs.certificates.contact import Contacts, contacts
+from qbound.proofs.certificates.inequality import (
     Arm,
 )
-from qbound.proofs.safe import margins
-from qbound.proofs.statements import Statement, corners_of, decimal
+from qbound.proofs.certificates.search import margins
+from qbound.proofs.certificates.statements import Statement, corners_of, decimal
 from qbound.proofs.subdivide import Boxes, Simplices
 
 Evidence = dict[str, Any]

@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Floats, Ints
 from qbound.extras import require
 from qbound.forms.angles import nearest_turn
-from qbound.proofs.dyadic import DEEPEST, Cells
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.paving import Paving, start
-from qbound.proofs.verdict import Verdict
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import DEEPEST, Cells
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.subpaving.paving import Paving, start
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 
@@ -108,7 +108,7 @@ def connection(
 
     Examples
     --------
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> from qbound.proofs.exact.problem import exact_problem, exact_robot
     >>> problem = exact_problem(exact_robot("minervabot-v2"))
     >>> connection(problem, [0.0, 0.0], [0.2, -0.5]).answer
     'connected'

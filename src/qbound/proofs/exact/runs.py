@@ -17,9 +17,9 @@ import numpy as np
 from qbound.arrays import Array
 from qbound.forms.angles import whole_turns
 from qbound.forms.factors import FACTORS
-from qbound.proofs.balls import arb, ball, balls, turns
-from qbound.proofs.crossings import Balls, line_roots, placed_at, sides
-from qbound.proofs.exact import ExactProblem
+from qbound.proofs.exact.crossings import Balls, line_roots, placed_at, sides
+from qbound.proofs.exact.numbers import arb, ball, balls, turns
+from qbound.proofs.exact.problem import ExactProblem
 
 NARROWEST = 40
 """Halvings of a run after which it is not proved that its curve goes on."""

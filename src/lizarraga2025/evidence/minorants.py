@@ -8,7 +8,8 @@ range of each wave, and by the slope.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,12 +19,13 @@ from qbound.arrays import Floats
 from qbound.boundary.functions import clearance
 from qbound.forms.bending import second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry import simplices
 from qbound.model.robot import Robot
-from qbound.proofs.statements import Statement, corners_of, units, wider
+from qbound.proofs.certificates.statements import Statement, corners_of, units, wider
 from qbound.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
 from qbound.tolerances import NEGLIGIBLE
 
-__all__ = ["Bound", "lipschitz", "natural", "search_all", "second_order"]
+__all__ = ["Bound", "leaves", "lipschitz", "natural", "search_all", "second_order"]
 
 
 Bound = Callable[[HarmonicForm, Floats], Floats]
@@ -87,3 +89,25 @@ def _judge(form: HarmonicForm, bound: Bound) -> Callable[[Cells, NDArray[Any]], 
         return Judged(leaves, worst_edges(form, cells.corners), margins, cells.centres)
 
     return judge
+
+
+def leaves(corners: Floats, trees: Sequence[str]) -> Floats:
+    """Return the simplices on which a proof rests, shape (M, k, n).
+
+    Parameters
+    ----------
+    corners : ndarray, shape (N, k, n)
+        Of the cells, in any unit.
+    trees : sequence of str
+        One for each cell.
+    """
+    found = []
+    for cell, tree in zip(corners, trees, strict=True):
+        todo = [cell]
+        for token in re.findall("[a-z]|[0-9]*[.]", tree):
+            top = todo.pop()
+            if token.endswith("."):
+                found.append(top)
+            else:
+                todo += [*simplices.halved(top[None], np.array([ord(token) - ord("a")]))[::-1]]
+    return np.array(found)

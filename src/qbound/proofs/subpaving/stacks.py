@@ -14,20 +14,23 @@ taken off; cosines and sines by `trigonometry`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from qbound.arrays import Bools, Floats
-from qbound.proofs.balls import above, below, precision
-from qbound.proofs.dyadic import BITS, BoxBounds
-from qbound.proofs.exact import ExactProblem
-from qbound.proofs.paving import Clock, part_done
-from qbound.proofs.sectors import Sectors, covered, hidden, pieces, sectors_of
-from qbound.proofs.trigonometry import ERROR, FARTHEST, cosine_sine
-from qbound.proofs.verdict import Verdict
+from qbound.export.formats import heading
+from qbound.model.robot import Robot
+from qbound.proofs import Verdict
+from qbound.proofs.exact.bounds import BITS, BoxBounds
+from qbound.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
+from qbound.proofs.exact.problem import ExactProblem
+from qbound.proofs.subdivide import Rows
+from qbound.proofs.subpaving.paving import Clock, bracket_lines, part_done, volume_unit
+from qbound.proofs.subpaving.sectors import Sectors, covered, hidden, pieces, sectors_of
+from qbound.units import counted
 
 MOST_COLUMNS = 2_000_000
 """Cells at which a paving stops on its own."""
@@ -46,7 +49,7 @@ FUZZ = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class Columns(Rows):
     """Cells of all joints but the lift, and how much of the lift's range is proved over each.
 
     Attributes
@@ -66,20 +69,6 @@ class Columns:
     undecided: Floats
     feasible: Floats
     slopes: Floats
-
-    def __len__(self) -> int:
-        """Return how many cells there are."""
-        return len(self.low)
-
-    def __getitem__(self, chosen: Any) -> Columns:
-        """Take some of the cells, by a mask or by numbers."""
-        return Columns(*(getattr(self, name)[chosen] for name in self.__dataclass_fields__))
-
-    def joined(self, other: Columns) -> Columns:
-        """Return these cells and others."""
-        names = self.__dataclass_fields__
-        both = (np.concatenate([getattr(x, name) for x in (self, other)]) for name in names)
-        return Columns(*both)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +165,7 @@ def pave_columns(
 
     Examples
     --------
-    >>> from qbound.proofs.exact import exact_problem, exact_robot
+    >>> from qbound.proofs.exact.problem import exact_problem, exact_robot
     >>> paving = pave_columns(exact_problem(exact_robot("minervabot-v2")), 1e-3)
     >>> inner, outer = paving.bracket
     >>> paving.undecided_fraction <= 1e-3, inner < 25.8433 < outer
@@ -248,7 +237,7 @@ def _refined(paving: ColumnPaving) -> ColumnPaving:
     low, high = np.concatenate([old.low, second]), np.concatenate([first, old.high])
     kept = np.ones(len(columns), dtype=bool)
     kept[chosen[room]] = False
-    return replace(paving, columns=columns[kept].joined(_looked_at(paving, low, high)))
+    return replace(paving, columns=Columns.joined([columns[kept], _looked_at(paving, low, high)]))
 
 
 def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
@@ -256,9 +245,7 @@ def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
     step = max(1, BLOCK // max(1, len(paving.problem.names)))
     parts = [slice(k, k + step) for k in range(0, len(low), step)]
     empty = Columns(low[:0], high[:0], low[:0, 0], low[:0, 0], low[:0])
-    for part in parts:
-        empty = empty.joined(_measured(paving, low[part], high[part]))
-    return empty
+    return Columns.joined([empty, *(_measured(paving, low[part], high[part]) for part in parts)])
 
 
 def _measured(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
@@ -350,3 +337,45 @@ def _sizes(bounds: BoxBounds) -> Floats:
     """Bound the forms and their slopes over the whole range."""
     reach = [max(abs(above(low)), abs(above(high))) for low, high in bounds.ends]
     return np.asarray(bounds.table.size([math.nextafter(r, math.inf) for r in reach]))
+
+
+# --- as others read it ----------------------------------------------------------------------------
+
+COLUMN = ("low", "high", "feasible", "undecided")
+"""What a document tells of each column."""
+
+
+def columns_document(robot: Robot, paving: ColumnPaving, free: Sequence[int]) -> dict[str, Any]:
+    """Return the JSON form of a paving of columns, schema qbound/columns/1; rad, or length.
+
+    A column is a closed cell of all joints but one, the lift, with the volumes over it: what is
+    proved feasible, at least, and what is undecided, at most.
+
+    Parameters
+    ----------
+    free : sequence of int
+        Which of the robot's joints move.
+    """
+    inner, outer = paving.bracket
+    names, lift = [robot.joints[j].name for j in free], paving.lift
+    return {
+        **heading("qbound/columns/1", robot),
+        "volume": {"inner": inner, "outer": outer},
+        "undecided": paving.undecided_fraction,
+        "joints": names,
+        "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
+        "lift": names[lift],
+        "columns": [
+            {"from": low, "to": high, "feasible": feasible, "undecided": undecided}
+            for low, high, feasible, undecided in zip(
+                *(getattr(paving.columns, name).tolist() for name in COLUMN), strict=True
+            )
+        ],
+    }
+
+
+def columns_lines(robot: Robot, paving: ColumnPaving) -> Iterator[str]:
+    """Say in sentences what a paving of columns encloses."""
+    unit = volume_unit(robot, paving.problem.kinds)
+    yield from bracket_lines(unit, *paving.bracket, paving.undecided_fraction)
+    yield counted(len(paving.columns), "column")

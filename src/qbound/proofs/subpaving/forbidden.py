@@ -27,9 +27,9 @@ from qbound.boundary.parts import bounds_bodies
 from qbound.forms.circle import circle_arc
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
-from qbound.proofs.balls import above, arb, ball, below, pi, precision
-from qbound.proofs.dyadic import magnitude
-from qbound.proofs.exact import exact_robot
+from qbound.proofs.exact.bounds import magnitude
+from qbound.proofs.exact.numbers import above, arb, ball, below, pi, precision
+from qbound.proofs.exact.problem import exact_robot
 
 Alone = tuple[arb, arb, arb]
 """Coefficients of one joint's (1, cos q, sin q) or (1, q, q²)."""

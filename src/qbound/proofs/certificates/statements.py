@@ -6,12 +6,15 @@ the robot file's own unit of angle or length, the inside of a polygon on the lef
 
 from __future__ import annotations
 
+import csv
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,11 +24,11 @@ from qbound.arrays import Floats
 from qbound.forms.bending import second_order
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
-from qbound.proofs import unrolled
-from qbound.proofs.triangulation import triangulate
+from qbound.proofs.certificates.loops import Loop, cut_open, triangulate, turn_of
 from qbound.region import Component, find_region, margins
 from qbound.region.outline import Arc, behind
 from qbound.region.problem import Problem, clearance_problem
+from qbound.units import file_units, parse_joint_value
 
 Statement = dict[str, Any]
 Point = list[str]
@@ -253,15 +256,15 @@ def _cut_open(
     """Cut a component that goes round a joint half a turn away from home: polygons, rad."""
     free = robot.free(held or {})
     scale, joints = units(robot)[free], [robot.joints[j] for j in free]
-    turn = unrolled.turn_of(robot.angle_unit == "deg")
+    turn = turn_of(robot.angle_unit == "deg")
     turns = [turn if joint.turns and joint.limits is None else None for joint in joints]
     rows = [
-        unrolled.Loop(points / scale, _winding(arcs))
+        Loop(points / scale, _winding(arcs))
         for points, arcs in zip(loops, component.loops, strict=True)
     ]
     cut = np.round(robot.home[free] / scale, 6) - turn / 2
     area = component.area / float(scale.prod())
-    polygons = unrolled.cut_open(rows, turns, np.round(cut, DIGITS), area)
+    polygons = cut_open(rows, turns, np.round(cut, DIGITS), area)
     return [[ring * scale for ring in polygon] for polygon in polygons]
 
 
@@ -391,3 +394,64 @@ def _limit(end: float, side: int) -> str:
 def _distinct(points: Sequence[Point]) -> list[Point]:
     """Leave out a point that rounding made equal to the one before it."""
     return [p for p, before in zip(points, behind(points), strict=True) if p != before]
+
+
+# --- decimals as people write them ----------------------------------------------------------------
+
+DECIMAL = re.compile(r"-?[0-9]+([.][0-9]+)?([eE][+-]?[0-9]{1,3})?")
+"""How a certificate writes a number."""
+
+MOST_DIGITS = 40
+"""Digits of such a number."""
+
+
+def read_points(robot: Robot, file: str) -> list[Point]:
+    """Read a line of joint values a point, in the robot file's units; a first line may name joints.
+
+    Raises
+    ------
+    ValueError
+        If the file is not UTF-8, or a line has not one decimal number for each joint.
+    """
+    try:
+        with Path(file).open(newline="", encoding="utf-8-sig") as lines:
+            rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
+    except UnicodeDecodeError:
+        raise ValueError(f"{file}: not UTF-8 text") from None
+    except csv.Error as error:  # a cell of more than 128 kB, say
+        raise ValueError(f"{file}: no table of joint values: {error}") from None
+    names = [joint.name for joint in robot.joints]
+    if rows and [cell.strip() for cell in rows[0][1]] == names:
+        del rows[0]
+    for i, row in rows:
+        if len(row) != len(names):
+            raise ValueError(f"{file}, line {i}: {len(row)} values for {', '.join(names)}")
+    return [[as_decimal(f"{file}, line {i}", cell) for cell in row] for i, row in rows]
+
+
+def as_decimal(where: str, text: str) -> str:
+    """Return a decimal as it is written; `where` begins the sentence of the error."""
+    plain = text.strip().removeprefix("+")
+    if not DECIMAL.fullmatch(plain) or sum(map(str.isdigit, plain)) > MOST_DIGITS:
+        shown = plain if len(plain) <= MOST_DIGITS else f"{plain[:MOST_DIGITS]}..."
+        raise ValueError(f"{where}: {shown!r} is no decimal number of at most {MOST_DIGITS} digits")
+    return plain
+
+
+def joint_decimal(robot: Robot, j: int, text: str) -> str:
+    """Return a joint value, such as ``20deg``, as a decimal of the robot file's unit.
+
+    As it is written if it is in that unit, else converted and rounded.
+    """
+    value = parse_joint_value(robot, j, text)
+    plain = text.strip().removeprefix("+").removesuffix(file_units(robot)[j])
+    return plain if DECIMAL.fullmatch(plain) else decimal(value / units(robot)[j])
+
+
+def limits_as_decimals(robot: Robot, j: int) -> tuple[str, str] | None:
+    """Return the limits of a joint as decimals of the robot file's unit; None without limits."""
+    limits = robot.joints[j].limits
+    if limits is None:
+        return None
+    low, high = (decimal(end / units(robot)[j]) for end in limits)
+    return low, high
