@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib import resources
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from qbound import RobotFileError, load_robot, save_robot
+from qbound import RobotFileError, check, load_robot, save_robot
 from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
@@ -127,6 +128,45 @@ def test_pairs_are_those_of_links_that_are_no_neighbours(tmp_path) -> None:
     left = {frozenset(name.rpartition("/")[0] for name in b.points) for b in fewer.boundaries}
     assert left == set(map(frozenset, [*far, ("lamp", "c")])) - {frozenset("ad")}
     assert fewer.home.tolist() == [0, 0.5, 0]
+
+
+def test_pairs_that_are_left_out_are_named_where_they_are_read(tmp_path, capsys) -> None:
+    """Neighbours were left out without a word, and links that an SRDF misspells were, too."""
+    parts = [link(n, BALL) for n in ("a", "b", "c", "d", "lamp")] + [link("bare")]
+    parts += [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("j3", "c", "d")]
+    parts += [joint("f", "a", "lamp", "fixed"), joint("g", "d", "bare", "fixed")]
+    file = written(tmp_path, *parts)
+    pairs = "<disable_collisions link1='d' link2='a'/><disable_collisions link1='a' link2='b'/>"
+    more = "<disable_default_collisions link='lamp'/><disable_collisions link1='a' link2='aa'/>"
+    srdf = written(tmp_path, pairs, more, name="arm.srdf")
+    words = ["import", str(file), "--to", "d", "--srdf", str(srdf)]
+    assert main([*words, "-o", str(tmp_path / "arm.toml")]) == 0
+    printed, made = capsys.readouterr().out, (tmp_path / "arm.toml").read_text()
+    for says in (
+        "because one joint connects them: a and b; lamp and b; b and c; c and d.",
+        "because the SRDF disables them: a and d; lamp and c; lamp and d.",
+        "The SRDF names links that the URDF does not have: aa.",
+    ):
+        assert says in printed
+        assert says in made.replace("\n#  ", "")
+    only_states = "<group_state name='home' group='g'><joint name='q9' value='0.5'/></group_state>"
+    with pytest.raises(RobotFileError, match=r"of another robot: its joints are q9; the URDF has"):
+        load_robot(file, srdf=written(tmp_path, only_states, name="other.srdf"))
+
+
+@pytest.mark.parametrize(("size", "excess"), [("0.4", 0.02), ("0.7", 0.012)])
+def test_too_many_pairs_name_an_excess_that_makes_few_enough(tmp_path, size, excess) -> None:
+    """Boxes made 16,000 pairs by default, and every proof refused them later."""
+    box = f"<collision><geometry><box size='{size} 0.1 0.3'/></geometry></collision>"
+    file = three_links(tmp_path, balls=box)
+    try:
+        said = import_urdf(file, excess=excess).notes[-1]
+    except RobotFileError as error:
+        assert "at most 20,000 are possible" in (said := str(error))
+    [(larger, pairs)] = re.findall(r"an excess of (\S+) m makes ([\d,]+)", said)
+    fewer = import_urdf(file, excess=float(larger))
+    assert len(fewer.robot.boundaries) == int(pairs.replace(",", "")) <= check.MAX_BOUNDARIES
+    assert not any("an excess of" in note for note in fewer.notes)
 
 
 def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
@@ -355,7 +395,8 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
         (["--to", "tool1"], "ur5.urdf: no link 'tool1'"),
         (["--limits", "knee=0..1"], "ur5.urdf: limits of 'knee'"),
         (["--srdf", "panda.urdf"], "panda.urdf: no group, no state"),
-        (["--srdf", "panda.srdf", "--home", "folded"], "no state 'folded'"),
+        (["--srdf", "panda.srdf"], "panda.srdf is of another robot: its links are panda_link5, "),
+        (["--srdf", "ur5.srdf", "--home", "folded"], "no state 'folded'"),
     ):
         assert main(["import", "ur5.urdf", *more, "-o", "-"]) == 2
         said = capsys.readouterr().err
