@@ -1,6 +1,7 @@
 # ruff: noqa: E501  (rows of robot files, one a line)
 """The prover: no false proof, and every refutation confirmed by both checkers."""
 
+import json
 import os
 import re
 import subprocess
@@ -611,6 +612,45 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     assert "0.00000" not in said
 
 
+def test_a_scale_that_is_not_decided_says_of_what_and_where(capsys, monkeypatch):
+    """It ended with status 3, or as if all were decided, and did not say what was not."""
+    words = ["certify", "minervabot-v2", "--largest-scale"]
+    monkeypatch.setattr(prover, "FEW_CELLS", 200)
+    assert cli.main(words) == 0
+    said = capsys.readouterr().out
+    halved = (
+        r"halving stopped at scale 0\.9\d+, undecided: B7: \d+ cells, \S+ % of the set, as at q1"
+    )
+    assert re.search(halved, said)
+    assert re.search(r"scale 0\.9\d+: refuted", said)
+    monkeypatch.setattr(prover, "FEW_CELLS", 0)
+    assert cli.main(words) == 3
+    said = capsys.readouterr().out
+    assert re.search(
+        r"stopped at scale 1, undecided: B1: 4 cells, 100 % of the set, as at q1", said
+    )
+    assert cli.main(["certify", "minervabot-v2", "--scale", "0.96", "-o", "-"]) == 0
+
+
+def test_a_witness_too_shallow_for_the_checker_is_sought_at_a_larger_scale(monkeypatch):
+    """The witness at the largest scale was 1e-10 cm deep, and the answer was "undecided"."""
+    text, _ = paper_robot()
+    confirmed = prover.Subject.confirmed
+
+    def shallow(subject, claim, verdict, **evidence):
+        refused.append(verdict)
+        if refused.count("refuted") in (1, 2, 3):
+            return prover.Certificate(prover.Verdict.UNDECIDED, "", "not violated there")
+        return confirmed(subject, claim, verdict, **evidence)
+
+    refused = []
+    monkeypatch.setattr(prover.Subject, "confirmed", shallow)
+    found = bracket_scale(text, width=1e-6)
+    assert found.unsafe[1].verdict == "refuted"
+    wider = float(found.unsafe[0]) - float(found.safe[0])
+    assert 4e-6 < wider <= 5e-6  # four widths more, after one and two
+
+
 def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsys, monkeypatch):
     """It said "the proof asks for too much work", and no more."""
     monkeypatch.setattr(check.Work, "MOST", 100_000)
@@ -678,6 +718,30 @@ def test_ctrl_c_ends_in_one_line_and_writes_nothing(name, tmp_path, capsys, monk
     assert cli.main([*words, option, str(tmp_path / "file.json")]) == 130
     assert capsys.readouterr().err == "qbound: stopped\n"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_many_balls_are_summed_up_by_links_and_the_verdict_comes_last(tmp_path, capsys):
+    """An arm's certificate took 395 lines, with the verdict in the third."""
+    box = "0:1", "-90:-89", "90:91", "-90:-89", "-90:-89", "0:1"
+    names = [joint.name for joint in load_robot("ur5").joints]
+    ranges = [f"{name}={ends}" for name, ends in zip(names, box, strict=True)]
+    file = str(tmp_path / "cert.json")
+    assert cli.main(["certify", "ur5", "--box", *ranges, "-o", file]) == 0
+    certified = capsys.readouterr().out
+    assert cli.main(["check", file, "ur5"]) == 0
+    checked = capsys.readouterr().out
+    for said in (certified, checked):
+        assert len(said.splitlines()) < 25
+        rows = re.findall(r"^  '\w+' and '\w+': (\d+) pairs of balls, not overlapping$", said, re.M)
+        assert sum(map(int, rows)) == len(load_robot("ur5").boundaries)
+    assert checked.splitlines()[0] == checked.splitlines()[-1] == "proved"
+    assert cli.main(["check", file, "--all"]) == 0
+    assert capsys.readouterr().out.count("not overlapping") == sum(map(int, rows))
+    data = json.loads(Path(file).read_text())
+    data["proof"]["trees"][0] = []
+    Path(file).write_text(json.dumps(data))
+    assert cli.main(["check", file]) == 2
+    assert capsys.readouterr().out.startswith("not proved: ")
 
 
 def test_a_long_answer_is_folded_between_points(tmp_path, capsys):

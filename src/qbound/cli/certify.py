@@ -31,7 +31,7 @@ from qbound.proofs.certify import (
     no_certificate,
 )
 from qbound.proofs.points import as_decimal, read_points
-from qbound.proofs.reports import certificate_lines, folded
+from qbound.proofs.reports import certificate_lines, folded, summed_up
 from qbound.region import find_region
 from qbound.units import counted, joint_text, limited_joints, margin_text
 
@@ -107,7 +107,8 @@ def run(options: argparse.Namespace) -> int:
     answer = _answer(text, robot, options, margin)
     written = _write(options, answer)
     if options.output != "-" or not answer.text:
-        say(*folded(answer.said), *certificate_lines(robot, answer), *written)
+        said = summed_up(answer.said, check.read(answer.text)[1]) if answer.text else answer.said
+        say(*folded(said), *certificate_lines(robot, answer), *written)
         if answer.verdict != "proved":
             say(*_instead(robot, options, answer))
     return STATUS[answer.verdict]
@@ -229,17 +230,34 @@ def _inset(robot: Robot, options: argparse.Namespace) -> float:
 def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
-    unsafe, refutation = found.unsafe
+    refutation = found.unsafe[1]
     if proof is not None and proof.verdict == "proved":
         written = _write(options, proof)
         if options.output != "-":
             say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
-    if proof is None and options.output != "-":
-        say(f"no scale is proved{_of_centre(robot)}; try --region, or a --box")
-    elif refutation is not None and refutation.verdict == "refuted" and options.output != "-":
-        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
-    both = [answer and answer.verdict for answer in (proof, refutation)]
-    return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3
+    if options.output != "-":
+        say(*_other_scales(robot, found))
+    proved = proof is not None and proof.verdict == "proved"
+    if refutation is None:  # every scale is safe, or it is not known where one is not
+        return 0 if proved and not found.undecided[0] else 3
+    return 0 if proved and refutation.verdict == "refuted" else 3
+
+
+def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
+    """Say of each scale what is not proved about it: nothing that passes, or what is undecided."""
+    (safe, proof), (unsafe, refutation), (scale, left) = found.safe, found.unsafe, found.undecided
+    centre = "" if proof is not None else _of_centre(robot)
+    if proof is None:
+        yield f"no scale is proved{centre}; try --region, or a --box"
+    elif proof.verdict != "proved":
+        yield from folded(f"scale {safe}: undecided: {proof.said}")
+    if scale:
+        yield from folded(f"halving stopped at scale {scale}, undecided: {left}")
+    if refutation is not None and refutation.verdict != "refuted":
+        yield from folded(f"scale {unsafe}: undecided: {refutation.said}")
+    elif refutation is not None and not centre:
+        yield f"scale {unsafe}: refuted"
+        yield from certificate_lines(robot, refutation)
 
 
 def _of_centre(robot: Robot) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from qbound import check
 from qbound.cli.terminal import say
 from qbound.model.robotfile import robot_text
-from qbound.proofs.reports import folded
+from qbound.proofs.reports import folded, summed_up
 
 
 def add_to(commands: Any) -> None:
@@ -23,6 +23,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument("certificate")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")
     parser.add_argument("--arb", action="store_true", help="check with python-flint as well")
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="list every boundary that is kept; by default many of balls are a row for two links",
+    )
     parser.set_defaults(run=run)
 
 
@@ -44,7 +49,12 @@ def run(options: argparse.Namespace) -> int:
         differ = f"the two checkers differ; check.py: {first}; python-flint: {second}"
         say(*folded(f"not proved: {differ}"))
         return check.NO_ANSWER
-    say(*folded(answer.said), *([] if second is None else [f"python-flint: {second}"]))
+    said = answer.said
+    if not options.all:
+        content, robot = check.read(data)
+        said = summed_up(said, robot if pin is None else check.read_robot(pin, content["parts"]))
+    both = "" if second is None else f"; python-flint: {second}"
+    say(first, *folded(said), f"{first}{both}")
     return check.REFUTED if answer.refuted else check.PROVED
 
 

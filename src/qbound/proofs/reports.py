@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from textwrap import wrap
 from typing import Any
 
+from qbound import check
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import heading
 from qbound.model.robot import Robot
@@ -27,6 +28,9 @@ SMALLEST = 1e-300
 
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
+
+MANY = 12
+"""Boundaries above which those of balls are summed up by their links."""
 
 
 def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
@@ -123,13 +127,47 @@ def folded(text: str) -> Iterator[str]:
         yield from (row.replace("\u00a0", " ") for row in rows)
 
 
+def summed_up(said: str, robot: check.Robot) -> str:
+    """Put what a checker says of many balls together, which are called LINK/1, LINK/2: by links.
+
+    Parameters
+    ----------
+    said : str
+        The checker's answer.
+    robot : check.Robot
+        As the checker read it.
+    """
+    count = len(robot.boundaries)
+    if count <= MANY:
+        return said
+    lines = said.split("\n")
+    first = next(k for k, line in enumerate(lines, 1) if line.startswith("all limits of joints"))
+    rows: dict[tuple[str, ...], list[str]] = {}
+    for boundary, line in zip(robot.boundaries, lines[first : first + count], strict=True):
+        balls = [each.name for each in boundary.things if each.kind == "point" and each.radius]
+        links = [name.rpartition("/")[0] for name in balls]
+        named = all(links) and len(links) == len(boundary.things)
+        what = "balls" if len(links) == 1 else "pairs of balls"
+        key = (" and ".join(map(ascii, links)), what, line.rpartition(": ")[2])
+        rows.setdefault(key if named else (line,), []).append(line)
+    kept = [
+        found[0] if len(found) == 1 else f"  {key[0]}: {len(found)} {key[1]}, {key[2]}"
+        for key, found in rows.items()
+    ]
+    return "\n".join([*lines[:first], *kept, *lines[first + count :]])
+
+
 def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
     """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
     if answer.witness is not None:
         yield _depth(robot, answer.witness)
     elif answer.verdict is Verdict.PROVED:
-        cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
-        yield f"cells: {answer.leaves} ({cells})"
+        counts = {name: found.leaves for name, found in answer.searches.items()}
+        named = ", ".join(f"{name} {count}" for name, count in counts.items())
+        if len(counts) > MANY:
+            most = max(counts, key=counts.__getitem__)
+            named = f"of {len(counts)} boundaries; most, {counts[most]}, of {most}"
+        yield f"cells: {answer.leaves} ({named})"
 
 
 def _depth(robot: Robot, found: Witness) -> str:

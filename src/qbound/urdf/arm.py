@@ -158,12 +158,12 @@ def import_urdf(
         raise RobotFileError(f"{called(urdf.file)}: {error}") from None
     solids = [shape.solid for each in shapes.values() for shape in each]
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
-    sources = [urdf.source, links.source, *(mesh.source for mesh in meshes)]
+    read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
     notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
     if fewer:
         most = f"certificates take at most {check.MAX_BOUNDARIES:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
-    return Imported(robot, found, reached, tuple(filter(None, dict.fromkeys(sources))), tuple(notes))
+    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
 
 
 def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
