@@ -456,6 +456,8 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert "cm" in capsys.readouterr().out
     assert cli.main(["check", file]) == 3
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30", "q2=-80deg:-40deg"]) == 0
+    box = ["--box", "q1=-20..30", "q2=-80deg..-40"]  # as in --strip and --limits
+    assert cli.main(["certify", "minervabot-v2", *box]) == 0
     assert cli.main(["certify", "minervabot-v2", "--margin", "-1"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--scale", "nan"]) == 2
@@ -516,6 +518,24 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
     assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
     error = capsys.readouterr().err
     assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
+
+
+@pytest.mark.parametrize(
+    ("option", "same"),
+    [("--margin", ["0.1", "1mm", "0.1 cm", "1e-3m"]), ("--inset", ["1.3", "13mm", "0.013m"])],
+)
+def test_lengths_take_any_unit_and_stay_exact(tmp_path, option, same):
+    """Both took plain numbers only."""
+    written = set()
+    for length in same:
+        words = ["certify", "minervabot-v2", "--region", "--inset", "1", option, length]
+        assert cli.main([*words, "-o", str(tmp_path / "cert.json")]) == 0
+        claim = json.loads((tmp_path / "cert.json").read_text())["claim"]
+        claim["margin"] = Fraction(claim["margin"])
+        written.add(str(claim))
+    assert len(written) == 1
+    for wrong in ("1kg", "5deg", "1e99m", "cm", "m m"):
+        assert cli.main(["certify", "minervabot-v2", "--region", option, wrong]) == 2
 
 
 # --- the checker beside the certificate -----------------------------------------------------------

@@ -154,7 +154,7 @@ def test_a_report_on_a_workspace_says_what_was_asked():
     assert not found.all_safe
     content, lines = workspace_document(found), list(workspace_lines(found))
     follows_schema(content, "workspace")
-    assert "at (-45, 20) cm: safe postures 1" in lines
+    assert "at (-45, 20) cm: 1 posture in home's component" in lines
     assert "go: no, from component 0 to component 1" in lines
     assert len(content["at"][0]["postures"]) == 2
     names = {arc["boundary"] for loop in content["go"]["separated_by"] for arc in loop["arcs"]}

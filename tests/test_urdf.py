@@ -289,7 +289,13 @@ def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
             load_robot(file, **asked)
     with pytest.raises(ValueError, match="srdf: for a URDF only"):
         load_robot("ur5", srdf="ur5.srdf")
-    assert main(["import", str(file), "--limits", "k=0..nan", "-o", "-"]) == 2
+    for wrong in ("k=0..nan", "k=0", "k=0..1..2", "=0..1", "k=0..1kg"):
+        assert main(["import", str(file), "--limits", wrong, "-o", "-"]) == 2
+    for ends in ("-90deg..90°", "-90deg:90deg"):
+        assert main(["import", str(file), "--limits", f"k={ends}", "-o", f"{tmp_path}/a.toml"]) == 0
+        assert load_robot(tmp_path / "a.toml").joints[1].limits == pytest.approx(
+            (-np.pi / 2, np.pi / 2)
+        )
     assert main(["region", str(file), "--json", "-"]) in (0, 1)
 
 

@@ -30,10 +30,10 @@ from qbound.proofs.certify import (
     certify_region,
     no_certificate,
 )
-from qbound.proofs.points import as_decimal, read_points
+from qbound.proofs.points import as_decimal, length_decimal, read_points
 from qbound.proofs.reports import certificate_lines, folded, summed_up
 from qbound.region import find_region
-from qbound.units import counted, joint_text, limited_joints, margin_text
+from qbound.units import counted, joint_text, limited_joints, margin_text, parse_length
 
 STEPS = 1000
 """Of the progress that is shown."""
@@ -58,17 +58,23 @@ def add_to(commands: Any) -> None:
         "--scale", metavar="S", help="the polygon of home's vertices, scaled (default 1)"
     )
     sets.add_argument("--region", action="store_true", help="home's region but for --inset")
-    sets.add_argument("--box", nargs="+", metavar="q1=-20deg:30deg", help="all joints in ranges")
+    sets.add_argument("--box", nargs="+", metavar="q1=-20deg..30deg", help="all joints in ranges")
     sets.add_argument("--path", metavar="CSV", help="straight segments between joint values")
     sets.add_argument("--polygon", metavar="CSV", help="a polygon of joint values, either sense")
     sets.add_argument(
         "--largest-scale", action="store_true", help="a proof and a witness around the largest"
     )
     parser.add_argument(
-        "--margin", default="0", metavar="LENGTH", help="to keep beside (default 0)"
+        "--margin",
+        default="0",
+        metavar="LENGTH",
+        help="to keep beside: 5mm, or a plain number of the robot file's unit (default 0)",
     )
     parser.add_argument(
-        "--inset", type=float, metavar="LENGTH", help="of --region (default: of the reach, 1 %%)"
+        "--inset",
+        metavar="LENGTH",
+        help="of --region: leave out what is nearer to a boundary than this, 5mm (default: 1 %% of"
+        " the reach)",
     )
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
@@ -93,7 +99,7 @@ def run(options: argparse.Namespace) -> int:
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
     refuse_memory(options, region_bytes(robot), FEWER)
-    margin = as_decimal("--margin", options.margin)
+    margin = length_decimal(robot, "--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
     if options.largest_scale:
@@ -224,7 +230,9 @@ def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> 
 
 def _inset(robot: Robot, options: argparse.Namespace) -> float:
     """Return the inset of `--region`, a length."""
-    return statements.usual_inset(robot) if options.inset is None else float(options.inset)
+    if options.inset is None:
+        return statements.usual_inset(robot)
+    return parse_length(options.inset, robot.length_unit, "--inset")
 
 
 def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:

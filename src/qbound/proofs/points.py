@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 import re
+from decimal import Decimal
 from pathlib import Path
 
 from qbound.model.robot import Robot
 from qbound.proofs.statements import Point, decimal, units
-from qbound.units import file_units, parse_joint_value
+from qbound.units import file_units, parse_joint_value, split_length
 
 DECIMAL = re.compile(r"-?[0-9]+([.][0-9]+)?([eE][+-]?[0-9]{1,3})?")
 """How a certificate writes a number."""
@@ -48,6 +49,16 @@ def as_decimal(where: str, text: str) -> str:
         shown = plain if len(plain) <= MOST_DIGITS else f"{plain[:MOST_DIGITS]}..."
         raise ValueError(f"{where}: {shown!r} is no decimal number of at most {MOST_DIGITS} digits")
     return plain
+
+
+def length_decimal(robot: Robot, where: str, text: str) -> str:
+    """Return a length, such as ``30cm``, as a decimal of the robot file's unit, exactly."""
+    number, own = split_length(text, robot.length_unit)
+    plain = as_decimal(where, number)
+    if own == robot.length_unit:
+        return plain
+    tens = {"mm": -3, "cm": -2, "m": 0}
+    return as_decimal(where, f"{Decimal(plain).scaleb(tens[own] - tens[robot.length_unit]):f}")
 
 
 def joint_decimal(robot: Robot, j: int, text: str) -> str:
