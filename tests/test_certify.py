@@ -27,7 +27,7 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import certify as prover
 from qbound.proofs import second, statements
 from qbound.proofs.certify import bracket_scale, certify, certify_region
-from qbound.proofs.points import DECIMAL
+from qbound.proofs.points import DECIMAL, read_points
 from qbound.proofs.triangulation import triangulate
 from qbound.proofs.verdict import Verdict
 from qbound.region import find_region
@@ -518,6 +518,38 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
     assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
     error = capsys.readouterr().err
     assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        ("0,0\n20,-45\n", [["0", "0"], ["20", "-45"]]),
+        ("q1,q2\n+0.50,0\n\n20deg,-90°\n", [["0.50", "0"], ["20", "-90"]]),
+        ("t_s,q2_deg,q1_rad,x_cm\n,1,0,7\n0.5,2,0,8\n", [["0", "1"], ["0", "2"]]),
+        ("0,0,1\n", "line 1: 3 values for q1, q2"),
+        ("0,0\n1,2,3\n", "line 2: 3 values, and 2 in the lines above"),
+        ("t_s,q1,q2\n1,2\n", "line 2: 2 values, and 3 in the lines above"),
+        ("0,0\n1,nan\n", "line 2: q2: 'nan' is no value"),
+        ("0,0\n1,3cm\n", "line 2: q2: '3cm' is no value"),
+        ("q1,q3\n0,0\n", "line 1: 0 columns of q2; wanted one, q2 or q2_deg or q2_rad"),
+        ("q1,q2,q2_rad\n0,0,0\n", "line 1: 2 columns of q2"),
+    ],
+)
+def test_tables_of_joint_values_are_those_that_other_commands_write(tmp_path, text, points):
+    (tmp_path / "path.csv").write_text(text)
+    robot = load_robot("minervabot-v2")
+    if isinstance(points, list):
+        assert read_points(robot, str(tmp_path / "path.csv")) == points
+        return
+    with pytest.raises(ValueError, match=f"path.csv, {re.escape(points)}"):
+        read_points(robot, str(tmp_path / "path.csv"))
+
+
+def test_what_traverse_writes_certify_proves(tmp_path):
+    path = str(tmp_path / "path.csv")
+    words = ["traverse", "minervabot-v2", "1", "2", "3", "--scale", "0.9", "--csv", path]
+    assert cli.main(words) == 0
+    assert cli.main(["certify", "minervabot-v2", "--path", path]) == 0
 
 
 @pytest.mark.parametrize(

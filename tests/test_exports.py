@@ -213,9 +213,9 @@ def test_points_are_read_with_or_without_names(tmp_path: Path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"1,2\n3\n", "line 2: 1 values for q1, q2"),
-        (b"1,2\n\n3,0x4\n", "line 3: '0x4' is no decimal number"),
-        (b"1,nan\n", "line 1: 'nan' is no decimal number"),
+        (b"1,2\n3\n", "line 2: 1 values, and 2 in the lines above"),
+        (b"1,2\n\n3,0x4\n", "line 3: q2: '0x4' is no value"),
+        (b"1,nan\n", "line 1: q2: 'nan' is no value"),
         (b"\xff,2\n", "not UTF-8 text"),
     ],
 )

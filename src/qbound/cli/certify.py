@@ -47,7 +47,13 @@ def add_to(commands: Any) -> None:
         "certify",
         help="prove that every configuration of a set is safe",
         description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
-        "Certificates take at most 7 joints and 2,000 boundaries.",
+        "Certificates take at most 7 joints and 2,000 boundaries.\n"
+        "\n"
+        "A CSV file has a line for each configuration, in order: a value for each joint, with\n"
+        "commas between, as the robot file orders the joints, in its units or with units of their\n"
+        "own (20,-45 or 20deg,-0.8rad). Its first line may name the columns (q1,q2 or\n"
+        "q1_rad,q2_rad, as traverse --csv writes them). A polygon takes a robot of two joints and\n"
+        "three lines or more; its last corner joins the first.",
         epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
         "needs qbound[proofs]\n"
         "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
@@ -59,8 +65,8 @@ def add_to(commands: Any) -> None:
     )
     sets.add_argument("--region", action="store_true", help="home's region but for --inset")
     sets.add_argument("--box", nargs="+", metavar="q1=-20deg..30deg", help="all joints in ranges")
-    sets.add_argument("--path", metavar="CSV", help="straight segments between joint values")
-    sets.add_argument("--polygon", metavar="CSV", help="a polygon of joint values, either sense")
+    sets.add_argument("--path", metavar="CSV", help="straight segments from line to line")
+    sets.add_argument("--polygon", metavar="CSV", help="all inside a polygon, either sense")
     sets.add_argument(
         "--largest-scale", action="store_true", help="a proof and a witness around the largest"
     )
