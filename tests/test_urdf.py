@@ -413,6 +413,28 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
         assert "/ur5.urdf" not in said
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("why URDF 0 0 30deg 20deg -o FILE", "connected: "),
+        ("certify URDF --box j=0..1 k=0..1 -o FILE", "proved"),
+        ("pave URDF --tolerance 0.3", "undecided"),
+        ("allowed URDF", "a, c"),
+        ("contains URDF 0 0", "feasible"),
+    ],
+)
+def test_proofs_take_a_urdf_as_regions_do(tmp_path, capsys, words, says) -> None:
+    """They said that it is none of theirs, and not how to make one."""
+    file, proof = three_links(tmp_path, "<origin xyz='0.3 0 0'/>"), tmp_path / "proof.json"
+    words = words.replace("URDF", str(file)).replace("FILE", str(proof)).split()
+    assert main(words) == 0
+    assert says in capsys.readouterr().out
+    if "-o" in words:
+        assert main(["check", str(proof), str(file)]) == 0
+        other = three_links(tmp_path, "<origin xyz='0.2 0 0'/>")
+        assert main(["check", str(proof), str(other)]) == 2
+
+
 def test_links_named_like_balls_of_another_keep_names_of_their_own(tmp_path) -> None:
     file = written(
         tmp_path,

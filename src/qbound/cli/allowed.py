@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound.arms.allowed import CELLS, Contact, allowed_collisions
 from qbound.arms.allowed_report import allowed_document, allowed_lines, srdf_text
-from qbound.cli.chosen import add_robot
+from qbound.cli.chosen import add_robot, proved_source
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress
 from qbound.export.formats import json_text
@@ -60,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
         shown = shown or progress("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(options.robot, cells=options.cells, tell=tell)
+    source = proved_source(options.robot, robot)
+    found = allowed_collisions(source, cells=options.cells, tell=tell)
     document = (options.json, lambda: json_text(allowed_document(robot, found)))
     srdf = (options.disabled, lambda: srdf_text(robot, found, neighbours=options.adjacent))
     deliver([document, srdf], allowed_lines(robot, found))

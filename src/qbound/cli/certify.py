@@ -13,14 +13,21 @@ from typing import Any
 
 from qbound import check
 from qbound.boundary.margins import violated
-from qbound.cli.chosen import FEWER, add_memory, add_robot, refuse_memory, region_bytes
+from qbound.cli.chosen import (
+    FEWER,
+    add_memory,
+    add_robot,
+    proved_text,
+    refuse_memory,
+    region_bytes,
+)
 from qbound.cli.files import write_all
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
 from qbound.cli.values import box, held
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot, robot_text
+from qbound.model.robotfile import parse_robot
 from qbound.proofs import statements
 from qbound.proofs.certify import (
     Bracket,
@@ -97,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
     if options.with_checker is not None:
         _check_folder(options.with_checker)
-    text, file = robot_text(options.robot)
+    text, file = proved_text(options.robot)
     try:
         robot = parse_robot(tomllib.loads(text))
     except ValueError as error:

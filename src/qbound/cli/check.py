@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.cli.chosen import proved_text
 from qbound.cli.terminal import say
-from qbound.model.robotfile import robot_text
 from qbound.proofs.reports import folded, summed_up
 
 
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     """Check; 0 proved, 3 refuted, 2 anything else, as `check.py`: 1 is no answer."""
     if options.robot == "":
         raise ValueError("an empty robot compares with nothing: name the robot or leave it out")
-    pin = None if options.robot is None else robot_text(options.robot)[0]
+    pin = None if options.robot is None else proved_text(options.robot)[0]
     with Path(options.certificate).open("rb") as file:
         data = file.read(check.MAX_FILE + 1)  # once: both checkers judge the same text
     try:

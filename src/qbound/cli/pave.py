@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from qbound.cli.chosen import add_memory, add_robot, add_slice, refuse_memory
+from qbound.cli.chosen import add_memory, add_robot, add_slice, proved_source, refuse_memory
 from qbound.cli.files import deliver
 from qbound.cli.progress import progress
 from qbound.cli.values import held
@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
     estimate = paving_bytes(len(robot.used), len(free))
     estimate += COLUMNS * len(robot.used) if options.columns else 0
     refuse_memory(options, estimate, "hold some of the joints with --slice")
-    problem = exact_problem(exact_robot(options.robot), values)
+    problem = exact_problem(exact_robot(proved_source(options.robot, robot)), values)
     shown = progress("paving", STEPS)
 
     def tell(part: float) -> None:

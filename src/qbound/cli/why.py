@@ -8,7 +8,7 @@ from typing import Any
 
 from qbound.arms.answers import why_document, why_lines
 from qbound.arms.why import Why, why, why_bytes
-from qbound.cli.chosen import add_memory, add_robot, sized_robot
+from qbound.cli.chosen import add_memory, add_robot, proved_source, sized_robot
 from qbound.cli.files import Output, check_targets, deliver
 from qbound.cli.progress import working
 from qbound.cli.values import configuration
@@ -68,7 +68,8 @@ def run(options: argparse.Namespace) -> int:
     if options.svg is not None:
         check_targets([options.svg], kinds=("svg",))
     start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
-    found = why(options.robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    source = proved_source(options.robot, robot)
+    found = why(source, start, goal, seed=options.seed, hold=options.hold, during=working)
     outputs: list[Output] = [
         (options.json, lambda: json_text(why_document(found))),
         (options.svg, lambda: why_picture(found)),

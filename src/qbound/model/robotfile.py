@@ -64,7 +64,8 @@ def load_robot(
     source : str or Path
         A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
         robot; a file that is called just so is reached by ``./name``. A path that ends in
-        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone.
+        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone; two
+        links that one joint connects are not kept apart.
     chain : pair of str, optional
         First and last link of a URDF's arm; default: its root and its only leaf.
     srdf : str or Path, optional

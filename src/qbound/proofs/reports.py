@@ -166,7 +166,7 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
         named = ", ".join(f"{name} {count}" for name, count in counts.items())
         if len(counts) > MANY:
             most = max(counts, key=counts.__getitem__)
-            named = f"of {len(counts)} boundaries; most, {counts[most]}, of {most}"
+            named = f"of {len(counts)} boundaries; at most {counts[most]}, of {most}"
         yield f"cells: {answer.leaves} ({named})"
 
 
