@@ -1,6 +1,7 @@
 # ruff: noqa: E501  (rows of robot files, one a line)
 """The prover: no false proof, and every refutation confirmed by both checkers."""
 
+import json
 import os
 import re
 import subprocess
@@ -28,7 +29,7 @@ from qbound.proofs.certificates import certify as prover
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
 from qbound.proofs.certificates.loops import triangulate
-from qbound.proofs.certificates.statements import DECIMAL
+from qbound.proofs.certificates.statements import DECIMAL, read_points
 from qbound.region import find_region
 from support.robot_files import box_of, robot_file
 from support.robots import OF_POINTS, drawn_robot, random_robot
@@ -455,6 +456,8 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert "cm" in capsys.readouterr().out
     assert cli.main(["check", file]) == 3
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30", "q2=-80deg:-40deg"]) == 0
+    box = ["--box", "q1=-20..30", "q2=-80deg..-40"]  # as in --strip and --limits
+    assert cli.main(["certify", "minervabot-v2", *box]) == 0
     assert cli.main(["certify", "minervabot-v2", "--margin", "-1"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30"]) == 2
     assert cli.main(["certify", "minervabot-v2", "--scale", "nan"]) == 2
@@ -515,6 +518,56 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
     assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
     error = capsys.readouterr().err
     assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        ("0,0\n20,-45\n", [["0", "0"], ["20", "-45"]]),
+        ("q1,q2\n+0.50,0\n\n20deg,-90°\n", [["0.50", "0"], ["20", "-90"]]),
+        ("t_s,q2_deg,q1_rad,x_cm\n,1,0,7\n0.5,2,0,8\n", [["0", "1"], ["0", "2"]]),
+        ("0,0,1\n", "line 1: 3 values for q1, q2"),
+        ("0,0\n1,2,3\n", "line 2: 3 values, and 2 in the lines above"),
+        ("t_s,q1,q2\n1,2\n", "line 2: 2 values, and 3 in the lines above"),
+        ("0,0\n1,nan\n", "line 2: q2: 'nan' is no value"),
+        ("0,0\n1,3cm\n", "line 2: q2: '3cm' is no value"),
+        ("q1,q3\n0,0\n", "line 1: 0 columns of q2; wanted one, q2 or q2_deg or q2_rad"),
+        ("q1,q2,q2_rad\n0,0,0\n", "line 1: 2 columns of q2"),
+    ],
+)
+def test_tables_of_joint_values_are_those_that_other_commands_write(tmp_path, text, points):
+    (tmp_path / "path.csv").write_text(text)
+    robot = load_robot("minervabot-v2")
+    if isinstance(points, list):
+        assert read_points(robot, str(tmp_path / "path.csv")) == points
+        return
+    with pytest.raises(ValueError, match=f"path.csv, {re.escape(points)}"):
+        read_points(robot, str(tmp_path / "path.csv"))
+
+
+def test_what_traverse_writes_certify_proves(tmp_path):
+    path = str(tmp_path / "path.csv")
+    words = ["traverse", "minervabot-v2", "1", "2", "3", "--scale", "0.9", "--csv", path]
+    assert cli.main(words) == 0
+    assert cli.main(["certify", "minervabot-v2", "--path", path]) == 0
+
+
+@pytest.mark.parametrize(
+    ("option", "same"),
+    [("--margin", ["0.1", "1mm", "0.1 cm", "1e-3m"]), ("--inset", ["1.3", "13mm", "0.013m"])],
+)
+def test_lengths_take_any_unit_and_stay_exact(tmp_path, option, same):
+    """Both took plain numbers only."""
+    written = set()
+    for length in same:
+        words = ["certify", "minervabot-v2", "--region", "--inset", "1", option, length]
+        assert cli.main([*words, "-o", str(tmp_path / "cert.json")]) == 0
+        claim = json.loads((tmp_path / "cert.json").read_text())["claim"]
+        claim["margin"] = Fraction(claim["margin"])
+        written.add(str(claim))
+    assert len(written) == 1
+    for wrong in ("1kg", "5deg", "1e99m", "cm", "m m"):
+        assert cli.main(["certify", "minervabot-v2", "--region", option, wrong]) == 2
 
 
 # --- the checker beside the certificate -----------------------------------------------------------
@@ -611,6 +664,45 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     assert "0.00000" not in said
 
 
+def test_a_scale_that_is_not_decided_says_of_what_and_where(capsys, monkeypatch):
+    """It ended with status 3, or as if all were decided, and did not say what was not."""
+    words = ["certify", "minervabot-v2", "--largest-scale"]
+    monkeypatch.setattr(prover, "FEW_CELLS", 200)
+    assert cli.main(words) == 0
+    said = capsys.readouterr().out
+    halved = (
+        r"halving stopped at scale 0\.9\d+, undecided: B7: \d+ cells, \S+ % of the set, as at q1"
+    )
+    assert re.search(halved, said)
+    assert re.search(r"scale 0\.9\d+: refuted", said)
+    monkeypatch.setattr(prover, "FEW_CELLS", 0)
+    assert cli.main(words) == 3
+    said = capsys.readouterr().out
+    assert re.search(
+        r"stopped at scale 1, undecided: B1: 4 cells, 100 % of the set, as at q1", said
+    )
+    assert cli.main(["certify", "minervabot-v2", "--scale", "0.96", "-o", "-"]) == 0
+
+
+def test_a_witness_too_shallow_for_the_checker_is_sought_at_a_larger_scale(monkeypatch):
+    """The witness at the largest scale was 1e-10 cm deep, and the answer was "undecided"."""
+    text, _ = paper_robot()
+    confirmed = prover.Subject.confirmed
+
+    def shallow(subject, claim, verdict, **evidence):
+        refused.append(verdict)
+        if refused.count("refuted") in (1, 2, 3):
+            return prover.Certificate(prover.Verdict.UNDECIDED, "", "not violated there")
+        return confirmed(subject, claim, verdict, **evidence)
+
+    refused = []
+    monkeypatch.setattr(prover.Subject, "confirmed", shallow)
+    found = bracket_scale(text, width=1e-6)
+    assert found.unsafe[1].verdict == "refuted"
+    wider = float(found.unsafe[0]) - float(found.safe[0])
+    assert 4e-6 < wider <= 5e-6  # four widths more, after one and two
+
+
 def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsys, monkeypatch):
     """It said "the proof asks for too much work", and no more."""
     monkeypatch.setattr(check.Work, "MOST", 100_000)
@@ -678,6 +770,30 @@ def test_ctrl_c_ends_in_one_line_and_writes_nothing(name, tmp_path, capsys, monk
     assert cli.main([*words, option, str(tmp_path / "file.json")]) == 130
     assert capsys.readouterr().err == "qbound: stopped\n"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_many_balls_are_summed_up_by_links_and_the_verdict_comes_last(tmp_path, capsys):
+    """An arm's certificate took 395 lines, with the verdict in the third."""
+    box = "0:1", "-90:-89", "90:91", "-90:-89", "-90:-89", "0:1"
+    names = [joint.name for joint in load_robot("ur5").joints]
+    ranges = [f"{name}={ends}" for name, ends in zip(names, box, strict=True)]
+    file = str(tmp_path / "cert.json")
+    assert cli.main(["certify", "ur5", "--box", *ranges, "-o", file]) == 0
+    certified = capsys.readouterr().out
+    assert cli.main(["check", file, "ur5"]) == 0
+    checked = capsys.readouterr().out
+    for said in (certified, checked):
+        assert len(said.splitlines()) < 25
+        rows = re.findall(r"^  '\w+' and '\w+': (\d+) pairs of balls, not overlapping$", said, re.M)
+        assert sum(map(int, rows)) == len(load_robot("ur5").boundaries)
+    assert checked.splitlines()[0] == checked.splitlines()[-1] == "proved"
+    assert cli.main(["check", file, "--all"]) == 0
+    assert capsys.readouterr().out.count("not overlapping") == sum(map(int, rows))
+    data = json.loads(Path(file).read_text())
+    data["proof"]["trees"][0] = []
+    Path(file).write_text(json.dumps(data))
+    assert cli.main(["check", file]) == 2
+    assert capsys.readouterr().out.startswith("not proved: ")
 
 
 def test_a_long_answer_is_folded_between_points(tmp_path, capsys):

@@ -156,6 +156,20 @@ def test_files_are_written_whole(capsys, tmp_path):
     assert files[1].read_text().startswith("<?xml")
 
 
+@pytest.mark.filterwarnings("ignore:.*turns wide")
+def test_contains_does_not_wait_for_a_region_of_many_turns(capsys, tmp_path, monkeypatch):
+    text, _ = robot_text("pr-gantry-arm")
+    wide = text.replace('type = "revolute"', 'type = "revolute"\nlimits = [-1500, 1500]')
+    assert wide != text
+    (tmp_path / "arm.toml").write_text(wide)
+    words = ("contains", str(tmp_path / "arm.toml"), "0.9", "0")
+    assert "nearest boundary: " in run(capsys, *words, "--all")[1]
+    monkeypatch.setattr("qbound.export.configuration.find_region", None)
+    status, out, _ = run(capsys, *words)
+    assert status == 0
+    assert "component and nearest boundary are not looked for: limits of " in out
+
+
 def test_contains_names_what_is_violated(capsys):
     status, out, _ = run(capsys, "contains", "minervabot-v2", "80deg", "0")
     assert status == 1

@@ -14,13 +14,14 @@ from numpy.testing import assert_allclose
 from lizarraga2025 import closed_form
 from qbound import find_region, find_slices, load_robot
 from qbound.explorer.page import explore, explorer_page
-from qbound.region import violated
+from qbound.region import margins, violated
 from support.arms import ROBOTS, SPATIAL, three_joints
 from support.browser import broken_rules, drag, in_every_family, rules_in, settle, wait_until
 
 WALLS = {
     "many walls": lambda: (load_robot("two-joint-arm-with-walls"), {}),
     "portal": lambda: (load_robot("pp-portal"), {}),
+    "six joints": lambda: (load_robot("ur5"), {j: load_robot("ur5").home[j] for j in range(4)}),
 }
 SIDES = 95
 
@@ -137,6 +138,30 @@ def test_every_kind_of_robot_opens(open_explorer, name, width):
         assert page.evaluate("document.documentElement.scrollWidth") <= WIDTHS[width], family
         assert covered(page, "#joints text") == [], family
         assert beyond(page) == [], family
+
+
+def test_a_joint_that_does_not_move_the_tool_is_named(open_explorer):
+    """It said that the tool leaves the plane."""
+    page = open_explorer("six joints")
+    said = "The tool is not moved by wrist_3_joint: move the arm in joint space."
+    assert page.inner_text("#posture") == said
+
+
+def test_many_balls_are_a_row_for_two_links_with_the_least_margin(open_explorer):
+    """A UR5 had 193 rows."""
+    page, robot = open_explorer("six joints"), load_robot("ur5")
+    rows = [row.split("\t") for row in page.locator("#margins tr").all_inner_texts()]
+    assert len(rows) < 20
+    counts = {links: int(first.split()[0]) for first, links, _ in rows if "balls" in first}
+    assert sum(counts.values()) == len(robot.boundaries)
+    least = {}
+    for name, margin in margins(robot, robot.home):
+        links = " and ".join(ball.rpartition("/")[0] for ball in name.split(", "))
+        least[links] = min(least.get(links, math.inf), margin)
+    shown = {links: value for first, links, value in rows if "balls" in first}
+    assert shown == {links: f"{least[links]:.4f} m" for links in counts}
+    page.locator("#margins tr").first.hover()
+    assert page.locator("#plane .ball.lit, #plane .lit").count() > 0
 
 
 def test_a_tool_that_leaves_the_plane_is_moved_in_joint_space(open_explorer):

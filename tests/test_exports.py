@@ -153,7 +153,7 @@ def test_a_report_on_a_workspace_says_what_was_asked():
     assert not found.all_safe
     content, lines = workspace_document(found), list(workspace_lines(found))
     follows_schema(content, "workspace")
-    assert "at (-45, 20) cm: safe postures 1" in lines
+    assert "at (-45, 20) cm: 1 posture in home's component" in lines
     assert "go: no, from component 0 to component 1" in lines
     assert len(content["at"][0]["postures"]) == 2
     names = {arc["boundary"] for loop in content["go"]["separated_by"] for arc in loop["arcs"]}
@@ -212,9 +212,9 @@ def test_points_are_read_with_or_without_names(tmp_path: Path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"1,2\n3\n", "line 2: 1 values for q1, q2"),
-        (b"1,2\n\n3,0x4\n", "line 3: '0x4' is no decimal number"),
-        (b"1,nan\n", "line 1: 'nan' is no decimal number"),
+        (b"1,2\n3\n", "line 2: 1 values, and 2 in the lines above"),
+        (b"1,2\n\n3,0x4\n", "line 3: q2: '0x4' is no value"),
+        (b"1,nan\n", "line 1: q2: 'nan' is no value"),
         (b"\xff,2\n", "not UTF-8 text"),
     ],
 )

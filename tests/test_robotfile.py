@@ -4,6 +4,7 @@ import json
 import math
 import re
 import tomllib
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import date
@@ -135,7 +136,8 @@ def test_units_of_angle_scale_turns_and_not_slides() -> None:
     assert (slide.limits, slide.velocity) == ((-2, 3), 4)
     assert_allclose(parse_robot(table).home, [4 * pi, 2.5])  # home is not wrapped
     table["angle_unit"] = "rad"
-    assert parse_robot(table).joints[0].limits == (-120, 480)
+    with pytest.warns(UserWarning, match="95 turns wide"):
+        assert parse_robot(table).joints[0].limits == (-120, 480)
 
 
 def test_a_continuous_joint_turns_without_limits(tmp_path: Path) -> None:
@@ -195,6 +197,20 @@ def test_a_pair_that_is_never_a_wall_is_warned_of(tmp_path: Path) -> None:
     with pytest.warns(UserWarning, match=r"bare\.toml: boundary\[1\] \(B2\): ") as caught:
         load_robot(path)
     assert [w.filename for w in caught] == [__file__]
+
+
+@pytest.mark.parametrize(
+    ("lowest", "turns"), [(-math.pi, 0), (-4 * math.pi, 0), (-13.0, 4), (-170.0, 54)]
+)
+def test_limits_of_more_than_four_turns_are_doubted(lowest: float, turns: int) -> None:
+    """A user wrote 170 degrees as 170 rad, and waited for two minutes."""
+    table = packaged_table() | {"angle_unit": "rad"}
+    table["joint"][1]["limits"] = [lowest, -lowest]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        parse_robot(table)
+    wanted = f"joint[1] (q2): limits are {turns} turns wide, so answers take long; are they degrees"
+    assert [str(w.message)[: len(wanted)] for w in caught] == [wanted] * bool(turns)
 
 
 def test_a_home_outside_walls_and_limits_is_read_as_it_is() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib import resources
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from qbound import RobotFileError, load_robot, save_robot
+from qbound import RobotFileError, check, load_robot, save_robot
 from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
@@ -129,6 +130,48 @@ def test_pairs_are_those_of_links_that_are_no_neighbours(tmp_path) -> None:
     assert fewer.home.tolist() == [0, 0.5, 0]
 
 
+def test_pairs_that_are_left_out_are_named_where_they_are_read(tmp_path, capsys) -> None:
+    """Neighbours were left out without a word, and links that an SRDF misspells were, too."""
+    parts = [link(n, BALL) for n in ("a", "b", "c", "d", "lamp")] + [link("bare")]
+    parts += [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("j3", "c", "d")]
+    parts += [joint("f", "a", "lamp", "fixed"), joint("g", "d", "bare", "fixed")]
+    file = written(tmp_path, *parts)
+    pairs = "<disable_collisions link1='d' link2='a'/><disable_collisions link1='a' link2='b'/>"
+    more = "<disable_default_collisions link='lamp'/><disable_collisions link1='a' link2='aa'/>"
+    srdf = written(tmp_path, pairs, more, name="arm.srdf")
+    words = ["import", str(file), "--to", "d", "--srdf", str(srdf)]
+    assert main([*words, "-o", str(tmp_path / "arm.toml")]) == 0
+    printed, made = capsys.readouterr().out, (tmp_path / "arm.toml").read_text()
+    for says in (
+        "because one joint connects them: a and b; lamp and b; b and c; c and d.",
+        "because the SRDF disables them: a and d; lamp and c; lamp and d.",
+        "The SRDF names links that the URDF does not have: aa.",
+    ):
+        assert says in printed
+        assert says in made.replace("\n#  ", "")
+    only_states = "<group_state name='home' group='g'><joint name='q9' value='0.5'/></group_state>"
+    with pytest.raises(RobotFileError, match=r"of another robot: its joints are q9; the URDF has"):
+        load_robot(file, srdf=written(tmp_path, only_states, name="other.srdf"))
+
+
+@pytest.mark.parametrize(
+    ("size", "excess", "most"), [("0.4", 0.02, "2,000"), ("0.7", 0.012, "20,000")]
+)
+def test_too_many_pairs_name_an_excess_that_makes_few_enough(tmp_path, size, excess, most) -> None:
+    """Boxes made 16,000 pairs by default, and every proof refused them later."""
+    box = f"<collision><geometry><box size='{size} 0.1 0.3'/></geometry></collision>"
+    file = three_links(tmp_path, balls=box)
+    try:
+        said = import_urdf(file, excess=excess).notes[-1]
+    except RobotFileError as error:
+        said = str(error)
+    assert f"at most {most} are possible" in said or f"certificates take at most {most}" in said
+    [(larger, pairs)] = re.findall(r"an excess of (\S+) m makes ([\d,]+)", said)
+    fewer = import_urdf(file, excess=float(larger))
+    assert len(fewer.robot.boundaries) == int(pairs.replace(",", "")) <= check.MAX_BOUNDARIES
+    assert not any("an excess of" in note for note in fewer.notes)
+
+
 def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
     file = three_links(tmp_path)
     assert load_robot(file).joints[1].limits == (-1, 2)
@@ -246,7 +289,13 @@ def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
             load_robot(file, **asked)
     with pytest.raises(ValueError, match="srdf: for a URDF only"):
         load_robot("ur5", srdf="ur5.srdf")
-    assert main(["import", str(file), "--limits", "k=0..nan", "-o", "-"]) == 2
+    for wrong in ("k=0..nan", "k=0", "k=0..1..2", "=0..1", "k=0..1kg"):
+        assert main(["import", str(file), "--limits", wrong, "-o", "-"]) == 2
+    for ends in ("-90deg..90°", "-90deg:90deg"):
+        assert main(["import", str(file), "--limits", f"k={ends}", "-o", f"{tmp_path}/a.toml"]) == 0
+        assert load_robot(tmp_path / "a.toml").joints[1].limits == pytest.approx(
+            (-np.pi / 2, np.pi / 2)
+        )
     assert main(["region", str(file), "--json", "-"]) in (0, 1)
 
 
@@ -355,12 +404,35 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
         (["--to", "tool1"], "ur5.urdf: no link 'tool1'"),
         (["--limits", "knee=0..1"], "ur5.urdf: limits of 'knee'"),
         (["--srdf", "panda.urdf"], "panda.urdf: no group, no state"),
-        (["--srdf", "panda.srdf", "--home", "folded"], "no state 'folded'"),
+        (["--srdf", "panda.srdf"], "panda.srdf is of another robot: its links are panda_link5, "),
+        (["--srdf", "ur5.srdf", "--home", "folded"], "no state 'folded'"),
     ):
         assert main(["import", "ur5.urdf", *more, "-o", "-"]) == 2
         said = capsys.readouterr().err
         assert says in said
         assert "/ur5.urdf" not in said
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("why URDF 0 0 30deg 20deg -o FILE", "connected: "),
+        ("certify URDF --box j=0..1 k=0..1 -o FILE", "proved"),
+        ("pave URDF --tolerance 0.3", "undecided"),
+        ("allowed URDF", "a, c"),
+        ("contains URDF 0 0", "feasible"),
+    ],
+)
+def test_proofs_take_a_urdf_as_regions_do(tmp_path, capsys, words, says) -> None:
+    """They said that it is none of theirs, and not how to make one."""
+    file, proof = three_links(tmp_path, "<origin xyz='0.3 0 0'/>"), tmp_path / "proof.json"
+    words = words.replace("URDF", str(file)).replace("FILE", str(proof)).split()
+    assert main(words) == 0
+    assert says in capsys.readouterr().out
+    if "-o" in words:
+        assert main(["check", str(proof), str(file)]) == 0
+        other = three_links(tmp_path, "<origin xyz='0.2 0 0'/>")
+        assert main(["check", str(proof), str(other)]) == 2
 
 
 def test_links_named_like_balls_of_another_keep_names_of_their_own(tmp_path) -> None:

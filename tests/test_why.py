@@ -337,6 +337,14 @@ def test_the_length_of_a_path_has_a_number_for_each_unit(capsys):
     assert "0.175 rad and 0.2 m long" in capsys.readouterr().out
 
 
+def test_both_ends_are_said_with_their_units(capsys):
+    """Plain numbers are in the file's units, which need not be those that were meant."""
+    assert main(["why", "rp-telescopic-boom", "-1rad", "1.5", "-50", "170cm"]) == 0
+    _, start, goal, *_ = capsys.readouterr().out.splitlines()
+    assert start == "  from lift = -57.2958 deg, slide = 1.5 m"
+    assert goal == "  to lift = -50 deg, slide = 1.7 m"
+
+
 def test_the_command_writes_certificate_document_and_picture(file, tmp_path, capsys):
     files = [tmp_path / name for name in ("c.json", "w.json", "w.svg")]
     values = ["0", "1rad", "0", "0", "4rad", "0"]

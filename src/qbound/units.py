@@ -74,16 +74,25 @@ def parse_length(text: str, unit: str, what: str) -> float:
     >>> parse_length("300mm", "m", "voxel"), parse_length("0.3", "m", "voxel")
     (0.3, 0.3)
     """
-    number, own = text.strip(), unit
-    for suffix in MILLIMETRES:  # m last: every other one ends in it
-        if number.endswith(suffix):
-            number, own = number.removesuffix(suffix), suffix
-            break
+    number, own = split_length(text, unit)
     value = _number(number)
     if not math.isfinite(value):
         wanted = f"0.2, a plain number of {unit}, or 20cm"
         raise ValueError(f"{what}: {text.strip()!r} is no value, such as {wanted}")
     return value if own == unit else value * MILLIMETRES[own] / MILLIMETRES[unit]
+
+
+def split_length(text: str, unit: str) -> tuple[str, str]:
+    """Split a length into its number and its unit, `unit` where it has none of its own.
+
+    Examples
+    --------
+    >>> split_length("30cm", "m"), split_length("0.3", "m")
+    (('30', 'cm'), ('0.3', 'm'))
+    """
+    plain = text.strip()
+    own = next((u for u in MILLIMETRES if plain.endswith(u)), "")  # m last: all others end in it
+    return plain.removesuffix(own).rstrip(), own or unit
 
 
 def _number(text: str) -> float:

@@ -12,14 +12,21 @@ from typing import Any
 
 from qbound import check
 from qbound.boundary.margins import violated
-from qbound.cli.chosen import FEWER, add_memory, add_robot, refuse_memory, region_bytes
+from qbound.cli.chosen import (
+    FEWER,
+    add_memory,
+    add_robot,
+    proved_text,
+    refuse_memory,
+    region_bytes,
+)
 from qbound.cli.files import write_all
 from qbound.cli.progress import progress, working
 from qbound.cli.terminal import say
 from qbound.cli.values import box, held
 from qbound.geometry import polygon
 from qbound.model.robot import Robot
-from qbound.model.robotfile import parse_robot, robot_text
+from qbound.model.robotfile import parse_robot
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import (
     Bracket,
@@ -31,10 +38,11 @@ from qbound.proofs.certificates.certify import (
     certify_region,
     folded,
     no_certificate,
+    summed_up,
 )
-from qbound.proofs.certificates.statements import as_decimal, read_points
+from qbound.proofs.certificates.statements import as_decimal, length_decimal, read_points
 from qbound.region import find_region
-from qbound.units import counted, joint_text, limited_joints, margin_text
+from qbound.units import counted, joint_text, limited_joints, margin_text, parse_length
 
 STEPS = 1000
 """Of the progress that is shown."""
@@ -48,7 +56,13 @@ def add_to(commands: Any) -> None:
         "certify",
         help="prove that every configuration of a set is safe",
         description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
-        "Certificates take at most 7 joints and 2,000 boundaries.",
+        "Certificates take at most 7 joints and 2,000 boundaries.\n"
+        "\n"
+        "A CSV file has a line for each configuration, in order: a value for each joint, with\n"
+        "commas between, as the robot file orders the joints, in its units or with units of their\n"
+        "own (20,-45 or 20deg,-0.8rad). Its first line may name the columns (q1,q2 or\n"
+        "q1_rad,q2_rad, as traverse --csv writes them). A polygon takes a robot of two joints and\n"
+        "three lines or more; its last corner joins the first.",
         epilog="exit status: 0 proved, 1 refuted, 3 undecided; 2 bad input\n"
         "needs qbound[proofs]\n"
         "example: qbound certify minervabot-v2 --scale 0.96 -o cert.json",
@@ -59,17 +73,23 @@ def add_to(commands: Any) -> None:
         "--scale", metavar="S", help="the polygon of home's vertices, scaled (default 1)"
     )
     sets.add_argument("--region", action="store_true", help="home's region but for --inset")
-    sets.add_argument("--box", nargs="+", metavar="q1=-20deg:30deg", help="all joints in ranges")
-    sets.add_argument("--path", metavar="CSV", help="straight segments between joint values")
-    sets.add_argument("--polygon", metavar="CSV", help="a polygon of joint values, either sense")
+    sets.add_argument("--box", nargs="+", metavar="q1=-20deg..30deg", help="all joints in ranges")
+    sets.add_argument("--path", metavar="CSV", help="straight segments from line to line")
+    sets.add_argument("--polygon", metavar="CSV", help="all inside a polygon, either sense")
     sets.add_argument(
         "--largest-scale", action="store_true", help="a proof and a witness around the largest"
     )
     parser.add_argument(
-        "--margin", default="0", metavar="LENGTH", help="to keep beside (default 0)"
+        "--margin",
+        default="0",
+        metavar="LENGTH",
+        help="to keep beside: 5mm, or a plain number of the robot file's unit (default 0)",
     )
     parser.add_argument(
-        "--inset", type=float, metavar="LENGTH", help="of --region (default: of the reach, 1 %%)"
+        "--inset",
+        metavar="LENGTH",
+        help="of --region: leave out what is nearer to a boundary than this, 5mm (default: 1 %% of"
+        " the reach)",
     )
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
@@ -86,12 +106,12 @@ def run(options: argparse.Namespace) -> int:
     """Answer; 0 proved, 1 refuted, 3 undecided."""
     if options.with_checker is not None:
         _check_folder(options.with_checker)
-    robot = parse_robot(*robot_text(options.robot))
+    robot = parse_robot(*proved_text(options.robot))
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
     subject = Subject(robot)
     refuse_memory(options, region_bytes(robot), FEWER)
-    margin = as_decimal("--margin", options.margin)
+    margin = length_decimal(robot, "--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
     if options.largest_scale:
@@ -105,7 +125,8 @@ def run(options: argparse.Namespace) -> int:
     answer = _answer(subject, robot, options, margin)
     written = _write(options, answer)
     if options.output != "-" or not answer.text:
-        say(*folded(answer.said), *certificate_lines(robot, answer), *written)
+        said = summed_up(answer.said, check.read(answer.text)[1]) if answer.text else answer.said
+        say(*folded(said), *certificate_lines(robot, answer), *written)
         if answer.verdict != "proved":
             say(*_instead(robot, options, answer))
     return STATUS[answer.verdict]
@@ -223,23 +244,42 @@ def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> 
 
 def _inset(robot: Robot, options: argparse.Namespace) -> float:
     """Return the inset of `--region`, a length."""
-    return statements.usual_inset(robot) if options.inset is None else float(options.inset)
+    if options.inset is None:
+        return statements.usual_inset(robot)
+    return parse_length(options.inset, robot.length_unit, "--inset")
 
 
 def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
     """Print both ends; the file is the proof of the lower one."""
     safe, proof = found.safe
-    unsafe, refutation = found.unsafe
+    refutation = found.unsafe[1]
     if proof is not None and proof.verdict == "proved":
         written = _write(options, proof)
         if options.output != "-":
             say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
-    if proof is None and options.output != "-":
-        say(f"no scale is proved{_of_centre(robot)}; try --region, or a --box")
-    elif refutation is not None and refutation.verdict == "refuted" and options.output != "-":
-        say(f"scale {unsafe}: refuted", *certificate_lines(robot, refutation))
-    both = [answer and answer.verdict for answer in (proof, refutation)]
-    return 0 if both[0] == "proved" and both[1] in ("refuted", None) else 3
+    if options.output != "-":
+        say(*_other_scales(robot, found))
+    proved = proof is not None and proof.verdict == "proved"
+    if refutation is None:  # every scale is safe, or it is not known where one is not
+        return 0 if proved and not found.undecided[0] else 3
+    return 0 if proved and refutation.verdict == "refuted" else 3
+
+
+def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
+    """Say of each scale what is not proved about it: nothing that passes, or what is undecided."""
+    (safe, proof), (unsafe, refutation), (scale, left) = found.safe, found.unsafe, found.undecided
+    centre = "" if proof is not None else _of_centre(robot)
+    if proof is None:
+        yield f"no scale is proved{centre}; try --region, or a --box"
+    elif proof.verdict != "proved":
+        yield from folded(f"scale {safe}: undecided: {proof.said}")
+    if scale:
+        yield from folded(f"halving stopped at scale {scale}, undecided: {left}")
+    if refutation is not None and refutation.verdict != "refuted":
+        yield from folded(f"scale {unsafe}: undecided: {refutation.said}")
+    elif refutation is not None and not centre:
+        yield f"scale {unsafe}: refuted"
+        yield from certificate_lines(robot, refutation)
 
 
 def _of_centre(robot: Robot) -> str:

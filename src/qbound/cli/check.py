@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
+from qbound.cli.chosen import proved_text
 from qbound.cli.terminal import say
-from qbound.model.robotfile import robot_text
-from qbound.proofs.certificates.certify import folded
+from qbound.proofs.certificates.certify import folded, summed_up
 
 
 def add_to(commands: Any) -> None:
@@ -23,6 +23,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument("certificate")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")
     parser.add_argument("--arb", action="store_true", help="check with python-flint as well")
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="list every boundary that is kept; by default many of balls are a row for two links",
+    )
     parser.set_defaults(run=run)
 
 
@@ -30,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     """Check; 0 proved, 3 refuted, 2 anything else, as `check.py`: 1 is no answer."""
     if options.robot == "":
         raise ValueError("an empty robot compares with nothing: name the robot or leave it out")
-    pin = None if options.robot is None else robot_text(options.robot)[0]
+    pin = None if options.robot is None else proved_text(options.robot)[0]
     with Path(options.certificate).open("rb") as file:
         data = file.read(check.MAX_FILE + 1)  # once: both checkers judge the same text
     try:
@@ -44,7 +49,12 @@ def run(options: argparse.Namespace) -> int:
         differ = f"the two checkers differ; check.py: {first}; python-flint: {second}"
         say(*folded(f"not proved: {differ}"))
         return check.NO_ANSWER
-    say(*folded(answer.said), *([] if second is None else [f"python-flint: {second}"]))
+    said = answer.said
+    if not options.all:
+        content, robot = check.read(data)
+        said = summed_up(said, robot if pin is None else check.read_robot(pin, content["parts"]))
+    both = "" if second is None else f"; python-flint: {second}"
+    say(first, *folded(said), f"{first}{both}")
     return check.REFUTED if answer.refuted else check.PROVED
 
 

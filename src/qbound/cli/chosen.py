@@ -11,7 +11,7 @@ from qbound.boundary.evaluator import forms_bytes, limit_names
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.cli.progress import working
 from qbound.model.robot import Robot
-from qbound.model.robotfile import load_robot
+from qbound.model.robotfile import is_urdf, load_robot, robot_text, written_text
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_text, margin_text
 
@@ -28,7 +28,9 @@ FEWER: Final = "keep fewer pairs apart (qbound import makes fewer of them by a l
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
     """Add the robot."""
-    parser.add_argument("robot", help="a robot file, or a packaged robot's name")
+    parser.add_argument(
+        "robot", help="a robot file, a packaged robot's name, or a URDF, imported as by default"
+    )
 
 
 def add_rule(parser: argparse.ArgumentParser) -> None:
@@ -94,6 +96,11 @@ def sized_robot(
     robot = load_robot(options.robot)
     refuse_memory(options, estimate(robot), FEWER)
     return robot
+
+
+def proved_text(name: str) -> tuple[str, str]:
+    """Return the text of a robot file, or of the one that a URDF is imported as, and its name."""
+    return (written_text(load_robot(name)), name) if is_urdf(name) else robot_text(name)
 
 
 def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) -> None:

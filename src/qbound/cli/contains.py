@@ -50,7 +50,7 @@ def add_to(commands: Any) -> None:
         "--all",
         action="store_true",
         help=f"list every boundary and limit; by default, of more than {MOST_SHOWN}, each pair of"
-        " links once, the nearest first",
+        " links once, the nearest first; find the component also where limits are many turns wide",
     )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     add_memory(parser)
@@ -60,10 +60,17 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say what the configuration's margins are; 1 if any is negative."""
     robot = sized_robot(options)
-    content = configuration_facts(robot, configuration(robot, options.values), options.weights)
+    region = options.all or not _wide(robot)
+    values = configuration(robot, options.values)
+    content = configuration_facts(robot, values, options.weights, region=region)
     document = (options.json, lambda: json_text(with_version(robot, content)))
     deliver([document], _lines(robot, content, everything=options.all))
     return 0 if content["feasible"] else 1
+
+
+def _wide(robot: Robot) -> list[str]:
+    """Return the joints of a robot of two whose limits make its region long to find."""
+    return [joint.name for joint in robot.joints if joint.many_turns and len(robot.joints) == 2]
 
 
 def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterator[str]:
@@ -81,6 +88,9 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
             yield f"  margin {amounts[item['boundary']]}: {label}{_features(item)}"
     if len(shown) < len(rows):
         yield f"  the nearest of {len(rows)} boundaries and limits; --all lists every one"
+    if (wide := _wide(robot)) and not everything:
+        reason = f"limits of {' and '.join(wide)} are many turns wide"
+        yield f"  component and nearest boundary are not looked for: {reason}; --all finds them"
     if "unresolved" in content:
         reasons = "; ".join(content["unresolved"])
         yield f"  its component is not known, because the region is unresolved: {reasons}"

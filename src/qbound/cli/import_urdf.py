@@ -11,6 +11,7 @@ from qbound.arms.fibres import by_links
 from qbound.boundary.margins import violated
 from qbound.cli.files import deliver
 from qbound.cli.progress import working
+from qbound.cli.values import span
 from qbound.model.robotfile import RobotFileError, refuse_replacing
 from qbound.units import parse_length
 from qbound.urdf.arm import EXCESS, Imported, import_urdf
@@ -92,9 +93,9 @@ def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
     """Read ``elbow=-360deg..360deg``: rad or m, by the names of joints."""
     found: dict[str, tuple[float, float]] = {}
     for text in texts:
-        name, _, span = text.rpartition("=")
-        low, _, high = span.partition("..")
+        name, _, ends_text = text.rpartition("=")
         try:
+            low, high = span(ends_text)
             ends = _value(low), _value(high)
         except ValueError:
             ends = math.nan, math.nan
@@ -107,10 +108,11 @@ def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
 
 
 def _value(text: str) -> float:
-    for unit, scale in (("deg", math.radians(1.0)), ("rad", 1.0), ("m", 1.0)):
+    degree = math.radians(1.0)
+    for unit, scale in (("deg", degree), ("°", degree), ("rad", 1.0)):
         if text.strip().endswith(unit):
             return float(text.strip().removesuffix(unit)) * scale
-    return float(text)
+    return parse_length(text, "m", "")
 
 
 def _lines(imported: Imported) -> Iterable[str]:

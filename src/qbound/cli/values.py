@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
-from qbound.units import counted, parse_joint_value
+from qbound.units import counted, parse_joint_value, parse_length
 
 MOST_PANELS = 100
 """Slices of a strip: more would be no picture."""
@@ -68,7 +68,7 @@ def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list
 
 
 def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Read ``q1=-20deg:30deg``, or ``q1=20deg``: the low and the high end of every joint.
+    """Read ``q1=-20deg..30deg``, or ``q1=20deg``: the low and the high end of every joint.
 
     Decimals of the robot file's units; a joint that is not named has its limits.
     """
@@ -79,20 +79,27 @@ def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
     found = {}
     for text in texts:
         j, number = _assigned(robot, "--box", text)
-        found[j] = number.split(":") if ":" in number else [number, number]
+        if j in found:
+            raise ValueError(f"--box {text}: {robot.joints[j].name!r} has a range twice")
+        found[j] = span(number) if span(number)[1:] else [number, number]
     for j, joint in enumerate(robot.joints):
         limits = limits_as_decimals(robot, j)
         if j not in found and limits is None:
-            raise ValueError(f"--box: {joint.name} has no limits; give {joint.name}=LOW:HIGH")
+            raise ValueError(f"--box: {joint.name} has no limits; give {joint.name}=LOW..HIGH")
         found.setdefault(j, list(limits or ()))
     rows = [_range(robot, j, found[j]) for j in range(len(robot.joints))]
     return [low for low, _ in rows], [high for _, high in rows]
 
 
-def place(text: str) -> tuple[float, float]:
-    """Read ``X,Z``, lengths in the robot file's unit."""
+def span(text: str) -> list[str]:
+    """Split ``LOW..HIGH``, or ``LOW:HIGH``, at its ends."""
+    return text.split(".." if ".." in text else ":")
+
+
+def place(robot: Robot, text: str) -> tuple[float, float]:
+    """Read ``X,Z``, lengths: with a unit, or in the robot file's."""
     try:
-        x, z = (float(number) for number in text.split(","))
+        x, z = (parse_length(each, robot.length_unit, "") for each in text.split(","))
     except ValueError:
         raise ValueError(f"--at {text}: a place is two lengths, such as --at=-20,40") from None
     if not (abs(x) <= LARGEST and abs(z) <= LARGEST):
@@ -129,9 +136,10 @@ def _range(robot: Robot, j: int, texts: Sequence[str]) -> tuple[str, str]:
     from qbound.proofs.certificates.statements import joint_decimal
 
     if len(texts) != 2:
-        raise ValueError(f"--box {robot.joints[j].name}: wanted LOW:HIGH, found {':'.join(texts)}")
+        found = "..".join(texts)
+        raise ValueError(f"--box {robot.joints[j].name}: wanted LOW..HIGH, found {found}")
     low, high = (joint_decimal(robot, j, text) for text in texts)
     if float(low) > float(high):
-        name, given = robot.joints[j].name, ":".join(texts)
+        name, given = robot.joints[j].name, "..".join(texts)
         raise ValueError(f"--box {name}={given}: the low end comes first")
     return low, high

@@ -13,6 +13,7 @@ from qbound.cli.progress import working
 from qbound.cli.values import configuration
 from qbound.export.formats import json_text
 from qbound.figures.why import why_picture
+from qbound.units import joint_text
 
 STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
 
@@ -37,7 +38,7 @@ def add_to(commands: Any) -> None:
         nargs="+",
         metavar="VALUE",
         help="start and goal, one after the other: 20deg, 0.3m; a plain number is in the unit of"
-        " the robot file",
+        " the robot file, of a URDF deg and m",
     )
     parser.add_argument(
         "--hold",
@@ -75,7 +76,9 @@ def run(options: argparse.Namespace) -> int:
     if found.certificate is not None:
         text = found.certificate.text
         outputs.append((options.output, lambda: text))
-    deliver(outputs, [*why_lines(found), *_of_certificate(options.output, found)])
+    answer, *reasons = why_lines(found)
+    ends = [f"  from {joint_text(robot, start)}", f"  to {joint_text(robot, goal)}"]
+    deliver(outputs, [answer, *ends, *reasons, *_of_certificate(options.output, found)])
     return STATUS[found.answer]
 
 

@@ -39,7 +39,11 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--svg", metavar="FILE", help="draw the workspace")
     add_slice(parser)
     parser.add_argument(
-        "--at", action="append", default=[], metavar="X,Z", help="list the postures of a place"
+        "--at",
+        action="append",
+        default=[],
+        metavar="X,Z",
+        help="list the postures of a place: -20,40 or -20cm,40cm",
     )
     parser.add_argument(
         "--go", nargs=2, metavar="Q1,Q2", help="can the arm go from the one pose to the other?"
@@ -52,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
     robot = sized_robot(options)
     values = held(robot, options.slice)
-    places = [place(text) for text in options.at]
+    places = [place(robot, text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
     region = region_by_rule(robot, options.rule, values)
     try:

@@ -36,9 +36,16 @@ def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
 
 
 def configuration_facts(
-    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
+    robot: Robot,
+    q: Sequence[float],
+    weights: Sequence[float] = (1.0, 1.0),
+    *,
+    region: bool = True,
 ) -> dict[str, Any]:
-    """Return what `configuration_document` says of the configuration itself."""
+    """Return what `configuration_document` says of the configuration itself.
+
+    Without the region, which may take long to find, the component and the boundary are None.
+    """
     found = sorted(margins(robot, q), key=lambda item: item[1])
     content: dict[str, Any] = {
         "q": list(q),
@@ -49,7 +56,7 @@ def configuration_facts(
         "margins": [_margin_content(robot, q, name, margin) for name, margin in found],
         "nearest": None,
     }
-    if len(robot.joints) == 2:
+    if region and len(robot.joints) == 2:
         content |= _place_content(find_region(robot), q, weights)
     return content
 

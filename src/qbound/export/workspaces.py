@@ -9,7 +9,7 @@ from qbound.export.document import loop_content
 from qbound.export.formats import heading
 from qbound.model.robot import Robot
 from qbound.tolerances import ROUNDED_AREA
-from qbound.units import amount, joint_text
+from qbound.units import amount, counted, joint_text
 from qbound.workspace.areas import Aspect, PlaceReport, WorkspaceReport
 from qbound.workspace.passage import Passage
 
@@ -47,7 +47,7 @@ def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
         yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g} {unit}^2"
     for at in found.places:
         x, z = at.place
-        yield f"at ({x:g}, {z:g}) {unit}: safe postures {at.safe}"
+        yield f"at ({x:g}, {z:g}) {unit}: {counted(at.safe, 'posture')} in home's component"
         for posture, component in at.postures:
             yield f"  {joint_text(robot, posture.q, joints)}: {_state(component)}"
     if found.passage is not None:

@@ -35,6 +35,9 @@ Kind = Literal["revolute", "prismatic"]
 MOST_TURNS = 100
 """Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
 
+MANY_TURNS = 4
+"""More turns than a robot's joint has: limits that are wider may be degrees, read as radians."""
+
 AnyJoint = TypeVar("AnyJoint", bound="Joint")
 
 
@@ -150,6 +153,13 @@ class Joint:
         return {}
 
     @property
+    def many_turns(self) -> float:
+        """Turns between its limits where they are more than `MANY_TURNS`; else 0."""
+        low, high = self.limits or (0.0, 0.0)
+        turns = (high - low) / (2 * math.pi)
+        return turns if self.turns and turns > MANY_TURNS else 0.0
+
+    @property
     def farthest(self) -> float:
         """How far it carries its frame at most: a slide's farther limit, the cranks of a turn."""
         if self.turns:
@@ -211,7 +221,8 @@ class Revolute(Joint):
         """Refuse a span of hundreds of turns too."""
         turns = 0.0 if limits is None else (limits[1] - limits[0]) / turn
         if turns > MOST_TURNS:
-            return f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+            text = f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
+            return f"{text}; are these degrees where radians are wanted?"
         return super().limits_fault(limits, turn)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any, Final
@@ -64,7 +64,8 @@ def load_robot(
     source : str or Path
         A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
         robot; a file that is called just so is reached by ``./name``. A path that ends in
-        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone.
+        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone; two
+        links that one joint connects are not kept apart.
     chain : pair of str, optional
         First and last link of a URDF's arm; default: its root and its only leaf.
     srdf : str or Path, optional
@@ -82,7 +83,8 @@ def load_robot(
     Warns
     -----
     UserWarning
-        If a pair of points has no radius and no clearance: it never bounds anything.
+        If a pair of points has no radius and no clearance: it never bounds anything. If a joint
+        has limits wider than four turns, because these are often degrees in place of radians.
 
     Examples
     --------
@@ -263,13 +265,21 @@ def _robot(content: str | Table | Source, label: str) -> Robot:
         raise RobotFileError(f"{label}{error}") from None
     except RecursionError:
         raise RobotFileError(f"{label}tables in tables without end") from None
+    for where, text in _doubts(robot):
+        said = f"{printable(label)}{place(table, where)}: {text}"
+        warnings.warn(said, stacklevel=3)  # at the caller of load_robot or parse_robot
+    return robot
+
+
+def _doubts(robot: Robot) -> Iterator[tuple[tuple[str, int], str]]:
+    """Yield what a file may say, and hardly means: the row, and the reason."""
+    for i, joint in enumerate(robot.joints):
+        if turns := joint.many_turns:
+            text = f"limits are {turns:.0f} turns wide, so answers take long"
+            yield ("joint", i), f"{text}; are they degrees where radians are wanted?"
     for i, boundary in enumerate(robot.boundaries):
         if robot.least_distance(boundary) == 0:
-            where = place(table, ("boundary", i))
-            text = f"{where}: no radius and no clearance; this pair is never a wall"
-            text = printable(label) + text
-            warnings.warn(text, stacklevel=3)  # at the caller of load_robot or parse_robot
-    return robot
+            yield ("boundary", i), "no radius and no clearance; this pair is never a wall"
 
 
 def robot_text(source: str | Path) -> tuple[str, str]:

@@ -249,6 +249,8 @@ class Search:
         Their part of the whole set.
     violation : (int, ndarray) or None
         A cell, and a configuration in it that shows that there is no proof; rad or length.
+    left_at : ndarray or None
+        The middle of a largest cell that is undecided.
     """
 
     trees: tuple[str, ...]
@@ -256,6 +258,7 @@ class Search:
     left: int
     part_left: float
     violation: tuple[int, Floats] | None = None
+    left_at: Floats | None = None
 
 
 def best_cuts(
@@ -322,6 +325,7 @@ def subdivide(
     leaves, left, undecided = (np.zeros(len(rows)) for _ in range(3))
     opened = np.zeros(len(about), dtype=np.int64)
     violations: dict[int, tuple[float, int, Floats]] = {}
+    left_at: dict[int, Floats] = {}
     for depth in range(DEEPEST + 1):
         if not len(cells):
             break
@@ -338,6 +342,8 @@ def subdivide(
         limit = most if first_look is None or not violations else min(most, first_look)
         over = (opened > limit) | np.isin(np.arange(len(about)), [*violations])
         stopped = ~closed & (over[own] | (found.cuts < 0) | (depth == DEEPEST))
+        for row in np.flatnonzero(stopped).tolist():  # the largest come first
+            left_at.setdefault(int(own[row]), cells.centres[row])
         np.add.at(left, root[stopped], 1)
         np.add.at(undecided, root[stopped], parts[stopped])
         cut = ~closed & ~stopped
@@ -355,5 +361,6 @@ def subdivide(
             int(left[mine].sum()),
             float(undecided[mine].sum() / max(count, 1)),
             violations[k][1:] if k in violations else None,
+            left_at.get(k),
         )
     return result

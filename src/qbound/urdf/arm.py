@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from qbound import check
 from qbound.arrays import Floats
 from qbound.model.joints import JOINT_TYPES, Joint
 from qbound.model.robot import Pair, Point, Robot
@@ -38,6 +39,9 @@ LEAST_EXCESS, MOST_EXCESS = 1e-6, 1e3
 MOST_PAIRS = 20_000
 """Pairs of balls of a robot at most."""
 
+COARSER, COARSEST = 1.25, 12
+"""Factor from one excess to the next, and how many are tried, where one makes too many pairs."""
+
 
 class Ball(NamedTuple):
     """A ball of a cover."""
@@ -60,7 +64,7 @@ class Imported:
     sources : tuple of Source
         The files: URDF, SRDF, meshes.
     notes : tuple of str
-        What is covered how, and what was left out, a sentence each.
+        What is covered how, what was left out, and whether fewer pairs would do, a sentence each.
     """
 
     robot: Robot
@@ -124,6 +128,7 @@ def import_urdf(
     """
     urdf = read_urdf(packaged_or_path(source))
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
+    _check_same_arm(urdf, links)
     found = find_chain(urdf, *(chain or (None, None)))
     allowed = EXCESS if excess is None else excess
     if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
@@ -131,11 +136,17 @@ def import_urdf(
     joints = _joints(urdf, found, limits or {})
     shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
     balls, reached = _balls(shapes, found, allowed)
+    pairs = _pairs(balls, links)
+    fewer = _fewer(len(pairs), shapes, found, links, allowed)
+    if len(pairs) > MOST_PAIRS:
+        cure = fewer or "allow a larger excess"
+        text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
+        raise RobotFileError(f"{called(urdf.file)}: {text}; or disable pairs of links in an SRDF")
     robot = Robot(
         name=urdf.name,
         joints=joints,
         points=(_tool(found), *(ball.point for ball in balls)),
-        boundaries=tuple(_pairs(urdf, balls, links, clearance)),
+        boundaries=tuple(Pair(", ".join(names), names, clearance) for names in pairs),
         home=_home(joints, links.home(home)),
         tool=_tool(found).name,
         length_unit="m",
@@ -147,9 +158,24 @@ def import_urdf(
         raise RobotFileError(f"{called(urdf.file)}: {error}") from None
     solids = [shape.solid for each in shapes.values() for shape in each]
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
-    sources = [urdf.source, links.source, *(mesh.source for mesh in meshes)]
-    notes = (*_covered(reached, meshes), *_left_out(urdf, found, links))
-    return Imported(robot, found, reached, tuple(filter(None, dict.fromkeys(sources))), notes)
+    read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
+    notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
+    if fewer:
+        most = f"certificates take at most {check.MAX_BOUNDARIES:,}"
+        notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
+    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
+
+
+def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
+    """Refuse an SRDF that names links or joints, but none of the URDF's."""
+    joints = {joint for values in (srdf.states or {}).values() for joint in values}
+    for what, named, known in (
+        ("links", srdf.named, urdf.links.keys()),
+        ("joints", joints, urdf.joints.keys()),
+    ):
+        if srdf.source is not None and named and not named & known:
+            said = f"{srdf.source.name} is of another robot: its {what} are {listed(sorted(named))}"
+            raise RobotFileError(f"{called(urdf.file)}: {said}; the URDF has {listed(known)}")
 
 
 def packaged_or_path(source: str | Path) -> Path:
@@ -260,18 +286,31 @@ def _balls(
     return balls, reached
 
 
-def _pairs(urdf: Urdf, balls: list[Ball], links: Srdf, clearance: float) -> Iterator[Pair]:
-    """Yield each two balls of links that are no neighbours and are to be kept apart."""
-    found = [
+def _pairs(balls: Sequence[Ball], links: Srdf) -> list[tuple[str, str]]:
+    """Return each two balls of links that are no neighbours and are to be kept apart."""
+    return [
         (one.point.name, other.point.name)
         for one, other in combinations(balls, 2)
         if abs(one.group - other.group) > 1 and links.checks(one.link, other.link)
     ]
-    if len(found) > MOST_PAIRS:
-        text = f"{len(found)} pairs of balls; at most {MOST_PAIRS} are possible"
-        cure = "allow a larger excess, or disable pairs of links in an SRDF"
-        raise RobotFileError(f"{called(urdf.file)}: {text}: {cure}")
-    return (Pair(", ".join(names), names, clearance) for names in found)
+
+
+def _fewer(
+    count: int,
+    shapes: Mapping[str, Sequence[Collision]],
+    chain: Chain,
+    links: Srdf,
+    excess: float,
+) -> str:
+    """Name an excess that makes few enough pairs for a certificate; nothing where they are."""
+    if count <= check.MAX_BOUNDARIES:
+        return ""
+    for _ in range(COARSEST):
+        excess = float(f"{COARSER * excess:.2g}")
+        fewer = len(_pairs(_balls(shapes, chain, excess)[0], links))
+        if fewer <= check.MAX_BOUNDARIES:
+            return f"an excess of {excess:g} m makes {fewer:,}"
+    return ""
 
 
 def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
@@ -292,13 +331,24 @@ def _rounded_up(length: float) -> str:
 
 def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
     """Yield what the robot leaves out."""
-    carried = {link for *_, group in chain.rigid() for link in group}
-    others = [n for n, link in urdf.links.items() if n not in carried and link.collisions]
+    groups = {link: number for number, _, group in chain.rigid() for link in group}
+    others = [n for n, link in urdf.links.items() if n not in groups and link.collisions]
     if others:
         yield f"not in the chain, and not kept clear of: {', '.join(others)}"
     bare = [n for _, n, g in chain.rigid() if not any(urdf.links[x].collisions for x in g)]
     if bare:
         yield f"without a collision shape: {', '.join(bare)}"
-    disabled = sorted(", ".join(sorted(p)) for p in links.disabled if p <= carried)
+    solid = [link for link in groups if urdf.links[link].collisions]
+    pairs = [p for p in combinations(solid, 2) if groups[p[0]] != groups[p[1]]]
+    neighbours = [p for p in pairs if abs(groups[p[0]] - groups[p[1]]) == 1]
+    if neighbours:
+        yield f"not kept apart, because one joint connects them: {_listed_pairs(neighbours)}"
+    disabled = [p for p in pairs if p not in neighbours and not links.checks(*p)]
     if disabled:
-        yield f"pairs that the SRDF disables: {'; '.join(disabled)}"
+        yield f"not kept apart, because the SRDF disables them: {_listed_pairs(disabled)}"
+    if unknown := sorted(links.named - urdf.links.keys()):
+        yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
+
+
+def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
+    return "; ".join(" and ".join(pair) for pair in pairs)

@@ -40,6 +40,11 @@ class Srdf:
     states: dict[str, dict[str, float]] | None = None
     source: Source | None = None
 
+    @property
+    def named(self) -> frozenset[str]:
+        """Links of all its pairs."""
+        return self.silent.union(*self.disabled, *self.enabled)
+
     def checks(self, one: str, other: str) -> bool:
         """Tell whether a pair of links is to be kept apart."""
         pair = frozenset((one, other))

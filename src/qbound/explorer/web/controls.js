@@ -111,15 +111,28 @@ function setJoint(j, value) {
 }
 
 function buildMargins() {
-  byId("margins").replaceChildren(...margins(robot, state.q).map(marginRow));
+  const found = margins(robot, state.q);
+  marginRows.splice(0, Infinity, ...marginGroups());
+  byId("margins").replaceChildren(...marginRows.map((rows) => marginRow(found, rows)));
 }
 
-/** @type {(margin: Margin, i: number) => HTMLTableRowElement} */
-function marginRow({ name, used }, i) {
+/** The boundaries and limits of each row. @type {number[][]} */
+const marginRows = [];
+
+/** The least of some margins.
+ * @type {(found: Margin[], rows: number[]) => Margin} */
+function leastMargin(found, rows) {
+  return rows.map((i) => found[i]).reduce((one, other) => (other.value < one.value ? other : one));
+}
+
+/** @type {(found: Margin[], rows: number[]) => HTMLTableRowElement} */
+function marginRow(found, rows) {
+  const { name, used } = found[rows[0]];
+  const links = rows.length > 1 ? linksOf(rows[0]) : null;
   const row = element("tr", { className: used ? "" : "unused" });
   row.append(
-    element("th", { scope: "row" }, name),
-    element("td", {}, betweenText(i)),
+    element("th", { scope: "row" }, links ? `${rows.length} pairs of balls` : name),
+    element("td", {}, links ? links.join(" and ") : betweenText(rows[0])),
     element("td", { className: "number" }),
   );
   /** @type {(hover: string | null) => void} */
@@ -127,7 +140,9 @@ function marginRow({ name, used }, i) {
     state.hover = hover;
     refresh();
   };
-  row.addEventListener("pointerenter", () => point(name));
+  row.addEventListener("pointerenter", () =>
+    point(leastMargin(margins(robot, state.q), rows).name),
+  );
   row.addEventListener("pointerleave", () => point(null));
   return row;
 }

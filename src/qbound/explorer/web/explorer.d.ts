@@ -179,6 +179,8 @@ interface ToolMap {
   y: Matrix;
   kinds: Kind[];
   planar: boolean;
+  /** Of the two joints, those that do not move the tool. */
+  still: number[];
 }
 
 interface Arm {

@@ -180,7 +180,14 @@ function toolMap(robot, q) {
     .flat()
     .slice(1)
     .reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-  return { x, y, kinds: freeKinds(robot), planar: depth <= 1e-9 * robot.reach };
+  const least = 1e-9 * robot.reach;
+  /** @type {(joint: number) => boolean} */
+  const moves = (joint) =>
+    seen.some((form) =>
+      form.some((row, i) => row.some((x, k) => [i, k][joint] > 0 && Math.abs(x) > least)),
+    );
+  const still = [0, 1].filter((joint) => !moves(joint));
+  return { x, y, kinds: freeKinds(robot), planar: depth <= least, still };
 }
 
 /** @type {(map: ToolMap, pair: Pair) => Point} */

@@ -24,7 +24,7 @@ function redraw() {
   byId("area").textContent = areaText();
   root.dispatchEvent(new CustomEvent("qbound-draw"));
   if (robot.polygon) inputOf("show-polygon").disabled = !slice.own;
-  inputOf("show-workspace").disabled = !slice.regular; // the tool leaves the plane: it has no area
+  inputOf("show-workspace").disabled = !slice.regular; // the tool covers no area of the plane
   inputOf("show-workspace").checked = slice.regular && state.show.workspace;
   refresh();
 }
@@ -138,7 +138,8 @@ function say(verdict, reason) {
 function showMargins(found, lit) {
   if (!shows("margins")) return;
   const { rows } = partOf("margins", HTMLTableSectionElement);
-  for (const [i, { name, value, unit }] of found.entries()) {
+  for (const [i, group] of marginRows.entries()) {
+    const { name, value, unit } = leastMargin(found, group);
     rows[i].cells[2].textContent = valueText(value, unit);
     rows[i].classList.toggle("lit", lit.violated.has(name));
   }

@@ -31,6 +31,30 @@ function betweenText(row) {
   return wall.used ? words : `${words}, not used`;
 }
 
+/** The boundaries and limits of each row of the margins, by index: of more than a dozen boundaries,
+    those of balls, which are called LINK/1, LINK/2, share the row of their links.
+ * @type {() => number[][]} */
+function marginGroups() {
+  /** @type {Map<string, number[]>} */
+  const groups = new Map();
+  for (const i of [...robot.boundaries, ...robot.limits].keys()) {
+    const links = robot.boundaries.length > 12 ? linksOf(i) : null;
+    const key = links === null ? `${i}` : JSON.stringify([robot.boundaries[i].used, ...links]);
+    groups.set(key, [...(groups.get(key) ?? []), i]);
+  }
+  return [...groups.values()];
+}
+
+/** The two links that a boundary keeps apart by a ball of each; null where it is about others.
+ * @type {(row: number) => string[] | null} */
+function linksOf(row) {
+  const wall = robot.boundaries[row];
+  if (wall?.kind !== "pair") return null;
+  const balls = wall.points.map((i) => robot.points[i]);
+  const links = balls.map(({ name }) => name.slice(0, Math.max(name.lastIndexOf("/"), 0)));
+  return balls.every(({ radius }) => radius > 0) && links.every(Boolean) ? links : null;
+}
+
 /** What a boundary keeps apart, or on its side.
  * @type {(wall: Wall) => string[]} */
 function partners(wall) {
@@ -82,13 +106,21 @@ function statusText(found) {
 
 /** @type {() => string} */
 function postureText() {
-  if (!slice.regular) return "The tool leaves the plane: move the arm in joint space.";
+  if (!slice.regular) return `${irregularText()}: move the arm in joint space.`;
   const det = determinant(slice.map, pairOf(state.q));
   if (slice.lines.length === 0) return "One posture only: det J is never 0.";
   if (Math.abs(det) <= NEAR_SINGULAR * slice.largest)
     return "Singular: det J = 0. Here one posture turns into the other.";
   const posture = det > 0 ? "A (det J > 0)" : "B (det J < 0)";
   return `Posture ${posture}. The other one at this place is ${otherPostureText()}.`;
+}
+
+/** Why the tool covers no area of the plane.
+ * @type {() => string} */
+function irregularText() {
+  const still = slice.map.still.map((k) => robot.joints[robot.free[k]].name);
+  if (still.length > 0) return `The tool is not moved by ${still.join(" and ")}`;
+  return slice.map.planar ? "The tool keeps to a curve" : "The tool leaves the plane";
 }
 
 /** @type {() => string} */

@@ -44,7 +44,7 @@ from qbound.proofs.certificates.witness import (
 )
 from qbound.proofs.exact.parts import parts_of
 from qbound.proofs.subdivide import Search, Tell, silent
-from qbound.units import file_units
+from qbound.units import counted, file_units, joint_text
 
 MOST_CELLS = 200_000
 """Cells that a search opens for one boundary before it gives up."""
@@ -54,6 +54,12 @@ FEW_CELLS = 20_000
 
 SEARCHING = 0.99
 """Part of the work that is told of as the search; the rest is the check of what it found."""
+
+WIDER = 10
+"""How often the distance to a scale that is to be refuted is doubled."""
+
+MOST_NAMED = 5
+"""Boundaries that are named as undecided."""
 
 PER_ARC = (12, 48, 192)
 """Points on each arc of a region, in turn, until its polygon is proved."""
@@ -229,7 +235,8 @@ def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) ->
     if violated:
         return _refuted(subject, arm, statement, deepest(arm, statement, violated), searches)
     if any(search.left for search in found.values()):
-        return Certificate(Verdict.UNDECIDED, "", _left(searches), searches)
+        said = f"undecided: {_left(subject.robot, searches)}"
+        return Certificate(Verdict.UNDECIDED, "", said, searches)
     proof = proof_of(arm, found, directions)
     answer = subject.confirmed(statement, Verdict.PROVED, proof=proof)
     return replace(answer, searches=searches)
@@ -287,22 +294,27 @@ def by_boundary(arm: Arm, found: Mapping[int, Search]) -> dict[str, Search]:
 
 def _together(searches: Sequence[Search]) -> Search:
     violations = [found.violation for found in searches if found.violation is not None]
+    places = [found.left_at for found in searches if found.left_at is not None]
     return Search(
         trees=tuple(tree for found in searches for tree in found.trees),
         leaves=sum(found.leaves for found in searches),
         left=sum(found.left for found in searches),
         part_left=max(found.part_left for found in searches),
         violation=violations[0] if violations else None,
+        left_at=places[0] if places else None,
     )
 
 
-def _left(searches: dict[str, Search]) -> str:
+def _left(robot: Robot, searches: dict[str, Search]) -> str:
+    """Say of which boundaries cells are undecided, how many, and where one of them is."""
     lines = [
-        f"{name}: {found.left} cells, {100 * found.part_left:.3g} % of the set"
+        f"{name}: {counted(found.left, 'cell')}, {100 * found.part_left:.3g} % of the set,"
+        f" as at {joint_text(robot, found.left_at)}"
         for name, found in searches.items()
-        if found.left
+        if found.left_at is not None
     ]
-    return "undecided: " + "; ".join(lines)
+    more = [f"and {len(lines) - MOST_NAMED} more"] if len(lines) > MOST_NAMED else []
+    return "; ".join([*lines[:MOST_NAMED], *more])
 
 
 # --- the largest safe scale -----------------------------------------------------------------------
@@ -316,10 +328,13 @@ class Bracket:
     ----------
     safe, unsafe : tuple of str and Certificate
         The scale as a decimal, and its answer; ("", None) where no such scale was found.
+    undecided : tuple of str
+        A scale between them at which halving stopped, and why; ("", "") where it did not.
     """
 
     safe: tuple[str, Certificate | None]
     unsafe: tuple[str, Certificate | None]
+    undecided: tuple[str, str] = ("", "")
 
 
 def bracket_scale(
@@ -336,18 +351,24 @@ def bracket_scale(
     """
     subject = Subject.of(subject)
     arm, corners = Arm(subject.form), home_vertices(subject.robot)
-    low, high, tries = 0.0, 0.0, highest
+    low, high, tries, undecided = 0.0, 0.0, highest, ("", "")
     while low < highest and (not low or not high or high - low > width) and tries > width:
         cells = cells_of(arm, scaled_polygon(subject.robot, corners, tries))
-        found = safe.search(arm, cells, FEW_CELLS)[0].values()
-        if any(search.violation is not None for search in found):
+        found = by_boundary(arm, safe.search(arm, cells, FEW_CELLS)[0])
+        if any(search.violation is not None for search in found.values()):
             high = tries
-        elif any(search.left for search in found):
+        elif any(search.left for search in found.values()):
+            undecided = decimal(tries), _left(subject.robot, found)
             break
         else:
             low = tries
         tries = round((low + high) / 2, 12)
-    return Bracket(*(_at_scale(subject, corners, scale) for scale in (low, high)))
+    lower, upper = (_at_scale(subject, corners, scale) for scale in (low, high))
+    for k in range(WIDER if high else 0):  # a witness too shallow for the checker has deeper ones
+        if upper[1] is None or upper[1].verdict is Verdict.REFUTED:
+            break
+        upper = _at_scale(subject, corners, round(min(high + 2**k * width, highest), 12))
+    return Bracket(lower, upper, undecided)
 
 
 def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Certificate | None]:
@@ -362,14 +383,21 @@ def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Cer
 WIDEST = 100
 """Letters of a line that is read on a terminal."""
 
+MANY = 12
+"""Boundaries above which those of balls are summed up by their links."""
+
 
 def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
     """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
     if answer.witness is not None:
         yield _depth(robot, answer.witness)
     elif answer.verdict is Verdict.PROVED:
-        cells = ", ".join(f"{name} {found.leaves}" for name, found in answer.searches.items())
-        yield f"cells: {answer.leaves} ({cells})"
+        counts = {name: found.leaves for name, found in answer.searches.items()}
+        named = ", ".join(f"{name} {count}" for name, count in counts.items())
+        if len(counts) > MANY:
+            most = max(counts, key=counts.__getitem__)
+            named = f"of {len(counts)} boundaries; at most {counts[most]}, of {most}"
+        yield f"cells: {answer.leaves} ({named})"
 
 
 def _depth(robot: Robot, found: Witness) -> str:
@@ -387,3 +415,33 @@ def folded(text: str) -> Iterator[str]:
         whole = re.sub(r", (?=[^()]*\))", ",\u00a0", line)  # a point is not broken
         rows = wrap(whole, WIDEST, subsequent_indent="  ", break_long_words=False)
         yield from (row.replace("\u00a0", " ") for row in rows)
+
+
+def summed_up(said: str, robot: check.Robot) -> str:
+    """Put what a checker says of many balls together, which are called LINK/1, LINK/2: by links.
+
+    Parameters
+    ----------
+    said : str
+        The checker's answer.
+    robot : check.Robot
+        As the checker read it.
+    """
+    count = len(robot.boundaries)
+    if count <= MANY:
+        return said
+    lines = said.split("\n")
+    first = next(k for k, line in enumerate(lines, 1) if line.startswith("all limits of joints"))
+    rows: dict[tuple[str, ...], list[str]] = {}
+    for boundary, line in zip(robot.boundaries, lines[first : first + count], strict=True):
+        balls = [each.name for each in boundary.things if each.kind == "point" and each.radius]
+        links = [name.rpartition("/")[0] for name in balls]
+        named = all(links) and len(links) == len(boundary.things)
+        what = "balls" if len(links) == 1 else "pairs of balls"
+        key = (" and ".join(map(ascii, links)), what, line.rpartition(": ")[2])
+        rows.setdefault(key if named else (line,), []).append(line)
+    kept = [
+        found[0] if len(found) == 1 else f"  {key[0]}: {len(found)} {key[1]}, {key[2]}"
+        for key, found in rows.items()
+    ]
+    return "\n".join([*lines[:first], *kept, *lines[first + count :]])
