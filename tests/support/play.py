@@ -21,6 +21,9 @@ PLAY = ROOT / "book" / "_static" / "play"
 PAPER = "minervabot-v2"
 WIDTHS = {"wide screen": 900, "phone": 340}
 
+LIVE = ("parts", "live_space", "live_scene", "live", "play")
+"""Scripts of the page "Configuration space, live", which mounts no explorer."""
+
 PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
 <meta name="viewport" content="width=device-width"><title>A figure</title>
 <style>:root {{ color-scheme: {theme} }}
@@ -53,15 +56,23 @@ def page_of(kind: str, rule: str, theme: str, options: str = "") -> str:
 
     Its script knows the mounted arm, if it has one, as `arm`.
     """
+    style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
+    if kind == "live":
+        script = engine_script(explorer=False) + scripts(*LIVE)
+        return PAGE.format(
+            kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
+        )
     key = PAPER + ("" if rule == "clearance" else f"-{rule}")
     script = engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule)} }};\n"
     script += KEEP + "\n"
-    files = [PLAY / f"{name}.js" for name in ("parts", kind, "play")]
-    script += "".join(file.read_text(encoding="utf-8") for file in files)
-    style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
+    script += scripts("parts", *([] if kind == "explorer" else [kind]), "play")
     return PAGE.format(
         kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
     )
+
+
+def scripts(*names: str) -> str:
+    return "".join((PLAY / f"{name}.js").read_text(encoding="utf-8") for name in names)
 
 
 @pytest.fixture

@@ -818,16 +818,15 @@
     /** @type {Point} */
     let grip = [0, 0]; // from the chosen obstacle's place to where it was taken
 
-    /** @type {(event: PointerEvent) => void} */
-    function take(event) {
+    /** @type {(pixel: Point, held: Element | null) => void} */
+    function take(pixel, held) {
       gesture = "";
       strokes += 1;
-      const { target } = event;
-      const body = target instanceof SVGElement ? target.dataset.body : undefined;
+      const body = held instanceof SVGElement ? held.dataset.body : undefined;
       if (body === undefined) return;
       choose(Number(body));
       const one = nowChosen();
-      const [x, y] = drawn.whole.from(pixelOf(plane.svg, event));
+      const [x, y] = drawn.whole.from(pixel);
       if (one) grip = [x - one.x, y - one.y];
     }
 
@@ -880,8 +879,7 @@
       changeChosen({ ...one, sizes: larger(one.sizes, factor), corners }, "grow");
     }
 
-    plane.svg.addEventListener("pointerdown", take);
-    draggable(plane.svg, dragPlane);
+    draggable(plane.svg, dragPlane, take);
     draggable(joints.svg, (pixel) => move(drawn.square.from(pixel)));
     onKeys(plane.svg, stepPlane, {
       o: () => {
