@@ -253,7 +253,7 @@ def test_a_pressed_dot_shows_both_its_postures(open_figure):
     page.mouse.click(*place(page, at, "plane"))
     settle(page)
     assert pair(page) == pytest.approx(wanted, abs=1e-9)
-    assert "safe, in region 1 with home" in words(page)
+    assert "allowed by the points, in region 1 with home" in words(page)
     assert "The pale one is" in words(page)
     assert (
         page.locator(".arm.second .body").count() == page.locator(".arm:not(.second) .body").count()
@@ -261,11 +261,11 @@ def test_a_pressed_dot_shows_both_its_postures(open_figure):
 
 
 @pytest.mark.parametrize(
-    ("button", "safe"),
-    [("A dot with one safe posture", 1), ("with two", 2), ("with none", 0)],
+    ("button", "allowed"),
+    [("A dot with one allowed posture", 1), ("with two", 2), ("with none", 0)],
 )
-def test_a_dot_of_each_sort_can_be_asked_for(open_figure, button, safe):
+def test_a_dot_of_each_sort_can_be_asked_for(open_figure, button, allowed):
     page = open_figure("postures")
     page.get_by_role("button", name=button, exact=True).click()
     settle(page)
-    assert words(page).count("safe") - words(page).count("not safe") == safe
+    assert words(page).count("allowed") - words(page).count("not allowed") == allowed

@@ -69,23 +69,23 @@ def begin_anew(name, page):
 
 
 def test_every_handle_follows_a_finger_in_every_direction_and_the_page_rests(figure):
-    name, page = figure
-    begin_anew(name, page)
+    kind, page = figure
+    begin_anew(kind, page)
     for n in visible_handles(page):
         gone = 0.0
         for dx, dy in DIRECTIONS.values():
-            begin_anew(name, page)
+            begin_anew(kind, page)
             page.evaluate(CENTRED, n)
             settle(page)
             scrolled = page.evaluate("scrollY")
             x, y = middle(page, n)
-            is_round = page.locator(".reach-me").nth(n).evaluate("(one) => one.localName") == "circle"
-            start = (x + BESIDE[0], y + BESIDE[1]) if is_round else (x, y)
+            name = page.locator(".reach-me").nth(n).evaluate("(one) => one.localName")
+            start = (x + BESIDE[0], y + BESIDE[1]) if name == "circle" else (x, y)
             touch_drag(page, start, (start[0] + FAR * dx, start[1] + FAR * dy))
             assert page.evaluate("[scrollY, heard.pointercancel]") == [scrolled, 0], (n, dx, dy)
             after = middle(page, n)
             gone += hypot(after[0] - x, after[1] - y)
-            if n == 0 and name in FREE:
+            if n == 0 and kind in FREE:
                 assert after == pytest.approx((x + FAR * dx, y + FAR * dy), abs=1.5)
         assert gone > FAR, n
     assert page.evaluate("heard.pointermove") > 0

@@ -40,8 +40,11 @@ SCRIPTS = HERE.parent / "_static" / "play"
 WITHOUT_PARTS = {"explorer"}
 """Kinds that draw without ``parts.js``: buttons, a line that says what holds."""
 
-WITHOUT_EXPLORER = {"live"}
-"""Kinds that show no robot of the package and mount no explorer."""
+WITHOUT_ROBOT = {"live"}
+"""Kinds that show no robot of the package."""
+
+WITHOUT_EXPLORER = WITHOUT_ROBOT | {"bodies", "circle", "scale", "switches"}
+"""Kinds that mount no explorer: a page with these alone does without its scripts."""
 
 SCRIPTS_BEFORE = {"live": ("live_space", "live_scene")}
 """What stands before a kind's own script, in order."""
@@ -101,7 +104,7 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str]]:
         return
     for before in SCRIPTS_BEFORE.get(kind, ()):
         yield own_script(before)
-    if kind in WITHOUT_EXPLORER:
+    if kind in WITHOUT_ROBOT:
         yield own_script(kind)
         return
     name = hook.get("robot", "minervabot-v2")

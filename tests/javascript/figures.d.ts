@@ -65,14 +65,6 @@ interface Lowest {
   q: Pair;
 }
 
-/* --- bodies ----------------------------------------------------------------------------------- */
-
-interface BodyPair {
-  frames: number[];
-  gap: number;
-  shared: Point[];
-}
-
 /* --- traversals ------------------------------------------------------------------------------- */
 
 interface Way {
@@ -113,6 +105,7 @@ interface Judged {
   safe: boolean;
   region: number | null;
   violated: string[];
+  overlap: boolean; // of whole links, whatever the points say
 }
 
 /* --- live ------------------------------------------------------------------------------------- */

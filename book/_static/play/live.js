@@ -52,8 +52,18 @@
 
   /** @type {FigureKind} */
   function show(root) {
-    const { clear, draggable, element, handle, layer, make, number, onKeys, pathText } =
-      qboundEngine;
+    const {
+      clear,
+      draggable,
+      drawScaleBar,
+      element,
+      handle,
+      layer,
+      make,
+      number,
+      onKeys,
+      pathText,
+    } = qboundEngine;
     const { CIRCLE, picture, pixelOf, valueRow, wholePicture } = qboundEngine;
     const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine, whenWidthChanges } =
       qboundParts;
@@ -190,8 +200,11 @@
     /* --- controls ------------------------------------------------------------------------------- */
 
     const [joints, plane] = [
-      canvas("Configuration space: a square of both joint angles. Free poses are coloured."),
-      canvas("Workspace: the arm among its obstacles."),
+      canvas(
+        "Configuration space: a square of both joint angles. Free poses are coloured.",
+        "Configuration space",
+      ),
+      canvas("Workspace: the arm among its obstacles.", "Workspace"),
     ];
     for (const [{ figure, svg }, help] of /** @type {const} */ ([
       [joints, JOINT_HELP],
@@ -462,6 +475,7 @@
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
       const view = [-VIEW, VIEW];
       const whole = wholePicture(plane.svg, [view, view]);
+      drawScaleBar(whole, "m");
       const base = layer(whole, "base", false);
       const [x, y] = whole.at([0, 0]);
       base.append(make("circle", { class: "axle", cx: x, cy: y, r: 5 }));

@@ -1,8 +1,7 @@
 "use strict";
 /* What the figures that one moves in a chapter share: boxes to tick, words that say what holds. */
 const qboundParts = (() => {
-  const { addArm, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
-  const { number, placeArm } = qboundEngine;
+  const { addArm, element, isInside, make, newPrefix, number, placeArm } = qboundEngine;
 
   /** A box to tick.
    * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
@@ -53,12 +52,13 @@ const qboundParts = (() => {
     };
   }
 
-  /** A picture with a name for those who do not see it.
-   * @type {(label: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
-  function canvas(label) {
+  /** A picture with a title, and words for those who do not see it.
+   * @type {(label: string, title?: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
+  function canvas(label, title) {
     const svg = make("svg", { role: "img", "aria-label": label });
     svg.id = `${newPrefix()}picture`;
-    return { figure: element("div", { className: "picture" }, svg), svg };
+    const head = title ? [element("p", { className: "picture-title" }, title)] : [];
+    return { figure: element("div", { className: "picture" }, ...head, svg), svg };
   }
 
   /** Call at once, and whenever the element has a new width.
@@ -82,23 +82,23 @@ const qboundParts = (() => {
   /** Room around a picture of two joint angles. */
   const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
 
-  /** Axes of two joint values in degrees.
+  /** Axes of q1 and q2 in degrees, with a number every so many.
    * @type {(drawn: Picture, step: number) => void} */
   function jointAxes(drawn, step) {
-    const group = layer(drawn, "axes", false);
     const { left, top, right, bottom } = drawn.box;
-    const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
-    for (const k of [0, 1]) {
-      const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
-      for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
-        const text = `${tickAt}°`.replace("-", "−");
-        group.append(...gridLine(drawn, k, (tickAt * Math.PI) / 180, text, bottom + 15));
-      }
-    }
-    group.append(
-      make("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
-      make("text", { x: left - 52, y: (top + bottom) / 2 + 4, "text-anchor": "middle" }, "q₂"),
+    const ends = [drawn.from([left, bottom]), drawn.from([right, top])].map((values) =>
+      values.map((value) => (value * 180) / Math.PI / step),
     );
+    const axes = [0, 1].map((k) => {
+      const first = Math.ceil(ends[0][k] - 1e-9);
+      const count = Math.floor(ends[1][k] + 1e-9) - first + 1;
+      const ticks = Array.from({ length: count }, (_, i) => {
+        const value = (first + i) * step;
+        return { value: (value * Math.PI) / 180, text: String(value).replace("-", "−") };
+      });
+      return { name: `q${k + 1}`, unit: "°", ticks };
+    });
+    qboundEngine.drawAxes(drawn, axes);
   }
 
   /** The arm's parts in a picture of its plane, to be moved by `moveArm`.

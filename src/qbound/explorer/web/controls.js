@@ -118,7 +118,7 @@ function buildMargins() {
 function marginRow({ name, used }, i) {
   const row = element("tr", { className: used ? "" : "unused" });
   row.append(
-    element("th", { scope: "row" }, name),
+    ownColour(robot, element("th", { scope: "row" }, name), name),
     element("td", {}, betweenText(i)),
     element("td", { className: "number" }),
   );

@@ -50,6 +50,8 @@ const engine = {
   determinant,
   // contacts.js
   encounter,
+  placedParts,
+  bodyGaps,
   // postures.js
   armOf,
   postures,
@@ -73,7 +75,9 @@ const engine = {
   stopsAt,
   alongPath,
   // drawing.js
-  gridLine,
+  boundaryColour,
+  ownColour,
+  drawAxes,
   legendKey,
   make,
   set,
@@ -92,9 +96,13 @@ const engine = {
   player,
   // arm.js
   planeBox,
+  drawScaleBar,
+  drawGround,
   addArm,
   placeArm,
   placeAt,
+  bodyName,
+  overlapText,
   // parts.js
   newPrefix,
   valueRow,

@@ -22,7 +22,9 @@ function handleAt(svg, x, y) {
     .elementsFromPoint(x, y)
     .filter((one) => one.classList.contains("reach-me") && svg.contains(one));
   const small = there.filter((one) => one instanceof SVGCircleElement);
-  return leastBy(small, (one) => Math.hypot(...minus(middleOnScreen(one), [x, y]))) ?? there[0] ?? null;
+  return (
+    leastBy(small, (one) => Math.hypot(...minus(middleOnScreen(one), [x, y]))) ?? there[0] ?? null
+  );
 }
 
 /** @type {(part: Element) => Point} */
@@ -59,8 +61,9 @@ function draggable(svg, move, take = () => {}) {
     svg.setPointerCapture(pointerId);
     svg.focus({ preventScroll: true });
     event.preventDefault();
-    const isRound = handle instanceof SVGCircleElement;
-    grip = isRound ? minus([clientX, clientY], middleOnScreen(handle)) : [0, 0];
+    grip = [0, 0];
+    if (handle instanceof SVGCircleElement)
+      grip = minus([clientX, clientY], middleOnScreen(handle));
     take(pixelOf(svg, event), handle);
     if (!handle) move(pixelOf(svg, event), null);
   });
