@@ -19,6 +19,8 @@ FIGURES = {
     "bodies": ("bodies", "clearance", ""),
     "circle": ("circle", "clearance", ""),
     "explorer": ("explorer", "clearance", ""),
+    "goals": ("goals", "clearance", ""),
+    "contact": ("contact", "clearance", ""),
     "live": ("live", "clearance", ""),
     "wedge of live": ("live", "clearance", ""),
     "crate of live": ("live", "clearance", ""),

@@ -83,7 +83,7 @@ interface Trace {
 
 interface Rule {
   wall: Wall;
-  form: Matrix;
+  form: Matrix | null; // null: it is about bodies
 }
 
 interface Slid {
@@ -96,6 +96,20 @@ interface Behind {
   pair: Pair; // the first safe pose beyond
   width: number; // of what lies between, rad
   region: number | null;
+}
+
+/* --- goals ------------------------------------------------------------------------------------ */
+
+interface RegionsKind {
+  rulesOf: (robot: Robot) => Rule[];
+  slide: (robot: Robot, rules: Rule[], from: Pair, to: Pair) => Slid;
+}
+
+interface Ring {
+  name: string;
+  at: Point;
+  poses: { q: Pair; answer: string; file: string | null }[]; // answers of `qbound why`
+  path: Pair[] | null;
 }
 
 /* --- postures --------------------------------------------------------------------------------- */

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -15,14 +16,21 @@ from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
 from support.javascript import Script
+from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAY = ROOT / "book" / "_static" / "play"
 PAPER = "minervabot-v2"
+ROBOTS = {"goals": "two-links-on-a-table"}
+"""Of kinds that show another robot than the paper's."""
+
 WIDTHS = {"wide screen": 900, "phone": 340}
 
 LIVE = ("parts", "live_space", "live_scene", "live", "play")
 """Scripts of the page "Configuration space, live", which mounts no explorer."""
+
+SCRIPTS_BEFORE = {"contact": ("regions",), "goals": ("regions",)}
+"""As the book's extension has them."""
 
 PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
 <meta name="viewport" content="width=device-width"><title>A figure</title>
@@ -43,9 +51,21 @@ def region(rule: str = "clearance", robot: str = PAPER) -> Region:
 
 
 @cache
+def told(kind: str) -> ModuleType:
+    """The module of the book's extension that says what figures of a kind are told."""
+    return load_script(f"book/_ext/play_data/{kind}.py")
+
+
+@cache
+def own_data(kind: str) -> str:
+    return json.dumps(told(kind).data(region(robot=ROBOTS[kind])))
+
+
+@cache
 def data(rule: str = "clearance", robot: str = PAPER) -> str:
     """What the figures of a robot are told, as JSON."""
-    return json.dumps(explorer_data(region(rule, robot), closed_form.PATHS))
+    walks = closed_form.PATHS if robot.startswith(PAPER) else ()
+    return json.dumps(explorer_data(region(rule, robot), walks))
 
 
 # --- in a page ------------------------------------------------------------------------------------
@@ -62,10 +82,17 @@ def page_of(kind: str, rule: str, theme: str, options: str = "") -> str:
         return PAGE.format(
             kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
         )
-    key = PAPER + ("" if rule == "clearance" else f"-{rule}")
-    script = engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule)} }};\n"
+    robot = ROBOTS.get(kind, PAPER)
+    key = robot + ("" if rule == "clearance" else f"-{rule}")
+    script = (
+        engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule, robot)} }};\n"
+    )
+    if robot != PAPER:
+        options += f' data-robot="{robot}"'
+        script += f"window.qboundData = {{ {json.dumps(f'{kind}-{key}')}: {own_data(kind)} }};\n"
     script += KEEP + "\n"
-    script += scripts("parts", *([] if kind == "explorer" else [kind]), "play")
+    own = [] if kind == "explorer" else [*SCRIPTS_BEFORE.get(kind, ()), kind]
+    script += scripts("parts", *own, "play")
     return PAGE.format(
         kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
     )

@@ -1,29 +1,6 @@
 "use strict";
 /* Whole bodies beside their points: what each of both says of a pose. */
 {
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
-
-  /** The pose with one joint turned so that what it carries points to a place: the next joint, or
-      the tool.
-   * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
-  function turnedToward(robot, q, [joint, next], target) {
-    const { angle, framesOf, minus, pointPlaces, project, viewAxes, wrapped } = qboundEngine;
-    /** The angle about the joint from what it carries to the target.
-     * @type {(pose: Pose) => number} */
-    const turn = (pose) => {
-      const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
-      const tool = pointPlaces(robot, pose)[robot.tool];
-      const at = project(axes, frames[joint + 1].place);
-      const carried = project(axes, next === undefined ? tool : frames[next + 1].place);
-      return wrapped(angle(minus(target, at)) - angle(minus(carried, at)));
-    };
-    /** @type {(change: number) => Pose} */
-    const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
-    const rest = turn(q);
-    const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
-    return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
-  }
-
   /* --- the figure ------------------------------------------------------------------------------- */
 
   /** @type {FigureKind} */
@@ -48,6 +25,7 @@
     const { valueRow, withPair, wrapped } = qboundEngine;
     const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine } =
       qboundParts;
+    const { turnedToward } = qboundParts;
     const robot = given;
     const unit = robot.length_unit;
     const [first, second] = robot.free;
@@ -218,5 +196,5 @@
     qboundParts.whenWidthChanges(joints.figure, draw);
   }
 
-  qboundFigures.bodies = Object.assign(show, { turnedToward });
+  qboundFigures.bodies = show;
 }

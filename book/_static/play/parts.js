@@ -82,22 +82,27 @@ const qboundParts = (() => {
   /** Room around a picture of two joint angles. */
   const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
 
+  /** Numbers of an axis in degrees, one every so many, between two angles in rad.
+   * @type {(low: number, high: number, step: number) => JointAxis["ticks"]} */
+  function degreeTicks(low, high, step) {
+    const [from, to] = [low, high].map((value) => (value * 180) / Math.PI / step);
+    const first = Math.ceil(from - 1e-9);
+    return Array.from({ length: Math.floor(to + 1e-9) - first + 1 }, (_, i) => {
+      const value = (first + i) * step;
+      return { value: (value * Math.PI) / 180, text: String(value).replace("-", "−") };
+    });
+  }
+
   /** Axes of q1 and q2 in degrees, with a number every so many.
    * @type {(drawn: Picture, step: number) => void} */
   function jointAxes(drawn, step) {
     const { left, top, right, bottom } = drawn.box;
-    const ends = [drawn.from([left, bottom]), drawn.from([right, top])].map((values) =>
-      values.map((value) => (value * 180) / Math.PI / step),
-    );
-    const axes = [0, 1].map((k) => {
-      const first = Math.ceil(ends[0][k] - 1e-9);
-      const count = Math.floor(ends[1][k] + 1e-9) - first + 1;
-      const ticks = Array.from({ length: count }, (_, i) => {
-        const value = (first + i) * step;
-        return { value: (value * Math.PI) / 180, text: String(value).replace("-", "−") };
-      });
-      return { name: `q${k + 1}`, unit: "°", ticks };
-    });
+    const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
+    const axes = [0, 1].map((k) => ({
+      name: `q${k + 1}`,
+      unit: "°",
+      ticks: degreeTicks(low[k], high[k], step),
+    }));
     qboundEngine.drawAxes(drawn, axes);
   }
 
@@ -109,15 +114,16 @@ const qboundParts = (() => {
     return { ...drawn, ...addArm(robot, drawn), ...rest, path: none, ghost: none };
   }
 
-  /** Show the arm in a pose; the boundaries `lit` stand out with their points.
-   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>) => void} */
-  function moveArm(robot, drawn, q, lit = []) {
+  /** Show the arm in a pose; the boundaries `lit` stand out with their points, as violated ones if
+      not said otherwise.
+   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>, violated?: boolean) => void} */
+  function moveArm(robot, drawn, q, lit = [], violated = true) {
     const names = new Set(lit);
     const walls = robot.boundaries.filter((wall) => names.has(wall.name));
     const points = new Set(walls.flatMap((wall) => wall.points));
     const shown = { q, show: { names: false } };
     placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
-      violated: names,
+      violated: violated ? names : new Set(),
       bold: names,
       closest: null,
       boundaries: names,
@@ -158,6 +164,27 @@ const qboundParts = (() => {
     return i < 0 ? null : i + 1;
   }
 
+  /** The pose with one joint turned so that what it carries points to a place: the next joint, or
+      the tool.
+   * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
+  function turnedToward(robot, q, [joint, next], target) {
+    const { angle, framesOf, minus, pointPlaces, project, viewAxes, wrapped } = qboundEngine;
+    /** The angle about the joint from what it carries to the target.
+     * @type {(pose: Pose) => number} */
+    const turn = (pose) => {
+      const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
+      const tool = pointPlaces(robot, pose)[robot.tool];
+      const at = project(axes, frames[joint + 1].place);
+      const carried = project(axes, next === undefined ? tool : frames[next + 1].place);
+      return wrapped(angle(minus(target, at)) - angle(minus(carried, at)));
+    };
+    /** @type {(change: number) => Pose} */
+    const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
+    const rest = turn(q);
+    const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
+    return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
+  }
+
   /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
    * @type {(one: Pair, other: Pair) => boolean} */
   function isSame(one, other) {
@@ -175,7 +202,9 @@ const qboundParts = (() => {
     whenWidthChanges,
     degrees,
     AROUND,
+    degreeTicks,
     jointAxes,
+    turnedToward,
     armParts,
     moveArm,
     moveTo,

@@ -8,20 +8,36 @@
 
   /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
-  /** What must not be negative: each boundary in use, restricted to the joints that move.
+  /** What must not be negative: each boundary in use, restricted to the joints that move. One about
+      bodies has no form.
    * @type {(robot: Robot) => Rule[]} */
   function rulesOf(robot) {
+    const { isAboutBodies, restrict } = qboundEngine;
     return robot.boundaries
       .filter((wall) => wall.used)
-      .map((wall) => ({ wall, form: qboundEngine.restrict(wall.form, robot, robot.q) }));
+      .map((wall) => ({
+        wall,
+        form: isAboutBodies(wall) ? null : restrict(wall.form, robot, robot.q),
+      }));
   }
 
   /** The boundaries that a pair of joint values violates.
    * @type {(robot: Robot, rules: Rule[], pair: Pair) => Wall[]} */
   function violated(robot, rules, pair) {
-    const { basis, evaluate } = qboundEngine;
+    const { basis, bodiesMargin, evaluate, framesOf, isAboutBodies, placedParts } = qboundEngine;
+    const { withPair } = qboundEngine;
     const [x, y] = pair.map((value, k) => basis(robot.joints[robot.free[k]].kind, value));
-    return rules.filter(({ form }) => evaluate(form, x, y) < 0).map(({ wall }) => wall);
+    const found = rules.some(({ form }) => form === null)
+      ? framesOf(robot, withPair(robot, robot.q, pair))
+      : [];
+    const placed = found.length > 0 ? placedParts(robot, found) : [];
+    return rules
+      .filter(({ wall, form }) =>
+        isAboutBodies(wall) || !form
+          ? bodiesMargin(robot, /** @type {BodiesWall} */ (wall), found, placed) < 0
+          : evaluate(form, x, y) < 0,
+      )
+      .map(({ wall }) => wall);
   }
 
   /** Go from a safe pose towards another in small steps; where one is barred, along the boundary by

@@ -17,7 +17,6 @@ const engine = {
   area,
   isInside,
   toSegment,
-  crossing,
   // roots.js
   basis,
   basisSlope,
@@ -42,6 +41,7 @@ const engine = {
   margins,
   withPair,
   tightest,
+  isAboutBodies,
   isSafe,
   viewAxes,
   project,
@@ -51,6 +51,7 @@ const engine = {
   // contacts.js
   encounter,
   placedParts,
+  bodiesMargin,
   bodyGaps,
   // postures.js
   armOf,
@@ -67,6 +68,7 @@ const engine = {
   cells,
   uprights,
   // polygons.js
+  lengthOf,
   scaledPolygon,
   randomPairs,
   wayTo,
@@ -75,7 +77,6 @@ const engine = {
   stopsAt,
   alongPath,
   // drawing.js
-  boundaryColour,
   ownColour,
   drawAxes,
   legendKey,

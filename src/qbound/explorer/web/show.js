@@ -60,9 +60,9 @@ function showLegends() {
  * @type {() => HTMLLIElement[]} */
 function boundaryLegend() {
   const seen = [...joints.arcs, ...plane.walls].map((line) => line.dataset.boundary);
-  return robot.boundaries.flatMap(({ name }, i) =>
+  return robot.boundaries.flatMap(({ name, kind }, i) =>
     i < 7 && seen.includes(name)
-      ? legend("arc", `${name}: ${betweenText(i)}`, true).map((line) =>
+      ? legend("arc", kind === "bodies" ? name : `${name}: ${betweenText(i)}`, true).map((line) =>
           ownColour(robot, line, name),
         )
       : [],
