@@ -461,6 +461,34 @@ def test_a_search_for_a_name_leads_to_its_bearer_first(page, words, name, anchor
     assert first.get_attribute("href").endswith(f"#{anchor}")
 
 
+@pytest.mark.parametrize("words", ["singular", "workspace area", "certificate"])
+def test_a_search_for_words_leads_to_chapters_before_the_api(page, words):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q={quote(words)}")
+    links = page.locator("#search-results li a")
+    eventually(page, lambda: "finished" in page.locator("#search-results").inner_text())
+    found = [links.nth(k).get_attribute("href") for k in range(links.count())]
+    is_api = ["generated/" in address for address in found]
+    chapters = [k for k, address in enumerate(found) if address.startswith("chapters/")]
+    assert chapters
+    assert max(chapters) < is_api.index(True)
+
+
+def test_a_search_for_the_name_of_a_function_leads_to_the_api(page):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q=find_region")
+    first = page.locator("#search-results li a").first
+    first.wait_for()
+    assert first.get_attribute("href").startswith("generated/")
+
+
+def test_an_address_of_a_result_unfolds_its_table(page):
+    page.goto((HTML / "results.html").as_uri())
+    row = page.locator(".results-table tbody tr").last
+    name = row.get_attribute("id")
+    page.goto(f"{(HTML / 'results.html').as_uri()}#{name}")
+    page.locator(f"[id='{name}']").wait_for()
+    assert page.locator(f"[id='{name}']").is_visible()
+
+
 # --- notes in the margin --------------------------------------------------------------------------
 
 WITH_NOTE = """# Trial

@@ -332,3 +332,15 @@ def test_dragging_the_elbow_brings_the_arm_to_contact(open_figure):
     values = [numbers(text)[-1] for text in page.locator(".functions tr").all_inner_texts()]
     assert min(values) == pytest.approx(0, abs=0.06)
     assert values[-1] == min(values)
+
+
+@pytest.mark.parametrize("kind", ["contact", "explorer"])
+def test_a_word_that_names_a_boundary_lights_its_curve(open_play, kind):
+    page = open_play(kind, "clearance")
+    lit = page.locator(".arc.lit")
+    assert lit.count() == 0
+    page.locator(".lights").hover()
+    assert set(lit.evaluate_all("all => all.map((arc) => arc.dataset.boundary)")) == {"B3"}
+    assert page.locator(".arc.violated").count() == 0
+    page.mouse.move(1, 1)
+    assert lit.count() == 0

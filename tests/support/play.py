@@ -37,6 +37,7 @@ PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf
 <style>:root {{ color-scheme: {theme} }}
 body {{ background: light-dark(#fff, #12181b); margin: 8px }}
 {style}</style><main><h1>A figure</h1>
+<p>Here <span class="lights b3">B3</span> is named.</p>
 <div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
 <script>{script}</script>"""
 KEEP = (

@@ -22,10 +22,10 @@
       viewAxes,
       wholePicture,
     } = qboundEngine;
-    const { valueRow, withPair, wrapped } = qboundEngine;
+    const { withPair, wrapped } = qboundEngine;
     const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine } =
       qboundParts;
-    const { turnedToward } = qboundParts;
+    const { armHandles, jointRows, replaced, turnedToward } = qboundParts;
     const robot = given;
     const unit = robot.length_unit;
     const [first, second] = robot.free;
@@ -38,20 +38,7 @@
     /** @type {ReturnType<typeof newPictures>} */
     let drawn;
 
-    const rows = robot.free.map((j, k) =>
-      valueRow(
-        {
-          name: `q${"₁₂"[k]}`,
-          spoken: `q${k + 1} in degrees`,
-          low: -180,
-          high: 180,
-          step: 0.1,
-          digits: 1,
-          unit: "°",
-        },
-        (value) => set(state.q.map((old, i) => (i === j ? (value * Math.PI) / 180 : old))),
-      ),
-    );
+    const rows = jointRows(robot, (j, value) => set(replaced(state.q, j, value)));
     /** @type {[string, () => void][]} */
     const regions = robot.components.map(({ centroid }, i) => [
       `Region ${i + 1}`,
@@ -105,11 +92,7 @@
       drawGround(robot, whole, viewAxes(robot, robot.q));
       drawScaleBar(whole, unit);
       const arm = armParts(robot, whole);
-      const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(
-        plane.svg,
-        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
-      );
+      const { elbow, tool } = armHandles(plane.svg);
       return { joints: square, dot, plane: { ...arm, group: tool.group }, elbow, tool };
     }
 

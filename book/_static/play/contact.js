@@ -38,10 +38,11 @@
     if (!given) throw new Error("This figure needs a robot.");
     const { clear, draggable, drawGround, drawScaleBar, element, framesOf, handle } = qboundEngine;
     const { layer, legendKey, make, margins, number, overlapText, ownColour } = qboundEngine;
-    const { pathText, picture, placeAt, planeBox, project, valueRow, viewAxes } = qboundEngine;
+    const { pathText, picture, placeAt, planeBox, project, viewAxes } = qboundEngine;
     const { wholePicture, withPair } = qboundEngine;
     const { AROUND, armParts, buttons, canvas, degreeTicks, moveArm, moveTo } = qboundParts;
-    const { statusLine, turnedToward, whenWidthChanges } = qboundParts;
+    const { armHandles, jointRows, replaced, statusLine, turnedToward } = qboundParts;
+    const { whenWidthChanges } = qboundParts;
     const { rulesOf, slide } = /** @type {RegionsKind} */ (
       /** @type {unknown} */ (qboundFigures.regions)
     );
@@ -63,20 +64,7 @@
     /** @type {number | null} */
     let drawnFor = null; // the first joint's value of which the curves are
 
-    const rows = robot.free.map((j, k) =>
-      valueRow(
-        {
-          name: `q${"₁₂"[k]}`,
-          spoken: `q${k + 1} in degrees`,
-          low: -180,
-          high: 180,
-          step: 0.1,
-          digits: 1,
-          unit: "°",
-        },
-        (value) => go(state.q.map((old, i) => (i === j ? (value * Math.PI) / 180 : old))),
-      ),
-    );
+    const rows = jointRows(robot, (j, value) => go(replaced(state.q, j, value)));
     const values = walls.map(() => element("td", { className: "number" }));
     const lines = walls.map((wall, i) => {
       const head = element("th", { scope: "row" }, legendKey("arc", "M0 5H22", 10), wall.name);
@@ -122,11 +110,7 @@
         whole.svg.append(ownColour(robot, limit, wall.name));
       }
       const arm = armParts(robot, whole);
-      const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(
-        plane.svg,
-        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
-      );
+      const { elbow, tool } = armHandles(plane.svg);
       const { low, high } = robot.views[1];
       const ends = [LOW * robot.reach, HIGH * robot.reach];
       const graph = picture(plot.svg, [[low, high], ends], AROUND, false);
@@ -227,13 +211,16 @@
       status.say(`${words} ${overlap}`.trim(), state.by !== null);
     }
 
+    root.addEventListener("qbound-light", (event) => {
+      light((event instanceof CustomEvent && event.detail) || state.by);
+    });
     draggable(plane.svg, (pixel, held) => {
       const joints = held === drawn.elbow.room ? [first, second] : [second];
       go(turnedToward(robot, state.q, joints, drawn.plane.from(pixel)));
     });
     draggable(plot.svg, (pixel) => {
       const [value] = drawn.graph.from(pixel);
-      go(state.q.map((old, j) => (j === second ? value : old)));
+      go(replaced(state.q, second, value));
     });
     whenWidthChanges(plot.figure, draw);
   }

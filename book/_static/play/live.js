@@ -14,14 +14,6 @@
   const JOINT_HELP =
     "Arrow keys turn the joints by one degree, with Shift by ten. H goes to the home pose.";
 
-  /** @template T
-   * @param {T[]} all
-   * @param {number} index
-   * @param {T} value */
-  function replaced(all, index, value) {
-    return all.map((old, i) => (i === index ? value : old));
-  }
-
   /** @type {(values: number[], factor: number) => number[]} */
   function larger(values, factor) {
     return values.map((value) => value * factor);
@@ -65,8 +57,8 @@
       pathText,
     } = qboundEngine;
     const { CIRCLE, picture, pixelOf, valueRow, wholePicture } = qboundEngine;
-    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine, whenWidthChanges } =
-      qboundParts;
+    const { AROUND, armHandles, buttons, canvas, degrees, jointAxes, moveTo } = qboundParts;
+    const { replaced, statusLine, whenWidthChanges } = qboundParts;
 
     /** @type {LiveScene} */
     let scene = qboundLiveScene.START;
@@ -486,11 +478,7 @@
       );
       const spine = plane.svg.appendChild(make("path", { class: "spine" }));
       const gap = plane.svg.appendChild(make("path", { class: "gap" }));
-      const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(
-        plane.svg,
-        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
-      );
+      const { elbow, tool } = armHandles(plane.svg);
       const hands = layer(whole, "hands", false);
       return {
         square,

@@ -1,7 +1,8 @@
 "use strict";
 /* What the figures that one moves in a chapter share: boxes to tick, words that say what holds. */
 const qboundParts = (() => {
-  const { addArm, element, isInside, make, newPrefix, number, placeArm } = qboundEngine;
+  const { addArm, element, handle, isInside, make, newPrefix, number, placeArm } = qboundEngine;
+  const { valueRow } = qboundEngine;
 
   /** A box to tick.
    * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
@@ -81,6 +82,33 @@ const qboundParts = (() => {
 
   /** Room around a picture of two joint angles. */
   const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
+
+  /** @template T
+   * @param {T[]} all
+   * @param {number} index
+   * @param {T} value */
+  function replaced(all, index, value) {
+    return all.map((old, i) => (i === index ? value : old));
+  }
+
+  /** A slider and a field for each free joint, in degrees; `turn` hears of radians.
+   * @type {(robot: Robot, turn: (joint: number, value: number) => void) => SetRow[]} */
+  function jointRows(robot, turn) {
+    const look = { low: -180, high: 180, step: 0.1, digits: 1, unit: "°" };
+    return robot.free.map((j, k) =>
+      valueRow({ ...look, name: `q${"₁₂"[k]}`, spoken: `q${k + 1} in degrees` }, (value) =>
+        turn(j, (value * Math.PI) / 180),
+      ),
+    );
+  }
+
+  /** Handles of an arm of two links: a dot at the elbow, a square at the tool.
+   * @type {(svg: SVGSVGElement) => { elbow: Handle, tool: Handle }} */
+  function armHandles(svg) {
+    const square = { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 };
+    const elbow = handle(svg, make("circle", { class: "handle", r: 6 }));
+    return { elbow, tool: handle(svg, make("rect", square)) };
+  }
 
   /** Numbers of an axis in degrees, one every so many, between two angles in rad.
    * @type {(low: number, high: number, step: number) => JointAxis["ticks"]} */
@@ -202,6 +230,9 @@ const qboundParts = (() => {
     whenWidthChanges,
     degrees,
     AROUND,
+    replaced,
+    jointRows,
+    armHandles,
     degreeTicks,
     jointAxes,
     turnedToward,

@@ -230,6 +230,10 @@ function listen() {
   draggable(planeSvg, (pixel) => moveTool(plane.from(pixel)));
   onKeys(jointSvg, stepJoints, keys);
   onKeys(planeSvg, stepTool, keys);
+  root.addEventListener("qbound-light", (event) => {
+    state.hover = event instanceof CustomEvent ? event.detail : null;
+    refresh();
+  });
   byId("home").addEventListener("click", goHome);
   byId("flip").addEventListener("click", playFlip);
   byId("task-go").addEventListener("click", playTask);
