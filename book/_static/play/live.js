@@ -926,7 +926,6 @@
     });
     window.addEventListener("hashchange", restore);
 
-    root.closest(".bd-article-container")?.classList.add("as-wide-as-the-window");
     restore();
     whenWidthChanges(joints.figure, build);
   }
