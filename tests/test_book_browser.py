@@ -20,6 +20,7 @@ from support.browser import (
     in_its_own_family,
     open_page,
     settle,
+    touch_drag,
 )
 from support.pages import HTML
 from support.trial_book import build_trial
@@ -416,6 +417,21 @@ def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
     phone.locator(TO_EQUATION).first.tap()
     phone.get_by_text("Go to Equation 29").tap()
     phone.wait_for_url("**#equation-eq-29")
+
+
+@pytest.mark.parametrize("way", [(0, -60), (0, 60), (50, 0), (-50, 0)], ids=str)
+def test_a_finger_drags_the_explorer_in_its_frame_and_the_page_rests(phone, way):
+    open_page(phone, "explore.html")
+    dot = phone.frame_locator("iframe.explorer").locator("#joints .reach-me")
+    dot.scroll_into_view_if_needed()
+    settle(phone)
+    box, scrolled = dot.bounding_box(), phone.evaluate("scrollY")
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    touch_drag(phone, (x, y), (x + way[0], y + way[1]))
+    after = dot.bounding_box()
+    assert phone.evaluate("scrollY") == scrolled
+    moved = after["x"] - box["x"], after["y"] - box["y"]
+    assert moved == pytest.approx(way, abs=1.5)
 
 
 def test_a_second_tap_follows_the_link(phone):

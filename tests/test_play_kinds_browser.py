@@ -311,3 +311,13 @@ def test_the_certificates_of_the_rings_are_checked():
     for name, text in files.items():
         assert check.check(text).refuted == (answers[name] == "infeasible")
     assert {answers[name] for name in files if "B-" in name} <= {"separated", "infeasible"}
+
+
+def test_the_keyboard_fails_at_the_same_place(open_figure):
+    page = open_figure("goals")
+    page.locator("svg[role=application]").first.focus()
+    for _ in range(30):
+        page.keyboard.press("Shift+ArrowLeft")  # the shoulder, by ten degrees
+    assert " touches the " in words(page)
+    table = region(robot="two-links-on-a-table")
+    assert table.components[table.component_of(pair(page))].contains_home
