@@ -207,3 +207,28 @@ def test_the_base_and_link_2_stay_far_apart_in_the_whole_region() -> None:
     near = (q >= box.lower - half).all(-1) & (q <= box.upper + half).all(-1)
     near &= height >= -speeds.sum() * half
     assert bodies.gaps(PRINTED, q[near])[("0", "2")].min() - speeds.sum() * half > 10
+
+
+# --- overlaps that pictures show ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("robot", [PRINTED, load_robot("two-links-on-a-table")], ids=str)
+def test_overlaps_are_the_negative_gaps_of_bodies_that_home_keeps_apart(robot) -> None:
+    pairs = bodies.overlap_pairs(robot)
+    apart_at_home = {pair for pair, gap in bodies.gaps(robot, robot.home).items() if gap >= 0}
+    assert set(pairs) == apart_at_home
+    for q in SQUARE[:200]:
+        gaps = {pair: float(bodies.gaps(robot, q)[pair]) for pair in pairs}
+        deep = {pair: -gap for pair, gap in gaps.items() if gap < -1e-9}
+        assert bodies.overlaps(robot, q) == pytest.approx(deep)
+
+
+def test_links_that_share_a_joint_overlap_at_home_and_count_for_nothing() -> None:
+    robot = load_robot("two-links-on-a-table")
+    links = ("upper arm", "forearm")
+    assert bodies.gaps(robot, robot.home)[links] < 0
+    assert links not in bodies.overlap_pairs(robot)
+
+
+def test_an_arm_that_leaves_every_plane_has_no_overlaps_to_show() -> None:
+    assert bodies.overlap_pairs(load_robot("ur5")) == []

@@ -20,6 +20,7 @@ from support.browser import (
     in_its_own_family,
     open_page,
     settle,
+    touch_drag,
 )
 from support.pages import HTML
 from support.trial_book import build_trial
@@ -418,6 +419,21 @@ def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
     phone.wait_for_url("**#equation-eq-29")
 
 
+@pytest.mark.parametrize("way", [(0, -60), (0, 60), (50, 0), (-50, 0)], ids=str)
+def test_a_finger_drags_the_explorer_in_its_frame_and_the_page_rests(phone, way):
+    open_page(phone, "explore.html")
+    dot = phone.frame_locator("iframe.explorer").locator("#joints .reach-me")
+    dot.scroll_into_view_if_needed()
+    settle(phone)
+    box, scrolled = dot.bounding_box(), phone.evaluate("scrollY")
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    touch_drag(phone, (x, y), (x + way[0], y + way[1]))
+    after = dot.bounding_box()
+    assert phone.evaluate("scrollY") == scrolled
+    moved = after["x"] - box["x"], after["y"] - box["y"]
+    assert moved == pytest.approx(way, abs=1.5)
+
+
 def test_a_second_tap_follows_the_link(phone):
     open_page(phone, LINKING)
     phone.locator(TO_EQUATION).first.tap()
@@ -459,6 +475,34 @@ def test_a_search_for_a_name_leads_to_its_bearer_first(page, words, name, anchor
     first.wait_for()
     assert first.inner_text().startswith(name)
     assert first.get_attribute("href").endswith(f"#{anchor}")
+
+
+@pytest.mark.parametrize("words", ["singular", "workspace area", "certificate"])
+def test_a_search_for_words_leads_to_chapters_before_the_api(page, words):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q={quote(words)}")
+    links = page.locator("#search-results li a")
+    eventually(page, lambda: "finished" in page.locator("#search-results").inner_text())
+    found = [links.nth(k).get_attribute("href") for k in range(links.count())]
+    is_api = ["generated/" in address for address in found]
+    chapters = [k for k, address in enumerate(found) if address.startswith("chapters/")]
+    assert chapters
+    assert max(chapters) < is_api.index(True)
+
+
+def test_a_search_for_the_name_of_a_function_leads_to_the_api(page):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q=find_region")
+    first = page.locator("#search-results li a").first
+    first.wait_for()
+    assert first.get_attribute("href").startswith("generated/")
+
+
+def test_an_address_of_a_result_unfolds_its_table(page):
+    page.goto((HTML / "results.html").as_uri())
+    row = page.locator(".results-table tbody tr").last
+    name = row.get_attribute("id")
+    page.goto(f"{(HTML / 'results.html').as_uri()}#{name}")
+    page.locator(f"[id='{name}']").wait_for()
+    assert page.locator(f"[id='{name}']").is_visible()
 
 
 # --- notes in the margin --------------------------------------------------------------------------

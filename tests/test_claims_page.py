@@ -58,7 +58,7 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
         for part in (one.id, one.where, one.says, one.reading, one.found, one.corrected)
     )
     assert row.select_one(".verdict").get_text() == one.verdict
-    told = row.select_one("details pre").get_text()
+    told = row.select_one("details .bibtex").get_text()
     assert without_commit(told) == without_commit(cite.entry(one))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
@@ -27,8 +29,9 @@ MEANINGS = {
 ON_PAPER = ("used and unused", "one posture and two")
 """Told apart by lightness too; feasible and colliding by marker, the two signs by name."""
 
-NAMES = ("FEASIBLE", "COLLIDING", "USED", "UNUSED", "INK")
+NAMES = ("FEASIBLE", "COLLIDING", "USED", "UNUSED", "SECOND", "OVERLAP", "INK")
 LINES = {name: getattr(figures, name) for name in NAMES}
+LINES |= {f"B{k}": colour for k, colour in enumerate(figures.BOUNDARIES, start=1)}
 
 
 def linear(colour: str) -> np.ndarray:
@@ -82,6 +85,19 @@ def test_in_grey_they_differ_in_lightness(meaning: str) -> None:
 @pytest.mark.parametrize("name", LINES)
 def test_a_line_stands_out_from_white(name: str) -> None:
     assert contrast(LINES[name], "#FFFFFF") >= 3  # what the guidelines ask of graphics
+
+
+def test_boundaries_that_bound_one_region_differ_for_every_eye() -> None:
+    used = [colour for k, colour in enumerate(figures.BOUNDARIES, start=1) if k not in (5, 6)]
+    least = min(apart(*two, eye) for two in combinations(used, 2) for eye in EYES.values())
+    assert least > 10
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_nothing_but_a_collision_is_orange(name: str) -> None:
+    _, red, yellow = lab(linear(LINES[name]))
+    hue, strength = np.degrees(np.arctan2(yellow, red)), np.hypot(red, yellow)
+    assert (45 <= hue <= 75 and strength > 60) == (name == "COLLIDING")
 
 
 @pytest.mark.parametrize("eye", EYES)

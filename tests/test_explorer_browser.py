@@ -495,7 +495,7 @@ def test_numbers_of_many_vertices_do_not_cover_each_other(open_quietly, tmp_path
 def covered(page, picture):
     boxes = page.evaluate(
         """(picture) => [...document.querySelectorAll(picture)].map((t) => {
-            const { x, y, width, height } = t.getBBox();
+            const { x, y, width, height } = t.getBoundingClientRect(); // some are turned
             return [t.textContent, x, y + 2, x + width, y + height - 2]; })""",
         picture,
     )

@@ -18,6 +18,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.mathtext import MathTextParser
+from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -99,6 +100,16 @@ def test_robot_is_drawn_where_it_stands(ax) -> None:
     assert_array_equal(joints.get_xydata(), spine.get_xydata()[1:-1])
     corner_9 = point_seen_from(table, "9", "0", q)
     assert_allclose(bodies[1].get_xy()[0], corner_9[[0, 2]], atol=1e-12)
+
+
+def test_links_that_are_inside_each_other_are_red_and_the_picture_says_overlap() -> None:
+    for q, wanted in ((MINERVA.home, 0), (np.radians([-29.9, 120.2]), 2)):
+        ax = Figure().subplots()
+        artists = figures.draw_robot(ax, MINERVA, q)
+        faces = [artist.get_facecolor()[:3] for artist in artists if isinstance(artist, Polygon)]
+        assert faces.count(mpl.colors.to_rgb(figures.OVERLAP)) == wanted
+        words = [artist.get_text() for artist in artists if isinstance(artist, Annotation)]
+        assert ("overlap" in words) == (wanted > 0)
 
 
 def test_a_slide_is_a_carriage_on_a_rail_and_no_link_leads_to_the_base(ax) -> None:

@@ -57,6 +57,11 @@ data-controls="task"></div>
 
 <div class="play" data-figure="scale" data-rule="paper"></div>
 """,
+    "mounted": """
+# A kind that mounts an explorer
+
+<div class="play" data-figure="traversals" data-rule="paper"></div>
+""",
     "live": '# Configuration space\n\n<div class="play" data-figure="live"></div>\n',
     "plain": "# Without a figure\n",
     "unknown": '# A kind that is not there\n\n<div class="play" data-figure="nothing"></div>\n',
@@ -117,11 +122,12 @@ def test_a_page_without_explorers_loads_what_its_figure_needs(site, open_site):
     assert "in 3 pieces" in page.locator(".totals").inner_text()
 
 
-def test_a_page_has_at_most_150_kilobytes_of_our_scripts(site):
-    """The page with the most of them: two large kinds, beside what every page of the book has."""
+@pytest.mark.parametrize("page", ["full", "mounted"])
+def test_a_page_has_at_most_150_kilobytes_of_our_scripts(site, page):
+    """The pages with the most of them, beside what every page of the book has."""
     static = site[0] / "_static"
-    names = own_scripts(site[0], "full")
-    assert {"play/short/switches.js", "play/short/scale.js"} < set(names)
+    names = own_scripts(site[0], page)
+    assert ("play/parts_of_engine.js" in names) == (page == "full")  # it mounts no explorer
     sizes = {name: (static / name).stat().st_size for name in names}
     sizes |= {file.name: file.stat().st_size for file in (BOOK / "_static").glob("*.js")}
     assert sum(sizes.values()) <= MOST_BYTES, sizes

@@ -19,7 +19,8 @@ from support.play import WIDTHS, open_play
 
 __all__ = ["open_play"]
 
-RULES = {"circle": "clearance", "switches": "paper", "scale": "paper", "bodies": "clearance"}
+RULES = {"circle": "clearance", "switches": "paper", "scale": "paper"}
+RULES |= {"bodies": "clearance", "contact": "clearance"}
 ROBOT = load_robot("minervabot-v2")
 LOST = """() => [...document.querySelectorAll(".play *:not(svg *)")]
   .filter((part) => part.getBoundingClientRect().right > innerWidth + 1)
@@ -67,7 +68,7 @@ def test_a_figure_is_accessible_and_fits(open_figure, kind, theme, width):
     assert broken_rules(page, **rules_in(theme)) == []
 
 
-@pytest.mark.parametrize("kind", ["circle", "scale", "bodies"])
+@pytest.mark.parametrize("kind", ["circle", "scale", "bodies", "contact"])
 def test_a_step_of_a_drag_takes_less_than_a_frame(open_figure, kind):
     page = open_figure(kind)
     times = page.evaluate("""() => {
@@ -85,7 +86,7 @@ def test_a_step_of_a_drag_takes_less_than_a_frame(open_figure, kind):
     assert times[75] < 1000 / 60
 
 
-@pytest.mark.parametrize("kind", ["circle", "scale", "bodies"])
+@pytest.mark.parametrize("kind", ["circle", "scale", "bodies", "contact"])
 @pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
 def test_nothing_moves_under_a_hand_that_drags(open_figure, kind, width):
     page = open_figure(kind, width=width)
@@ -267,7 +268,7 @@ def test_the_scale_has_keys(open_figure):
 # --- bodies ---------------------------------------------------------------------------------------
 
 
-def test_each_region_but_home_says_safe_by_points_and_overlap_by_bodies(open_figure):
+def test_each_region_but_home_says_allowed_by_points_and_overlap_by_bodies(open_figure):
     page = open_figure("bodies")
     for i, component in enumerate(find_region(ROBOT).components, start=1):
         page.get_by_role("button", name=f"Region {i}").click()
@@ -275,11 +276,12 @@ def test_each_region_but_home_says_safe_by_points_and_overlap_by_bodies(open_fig
         worst = min(map(float, gaps.values()))
         points, whole = page.locator(".verdicts tr").all_inner_texts()
         assert keeps_clear(ROBOT, np.array([component.centroid]))[0]
-        assert "not safe" not in points
+        assert "allowed" in points
         assert ("overlap" in whole) == (worst < 0) == (i > 1)
         if worst < 0:
             assert numbers(whole)[-1] == pytest.approx(-worst, abs=0.006)
-            assert page.locator("path.overlap").get_attribute("d").startswith("M")
+        red = page.locator("polygon.overlap:not([hidden])")
+        assert red.count() == sum(float(gap) < 0 for gap in gaps.values())
 
 
 def test_dragging_the_dot_the_tool_and_the_elbow_moves_the_arm(open_figure):
@@ -302,3 +304,43 @@ def test_dragging_the_dot_the_tool_and_the_elbow_moves_the_arm(open_figure):
     drag(page, (x, y), (x - 40, y))
     assert pose()[0] < 40
     assert pose()[1] == pytest.approx(90, abs=2)
+
+
+# --- contact --------------------------------------------------------------------------------------
+
+
+def test_the_arm_stops_where_a_boundary_function_vanishes(open_figure):
+    page = open_figure("contact")
+    assert "No function vanishes" in words(page)
+    fill(page, "q2 in degrees, as a number", 60)
+    assert words(page).startswith("B3 vanishes: points 10 and 11")
+    stopped = float(page.get_by_label("q2 in degrees", exact=True).input_value())
+    q = np.radians([0, stopped])
+    # |B|^2 - d_min^2, cm^2; the slider has tenths of a degree
+    assert abs(clearance(ROBOT, ROBOT.boundary("B3"))(q)) < 0.2
+    assert find_region(ROBOT).contains(np.radians([0, stopped - 0.1]))
+    assert page.locator("tr.lit[data-boundary=B3], .arc.lit[data-boundary=B3]").count() == 2
+    page.get_by_role("button", name="Home").click()
+    assert "No function vanishes" in words(page)
+
+
+def test_dragging_the_elbow_brings_the_arm_to_contact(open_figure):
+    page = open_figure("contact")
+    x, y = middle(page, ".axle")
+    drag(page, middle(page, ".reach-me", 0), (x + 40, y + 60), steps=40)
+    assert words(page).startswith("B7 vanishes: point 3")
+    values = [numbers(text)[-1] for text in page.locator(".functions tr").all_inner_texts()]
+    assert min(values) == pytest.approx(0, abs=0.06)
+    assert values[-1] == min(values)
+
+
+@pytest.mark.parametrize("kind", ["contact", "explorer"])
+def test_a_word_that_names_a_boundary_lights_its_curve(open_play, kind):
+    page = open_play(kind, "clearance")
+    lit = page.locator(".arc.lit")
+    assert lit.count() == 0
+    page.locator(".lights").hover()
+    assert set(lit.evaluate_all("all => all.map((arc) => arc.dataset.boundary)")) == {"B3"}
+    assert page.locator(".arc.violated").count() == 0
+    page.mouse.move(1, 1)
+    assert lit.count() == 0

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from qbound import check
 from support.browser import broken_rules, drag, eventually, rules_in, settle
-from support.play import WIDTHS, open_play, region
+from support.play import WIDTHS, open_play, region, told
 
 __all__ = ["open_play"]
 
@@ -16,6 +17,7 @@ HOOKS = {
     "mirror": ("traversals", "paper", 'data-start="mirror"'),
     "postures": ("postures", "clearance", ""),
     "regions": ("regions", "clearance", ""),
+    "goals": ("goals", "clearance", ""),
 }
 
 
@@ -253,7 +255,7 @@ def test_a_pressed_dot_shows_both_its_postures(open_figure):
     page.mouse.click(*place(page, at, "plane"))
     settle(page)
     assert pair(page) == pytest.approx(wanted, abs=1e-9)
-    assert "safe, in region 1 with home" in words(page)
+    assert "allowed by the points, in region 1 with home" in words(page)
     assert "The pale one is" in words(page)
     assert (
         page.locator(".arm.second .body").count() == page.locator(".arm:not(.second) .body").count()
@@ -261,11 +263,61 @@ def test_a_pressed_dot_shows_both_its_postures(open_figure):
 
 
 @pytest.mark.parametrize(
-    ("button", "safe"),
-    [("A dot with one safe posture", 1), ("with two", 2), ("with none", 0)],
+    ("button", "allowed"),
+    [("A dot with one allowed posture", 1), ("with two", 2), ("with none", 0)],
 )
-def test_a_dot_of_each_sort_can_be_asked_for(open_figure, button, safe):
+def test_a_dot_of_each_sort_can_be_asked_for(open_figure, button, allowed):
     page = open_figure("postures")
     page.get_by_role("button", name=button, exact=True).click()
     settle(page)
-    assert words(page).count("safe") - words(page).count("not safe") == safe
+    assert words(page).count("allowed") - words(page).count("not allowed") == allowed
+
+
+# --- the front page's rings -----------------------------------------------------------------------
+
+
+def test_the_front_page_lets_one_fail_and_shows_why(open_figure):
+    page = open_figure("goals")
+    box = page.locator(".arm").locator("xpath=..").locator("[data-ring=B]").bounding_box()
+    tool = page.evaluate("qboundEngine.toolAt(arm.slice.map, arm.pair())")
+    wanted = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    drag(page, place(page, tool, "plane"), wanted, steps=30)
+    assert "No path to ring B in the computed region." in words(page)
+    assert " touches the " in words(page)
+    table = region(robot="two-links-on-a-table")
+    assert table.components[table.component_of(pair(page))].contains_home
+    links = page.locator(".proof-line a")
+    found = [links.nth(k).get_attribute("href") for k in range(links.count())]
+    assert found == [f"_static/play/certificates/B-{k}.json" for k in (1, 2)]
+
+
+def test_the_arm_goes_to_the_ring_that_can_be_reached(open_figure):
+    page = open_figure("goals")
+    page.get_by_role("button", name="Is there a path to A?").click()
+    assert "Ring A can be reached" in words(page)
+    assert page.locator(".proof-line a").count() == 0
+    ring = told("goals").RINGS["A"][:2]
+    there = lambda: page.evaluate("qboundEngine.toolAt(arm.slice.map, arm.pair())")  # noqa: E731
+    eventually(page, lambda: there() == pytest.approx(ring, abs=1e-4))
+
+
+def test_the_certificates_of_the_rings_are_checked():
+    """A refuted one shows a pose that hits something; the others prove a path, or that none is."""
+    module = told("goals")
+    rings = module.data(region(robot="two-links-on-a-table"))["rings"]
+    answers = {pose["file"]: pose["answer"] for ring in rings for pose in ring["poses"]}
+    files = module.files()
+    assert files.keys() == answers.keys()
+    for name, text in files.items():
+        assert check.check(text).refuted == (answers[name] == "infeasible")
+    assert {answers[name] for name in files if "B-" in name} <= {"separated", "infeasible"}
+
+
+def test_the_keyboard_fails_at_the_same_place(open_figure):
+    page = open_figure("goals")
+    page.locator("svg[role=application]").first.focus()
+    for _ in range(30):
+        page.keyboard.press("Shift+ArrowLeft")  # the shoulder, by ten degrees
+    assert " touches the " in words(page)
+    table = region(robot="two-links-on-a-table")
+    assert table.components[table.component_of(pair(page))].contains_home

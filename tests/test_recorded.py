@@ -467,7 +467,7 @@ def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: Beaut
 
 
 def test_every_citation_can_be_read_without_a_script(page: BeautifulSoup) -> None:
-    cited = [block.get_text() for block in page.select("details.citation pre")]
+    cited = [block.get_text() for block in page.select("details.citation .bibtex")]
     assert cited == [cite.result(entry) for entry in RESULTS.values()]
 
 

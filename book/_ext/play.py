@@ -10,7 +10,8 @@ packaged robot and a rule of `qbound.find_region`; whatever else begins with ``d
 of the kind.
 
 What a kind is told beyond its robot is the JSON that ``play_data/KIND.py`` returns, if there is
-such a module: ``def data(region: Region) -> object``.
+such a module: ``def data(region: Region) -> object``. Files that it links, by their addresses below
+``_static``, are what ``def files() -> dict[str, str]`` of that module returns.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from collections.abc import Iterator
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from docutils import nodes
@@ -40,10 +42,17 @@ SCRIPTS = HERE.parent / "_static" / "play"
 WITHOUT_PARTS = {"explorer"}
 """Kinds that draw without ``parts.js``: buttons, a line that says what holds."""
 
-WITHOUT_EXPLORER = {"live"}
-"""Kinds that show no robot of the package and mount no explorer."""
+WITHOUT_ROBOT = {"live"}
+"""Kinds that show no robot of the package."""
 
-SCRIPTS_BEFORE = {"live": ("live_space", "live_scene")}
+WITHOUT_EXPLORER = WITHOUT_ROBOT | {"bodies", "circle", "contact", "scale", "switches"}
+"""Kinds that mount no explorer: a page with these alone does without its scripts."""
+
+SCRIPTS_BEFORE = {
+    "contact": ("regions",),
+    "goals": ("regions",),
+    "live": ("live_space", "live_scene"),
+}
 """What stands before a kind's own script, in order."""
 
 LOGGER = logging.getLogger(__name__)
@@ -101,18 +110,24 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str]]:
         return
     for before in SCRIPTS_BEFORE.get(kind, ()):
         yield own_script(before)
-    if kind in WITHOUT_EXPLORER:
+    if kind in WITHOUT_ROBOT:
         yield own_script(kind)
         return
     name = hook.get("robot", "minervabot-v2")
     region = region_of(name, hook.get("rule", "clearance"))
     told = explorer_data(region, paths_of(name))
     yield f"play/robots/{key}.js", table_entry("qboundRobots", key, told)
-    if (HERE / "play_data" / f"{kind}.py").is_file():
-        data = importlib.import_module(f"play_data.{kind}").data(region)
+    if module := data_module(kind):
+        data = module.data(region)
         yield f"play/data/{kind}-{key}.js", table_entry("qboundData", f"{kind}-{key}", data)
     if kind != "explorer":
         yield own_script(kind)
+
+
+def data_module(kind: str) -> ModuleType | None:
+    """Return the module that says what figures of a kind are told, if there is one."""
+    there = (HERE / "play_data" / f"{kind}.py").is_file()
+    return importlib.import_module(f"play_data.{kind}") if there else None
 
 
 def table_entry(table: str, key: str, value: Any) -> str:
@@ -143,6 +158,10 @@ def add_scripts(
     for address, text in files.items():
         write_static(app, address, text)
         app.add_js_file(address, loading_method="defer")
+    for kind in kinds:
+        module = data_module(kind or "")
+        for address, text in getattr(module, "files", dict)().items():
+            write_static(app, address, text)
     write_static(app, "play/engine.css", engine_style())
     for address in ("play/engine.css", "play/play.css"):
         app.add_css_file(address)

@@ -1,4 +1,5 @@
-// On the search page: whoever asks for "Table 6", "eq. 29", "E-34" or "aspect" is led there first.
+// On the search page: whoever asks for "Table 6", "eq. 29", "E-34" or "aspect" is led there first;
+// whoever asks for other words is led to chapters first, and to pages of the API last.
 
 /** @type {[RegExp, string][]} */
 const SHORT_FORMS = [
@@ -37,6 +38,13 @@ function resultOf(address, card) {
   return [page, `${card.name} (${card.page})`, `#${anchor}`, null, 1000, file, "title"];
 }
 
+/** Where a page stands among what is found: the greater, the earlier.
+ * @type {(found: SearchResult) => number} */
+function rank([page]) {
+  if (page.startsWith("chapters/")) return 2;
+  return page.startsWith("generated/") || page === "api" ? 0 : 1;
+}
+
 {
   const { query, _performSearch: others } = Search;
   /** @type {[string, BookCard][]} */
@@ -49,6 +57,9 @@ function resultOf(address, card) {
   Search._performSearch = (text, ...terms) => {
     const named = cards.filter(([, card]) => bears(card, plain(text)));
     const first = named.map(([address, card]) => resultOf(address, card));
-    return [...others(text, ...terms), ...first.reverse()];
+    const rest = others(text, ...terms);
+    const isCode = /[._]/.test(text); // the name of a function or a module
+    if (!isCode) rest.sort((a, b) => rank(a) - rank(b));
+    return [...rest, ...first.reverse()];
   };
 }

@@ -65,14 +65,6 @@ interface Lowest {
   q: Pair;
 }
 
-/* --- bodies ----------------------------------------------------------------------------------- */
-
-interface BodyPair {
-  frames: number[];
-  gap: number;
-  shared: Point[];
-}
-
 /* --- traversals ------------------------------------------------------------------------------- */
 
 interface Way {
@@ -91,7 +83,7 @@ interface Trace {
 
 interface Rule {
   wall: Wall;
-  form: Matrix;
+  form: Matrix | null; // null: it is about bodies
 }
 
 interface Slid {
@@ -106,6 +98,20 @@ interface Behind {
   region: number | null;
 }
 
+/* --- goals ------------------------------------------------------------------------------------ */
+
+interface RegionsKind {
+  rulesOf: (robot: Robot) => Rule[];
+  slide: (robot: Robot, rules: Rule[], from: Pair, to: Pair) => Slid;
+}
+
+interface Ring {
+  name: string;
+  at: Point;
+  poses: { q: Pair; answer: string; file: string | null }[]; // answers of `qbound why`
+  path: Pair[] | null;
+}
+
 /* --- postures --------------------------------------------------------------------------------- */
 
 interface Judged {
@@ -113,6 +119,7 @@ interface Judged {
   safe: boolean;
   region: number | null;
   violated: string[];
+  overlap: boolean; // of whole links, whatever the points say
 }
 
 /* --- live ------------------------------------------------------------------------------------- */

@@ -245,6 +245,29 @@ def drag(page: Any, start: tuple[float, float], end: tuple[float, float], steps:
     settle(page)
 
 
+FINGERS = {"has_touch": True, "is_mobile": True}
+"""Options of a page on a device that fingers hold."""
+
+
+def touch_drag(
+    page: Any, start: tuple[float, float], end: tuple[float, float], steps: int = 9
+) -> None:
+    """Drag a finger from a place to another: real touches, which the browser may take to scroll."""
+    client = page.context.new_cdp_session(page)
+
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", start)
+    for k in range(1, steps + 1):
+        part = k / steps
+        touch("touchMove", tuple(a + part * (b - a) for a, b in zip(start, end, strict=True)))
+    touch("touchEnd")
+    client.detach()
+    settle(page)
+
+
 def wait_until(page: Any, expression: str, then: str = "") -> None:
     """Wait for a frame in which the page says so, and do something in that frame.
 

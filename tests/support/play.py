@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -15,17 +16,28 @@ from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
 from support.javascript import Script
+from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAY = ROOT / "book" / "_static" / "play"
 PAPER = "minervabot-v2"
+ROBOTS = {"goals": "two-links-on-a-table"}
+"""Of kinds that show another robot than the paper's."""
+
 WIDTHS = {"wide screen": 900, "phone": 340}
+
+LIVE = ("parts", "live_space", "live_scene", "live", "play")
+"""Scripts of the page "Configuration space, live", which mounts no explorer."""
+
+SCRIPTS_BEFORE = {"contact": ("regions",), "goals": ("regions",)}
+"""As the book's extension has them."""
 
 PAGE = """<!doctype html><html lang="en" data-theme="{theme}"><meta charset="utf-8">
 <meta name="viewport" content="width=device-width"><title>A figure</title>
 <style>:root {{ color-scheme: {theme} }}
 body {{ background: light-dark(#fff, #12181b); margin: 8px }}
 {style}</style><main><h1>A figure</h1>
+<p>Here <span class="lights b3">B3</span> is named.</p>
 <div class="play" data-figure="{kind}" data-rule="{rule}" {options}></div></main>
 <script>{script}</script>"""
 KEEP = (
@@ -40,9 +52,21 @@ def region(rule: str = "clearance", robot: str = PAPER) -> Region:
 
 
 @cache
+def told(kind: str) -> ModuleType:
+    """The module of the book's extension that says what figures of a kind are told."""
+    return load_script(f"book/_ext/play_data/{kind}.py")
+
+
+@cache
+def own_data(kind: str) -> str:
+    return json.dumps(told(kind).data(region(robot=ROBOTS[kind])))
+
+
+@cache
 def data(rule: str = "clearance", robot: str = PAPER) -> str:
     """What the figures of a robot are told, as JSON."""
-    return json.dumps(explorer_data(region(rule, robot), closed_form.PATHS))
+    walks = closed_form.PATHS if robot.startswith(PAPER) else ()
+    return json.dumps(explorer_data(region(rule, robot), walks))
 
 
 # --- in a page ------------------------------------------------------------------------------------
@@ -53,15 +77,30 @@ def page_of(kind: str, rule: str, theme: str, options: str = "") -> str:
 
     Its script knows the mounted arm, if it has one, as `arm`.
     """
-    key = PAPER + ("" if rule == "clearance" else f"-{rule}")
-    script = engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule)} }};\n"
-    script += KEEP + "\n"
-    files = [PLAY / f"{name}.js" for name in ("parts", kind, "play")]
-    script += "".join(file.read_text(encoding="utf-8") for file in files)
     style = engine_style() + (PLAY / "play.css").read_text(encoding="utf-8")
+    if kind == "live":
+        script = engine_script(explorer=False) + scripts(*LIVE)
+        return PAGE.format(
+            kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
+        )
+    robot = ROBOTS.get(kind, PAPER)
+    key = robot + ("" if rule == "clearance" else f"-{rule}")
+    script = (
+        engine_script() + f"window.qboundRobots = {{ {json.dumps(key)}: {data(rule, robot)} }};\n"
+    )
+    if robot != PAPER:
+        options += f' data-robot="{robot}"'
+        script += f"window.qboundData = {{ {json.dumps(f'{kind}-{key}')}: {own_data(kind)} }};\n"
+    script += KEEP + "\n"
+    own = [] if kind == "explorer" else [*SCRIPTS_BEFORE.get(kind, ()), kind]
+    script += scripts("parts", *own, "play")
     return PAGE.format(
         kind=kind, rule=rule, options=options, theme=theme, style=style, script=script
     )
+
+
+def scripts(*names: str) -> str:
+    return "".join((PLAY / f"{name}.js").read_text(encoding="utf-8") for name in names)
 
 
 @pytest.fixture

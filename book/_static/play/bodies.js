@@ -1,112 +1,44 @@
 "use strict";
-/* Whole bodies beside their points: outlines, what they share, how far apart they are. */
+/* Whole bodies beside their points: what each of both says of a pose. */
 {
-  const TOUCHING = 1e-9; // of a length: two bodies nearer than this touch
-
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
-
-  /** The outlines of all bodies in the plane of motion.
-   * @type {(robot: Robot, q: Pose) => Point[][]} */
-  function outlines(robot, q) {
-    const { framesOf, placeIn, project, viewAxes } = qboundEngine;
-    const [frames, axes] = [framesOf(robot, q), viewAxes(robot, q)];
-    return robot.bodies.map(({ frame, outline }) =>
-      anticlockwise(outline.map((at) => project(axes, placeIn(frames[frame], at)))),
-    );
-  }
-
-  /** @type {(corners: Point[]) => Point[]} */
-  function anticlockwise(corners) {
-    return qboundEngine.area(corners) < 0 ? [...corners].reverse() : corners;
-  }
-
-  /** What two convex outlines share (Sutherland and Hodgman); no corners where nothing.
-   * @type {(one: Point[], other: Point[]) => Point[]} */
-  function shared(one, other) {
-    const { cross, crossing, minus, sides } = qboundEngine;
-    return sides(other).reduce((corners, [a, b]) => {
-      /** @type {Side} */
-      const side = (p) => cross(minus(p, a), minus(b, a)); // positive outside
-      return sides(corners).flatMap(([p, r]) => [
-        ...(side(p) <= 0 ? [p] : []),
-        ...crossing(p, r, side),
-      ]);
-    }, one);
-  }
-
-  /** Every pair of bodies: its frames, its gap and what it shares.
-   * @type {(robot: Robot, q: Pose) => BodyPair[]} */
-  function bodyPairs(robot, q) {
-    const placed = outlines(robot, q);
-    return placed.flatMap((one, i) =>
-      placed.slice(i + 1).map((other, k) => ({
-        frames: [robot.bodies[i].frame, robot.bodies[i + 1 + k].frame],
-        gap: qboundEngine.encounter(one, other).distance,
-        shared: shared(one, other),
-      })),
-    );
-  }
-
-  /** The pose with one joint turned so that what it carries points to a place: the next joint, or
-      the tool.
-   * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
-  function turnedToward(robot, q, [joint, next], target) {
-    const { angle, framesOf, minus, pointPlaces, project, viewAxes, wrapped } = qboundEngine;
-    /** The angle about the joint from what it carries to the target.
-     * @type {(pose: Pose) => number} */
-    const turn = (pose) => {
-      const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
-      const tool = pointPlaces(robot, pose)[robot.tool];
-      const at = project(axes, frames[joint + 1].place);
-      const carried = project(axes, next === undefined ? tool : frames[next + 1].place);
-      return wrapped(angle(minus(target, at)) - angle(minus(carried, at)));
-    };
-    /** @type {(change: number) => Pose} */
-    const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
-    const rest = turn(q);
-    const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
-    return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
-  }
-
   /* --- the figure ------------------------------------------------------------------------------- */
 
   /** @type {FigureKind} */
   function show(root, options, { robot: given }) {
     if (!given || given.bodies.length < 2)
       throw new Error("This figure needs a robot with bodies.");
-    const { clear, draggable, element, framesOf, handle, layer, make, number, pathText } =
+    const { bodyGaps, bodyName, clear, draggable, element, framesOf, handle, layer, make } =
       qboundEngine;
-    const { isSafe, margins, picture, planeBox, project, tightest, viewAxes, wholePicture } =
-      qboundEngine;
-    const { valueRow, withPair, wrapped } = qboundEngine;
+    const { number, pathText, placedParts } = qboundEngine;
+    const {
+      drawGround,
+      drawScaleBar,
+      isSafe,
+      margins,
+      picture,
+      planeBox,
+      project,
+      tightest,
+      viewAxes,
+      wholePicture,
+    } = qboundEngine;
+    const { withPair, wrapped } = qboundEngine;
     const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, moveTo, statusLine } =
       qboundParts;
+    const { armHandles, jointRows, replaced, turnedToward } = qboundParts;
     const robot = given;
     const unit = robot.length_unit;
     const [first, second] = robot.free;
     const state = { q: [...robot.q] };
     const [joints, plane] = [
-      canvas("The regions that the points leave, and the present pose in them."),
-      canvas("The arm and the outlines of its bodies."),
+      canvas("The regions that the points leave, and the present pose in them.", "Joint space"),
+      canvas("The arm and the outlines of its bodies.", "Arm"),
     ];
     const status = statusLine("");
     /** @type {ReturnType<typeof newPictures>} */
     let drawn;
 
-    const rows = robot.free.map((j, k) =>
-      valueRow(
-        {
-          name: `q${"₁₂"[k]}`,
-          spoken: `q${k + 1} in degrees`,
-          low: -180,
-          high: 180,
-          step: 0.1,
-          digits: 1,
-          unit: "°",
-        },
-        (value) => set(state.q.map((old, i) => (i === j ? (value * Math.PI) / 180 : old))),
-      ),
-    );
+    const rows = jointRows(robot, (j, value) => set(replaced(state.q, j, value)));
     /** @type {[string, () => void][]} */
     const regions = robot.components.map(({ centroid }, i) => [
       `Region ${i + 1}`,
@@ -157,16 +89,11 @@
       drawRegions(square);
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
       const whole = wholePicture(plane.svg, planeBox(robot));
-      const [, ground] = whole.at([0, 0]);
-      plane.svg.append(make("path", { class: "wall", d: `M0 ${ground}H${whole.width}` }));
+      drawGround(robot, whole, viewAxes(robot, robot.q));
+      drawScaleBar(whole, unit);
       const arm = armParts(robot, whole);
-      const overlap = layer(whole, "overlap").appendChild(make("path", { class: "overlap" }));
-      const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(
-        plane.svg,
-        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
-      );
-      return { joints: square, dot, plane: { ...arm, group: tool.group }, overlap, elbow, tool };
+      const { elbow, tool } = armHandles(plane.svg);
+      return { joints: square, dot, plane: { ...arm, group: tool.group }, elbow, tool };
     }
 
     function draw() {
@@ -194,20 +121,18 @@
       for (const [k, row] of rows.entries()) row.set((state.q[robot.free[k]] * 180) / Math.PI);
       if (!drawn) return;
       const found = margins(robot, state.q);
-      const pairs = bodyPairs(robot, state.q);
+      const pairs = bodyGaps(robot, placedParts(robot, framesOf(robot, state.q)));
       const worst = pairs.reduce((one, other) => (other.gap < one.gap ? other : one));
-      const over = pairs.filter(({ gap }) => gap < -TOUCHING);
+      const over = pairs.some(({ overlap }) => overlap);
       const safe = isSafe(found);
       const near = tightest(robot, found);
       const violated = found.filter((one) => one.used && one.value < 0).map((one) => one.name);
       moveArm(robot, drawn.plane, state.q, violated);
-      const shapes = over.map(({ shared }) => pathText(shared.map(drawn.plane.at), true));
-      drawn.overlap.setAttribute("d", shapes.join(""));
       moveTo(drawn.dot.group, drawn.joints.at(robot.free.map((j) => state.q[j])));
       const elbow = framesOf(robot, state.q)[second + 1].place;
       moveTo(drawn.elbow.group, drawn.plane.at(project(viewAxes(robot, state.q), elbow)));
       for (const { mark } of [drawn.dot, drawn.tool, drawn.elbow])
-        mark.classList.toggle("violated", over.length > 0 || !safe);
+        mark.classList.toggle("violated", over || !safe);
       tell(safe, near, over, worst);
     }
 
@@ -218,21 +143,18 @@
       return words ? `${name} (point${indices.length > 1 ? "s" : ""} ${words})` : name;
     }
 
-    /** @type {(safe: boolean, near: Margin | null, over: BodyPair[], worst: BodyPair) => void} */
+    /** @type {(safe: boolean, near: Margin | null, over: boolean, worst: BodyGap) => void} */
     function tell(safe, near, over, worst) {
-      const names = (/** @type {BodyPair} */ { frames }) =>
-        frames.map((frame) => (frame === 0 ? "base" : `link ${frame}`)).join(" and ");
+      const names = worst.bodies.map((i) => bodyName(robot, i)).join(" and ");
       const length = (/** @type {number} */ value) => `${number(Math.abs(value), 2)} ${unit}`;
       const margin = near
         ? `${withPoints(near.name)}: ${length(near.value)} ${near.value < 0 ? "too near" : "to spare"}`
         : "";
       const words = {
-        points: [safe ? "safe" : "not safe", margin],
+        points: [safe ? "allowed" : "forbidden", margin],
         bodies: [
-          over.length > 0 ? "overlap" : "apart",
-          over.length > 0
-            ? `${names(worst)}: ${length(worst.gap)} deep`
-            : `${names(worst)}: ${length(worst.gap)} between them`,
+          over ? "overlap" : "apart",
+          `${names}: ${length(worst.gap)} ${over ? "deep" : "between them"}`,
         ],
       };
       for (const who of /** @type {const} */ (["points", "bodies"])) {
@@ -240,7 +162,7 @@
         notes[who].textContent = words[who][1];
       }
       verdicts.points.classList.toggle("bad", !safe);
-      verdicts.bodies.classList.toggle("bad", over.length > 0);
+      verdicts.bodies.classList.toggle("bad", over);
       status.say(`Points: ${words.points.join(", ")}. Bodies: ${words.bodies.join(", ")}.`, false);
     }
 
@@ -257,10 +179,5 @@
     qboundParts.whenWidthChanges(joints.figure, draw);
   }
 
-  qboundFigures.bodies = Object.assign(show, {
-    outlines,
-    shared,
-    bodyPairs,
-    turnedToward,
-  });
+  qboundFigures.bodies = show;
 }

@@ -14,14 +14,6 @@
   const JOINT_HELP =
     "Arrow keys turn the joints by one degree, with Shift by ten. H goes to the home pose.";
 
-  /** @template T
-   * @param {T[]} all
-   * @param {number} index
-   * @param {T} value */
-  function replaced(all, index, value) {
-    return all.map((old, i) => (i === index ? value : old));
-  }
-
   /** @type {(values: number[], factor: number) => number[]} */
   function larger(values, factor) {
     return values.map((value) => value * factor);
@@ -52,11 +44,21 @@
 
   /** @type {FigureKind} */
   function show(root) {
-    const { clear, draggable, element, handle, layer, make, number, onKeys, pathText } =
-      qboundEngine;
+    const {
+      clear,
+      draggable,
+      drawScaleBar,
+      element,
+      handle,
+      layer,
+      make,
+      number,
+      onKeys,
+      pathText,
+    } = qboundEngine;
     const { CIRCLE, picture, pixelOf, valueRow, wholePicture } = qboundEngine;
-    const { AROUND, buttons, canvas, degrees, jointAxes, moveTo, statusLine, whenWidthChanges } =
-      qboundParts;
+    const { AROUND, armHandles, buttons, canvas, degrees, jointAxes, moveTo } = qboundParts;
+    const { replaced, statusLine, whenWidthChanges } = qboundParts;
 
     /** @type {LiveScene} */
     let scene = qboundLiveScene.START;
@@ -190,8 +192,11 @@
     /* --- controls ------------------------------------------------------------------------------- */
 
     const [joints, plane] = [
-      canvas("Configuration space: a square of both joint angles. Free poses are coloured."),
-      canvas("Workspace: the arm among its obstacles."),
+      canvas(
+        "Configuration space: a square of both joint angles. Free poses are coloured.",
+        "Configuration space",
+      ),
+      canvas("Workspace: the arm among its obstacles.", "Workspace"),
     ];
     for (const [{ figure, svg }, help] of /** @type {const} */ ([
       [joints, JOINT_HELP],
@@ -462,6 +467,7 @@
       const dot = handle(joints.svg, make("circle", { class: "handle", r: 7 }));
       const view = [-VIEW, VIEW];
       const whole = wholePicture(plane.svg, [view, view]);
+      drawScaleBar(whole, "m");
       const base = layer(whole, "base", false);
       const [x, y] = whole.at([0, 0]);
       base.append(make("circle", { class: "axle", cx: x, cy: y, r: 5 }));
@@ -472,11 +478,7 @@
       );
       const spine = plane.svg.appendChild(make("path", { class: "spine" }));
       const gap = plane.svg.appendChild(make("path", { class: "gap" }));
-      const elbow = handle(plane.svg, make("circle", { class: "handle", r: 6 }));
-      const tool = handle(
-        plane.svg,
-        make("rect", { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 }),
-      );
+      const { elbow, tool } = armHandles(plane.svg);
       const hands = layer(whole, "hands", false);
       return {
         square,
@@ -818,16 +820,15 @@
     /** @type {Point} */
     let grip = [0, 0]; // from the chosen obstacle's place to where it was taken
 
-    /** @type {(event: PointerEvent) => void} */
-    function take(event) {
+    /** @type {(pixel: Point, held: Element | null) => void} */
+    function take(pixel, held) {
       gesture = "";
       strokes += 1;
-      const { target } = event;
-      const body = target instanceof SVGElement ? target.dataset.body : undefined;
+      const body = held instanceof SVGElement ? held.dataset.body : undefined;
       if (body === undefined) return;
       choose(Number(body));
       const one = nowChosen();
-      const [x, y] = drawn.whole.from(pixelOf(plane.svg, event));
+      const [x, y] = drawn.whole.from(pixel);
       if (one) grip = [x - one.x, y - one.y];
     }
 
@@ -880,8 +881,7 @@
       changeChosen({ ...one, sizes: larger(one.sizes, factor), corners }, "grow");
     }
 
-    plane.svg.addEventListener("pointerdown", take);
-    draggable(plane.svg, dragPlane);
+    draggable(plane.svg, dragPlane, take);
     draggable(joints.svg, (pixel) => move(drawn.square.from(pixel)));
     onKeys(plane.svg, stepPlane, {
       o: () => {
@@ -926,7 +926,6 @@
     });
     window.addEventListener("hashchange", restore);
 
-    root.closest(".bd-article-container")?.classList.add("as-wide-as-the-window");
     restore();
     whenWidthChanges(joints.figure, build);
   }

@@ -1,8 +1,8 @@
 "use strict";
 /* What the figures that one moves in a chapter share: boxes to tick, words that say what holds. */
 const qboundParts = (() => {
-  const { addArm, element, gridLine, isInside, layer, make, newPrefix } = qboundEngine;
-  const { number, placeArm } = qboundEngine;
+  const { addArm, element, handle, isInside, make, newPrefix, number, placeArm } = qboundEngine;
+  const { valueRow } = qboundEngine;
 
   /** A box to tick.
    * @type {(text: string, checked: boolean, change: (checked: boolean) => void) => HTMLLabelElement} */
@@ -53,12 +53,13 @@ const qboundParts = (() => {
     };
   }
 
-  /** A picture with a name for those who do not see it.
-   * @type {(label: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
-  function canvas(label) {
+  /** A picture with a title, and words for those who do not see it.
+   * @type {(label: string, title?: string) => { figure: HTMLElement, svg: SVGSVGElement }} */
+  function canvas(label, title) {
     const svg = make("svg", { role: "img", "aria-label": label });
     svg.id = `${newPrefix()}picture`;
-    return { figure: element("div", { className: "picture" }, svg), svg };
+    const head = title ? [element("p", { className: "picture-title" }, title)] : [];
+    return { figure: element("div", { className: "picture" }, ...head, svg), svg };
   }
 
   /** Call at once, and whenever the element has a new width.
@@ -82,23 +83,55 @@ const qboundParts = (() => {
   /** Room around a picture of two joint angles. */
   const AROUND = { left: 62, right: 18, top: 12, bottom: 38 };
 
-  /** Axes of two joint values in degrees.
+  /** @template T
+   * @param {T[]} all
+   * @param {number} index
+   * @param {T} value */
+  function replaced(all, index, value) {
+    return all.map((old, i) => (i === index ? value : old));
+  }
+
+  /** A slider and a field for each free joint, in degrees; `turn` hears of radians.
+   * @type {(robot: Robot, turn: (joint: number, value: number) => void) => SetRow[]} */
+  function jointRows(robot, turn) {
+    const look = { low: -180, high: 180, step: 0.1, digits: 1, unit: "°" };
+    return robot.free.map((j, k) =>
+      valueRow({ ...look, name: `q${"₁₂"[k]}`, spoken: `q${k + 1} in degrees` }, (value) =>
+        turn(j, (value * Math.PI) / 180),
+      ),
+    );
+  }
+
+  /** Handles of an arm of two links: a dot at the elbow, a square at the tool.
+   * @type {(svg: SVGSVGElement) => { elbow: Handle, tool: Handle }} */
+  function armHandles(svg) {
+    const square = { class: "handle", x: -7, y: -7, width: 14, height: 14, rx: 2 };
+    const elbow = handle(svg, make("circle", { class: "handle", r: 6 }));
+    return { elbow, tool: handle(svg, make("rect", square)) };
+  }
+
+  /** Numbers of an axis in degrees, one every so many, between two angles in rad.
+   * @type {(low: number, high: number, step: number) => JointAxis["ticks"]} */
+  function degreeTicks(low, high, step) {
+    const [from, to] = [low, high].map((value) => (value * 180) / Math.PI / step);
+    const first = Math.ceil(from - 1e-9);
+    return Array.from({ length: Math.floor(to + 1e-9) - first + 1 }, (_, i) => {
+      const value = (first + i) * step;
+      return { value: (value * Math.PI) / 180, text: String(value).replace("-", "−") };
+    });
+  }
+
+  /** Axes of q1 and q2 in degrees, with a number every so many.
    * @type {(drawn: Picture, step: number) => void} */
   function jointAxes(drawn, step) {
-    const group = layer(drawn, "axes", false);
     const { left, top, right, bottom } = drawn.box;
     const [low, high] = [drawn.from([left, bottom]), drawn.from([right, top])];
-    for (const k of [0, 1]) {
-      const first = Math.ceil((low[k] * 180) / Math.PI / step - 1e-9) * step;
-      for (let tickAt = first; tickAt <= (high[k] * 180) / Math.PI + 1e-9; tickAt += step) {
-        const text = `${tickAt}°`.replace("-", "−");
-        group.append(...gridLine(drawn, k, (tickAt * Math.PI) / 180, text, bottom + 15));
-      }
-    }
-    group.append(
-      make("text", { x: (left + right) / 2, y: bottom + 31, "text-anchor": "middle" }, "q₁"),
-      make("text", { x: left - 52, y: (top + bottom) / 2 + 4, "text-anchor": "middle" }, "q₂"),
-    );
+    const axes = [0, 1].map((k) => ({
+      name: `q${k + 1}`,
+      unit: "°",
+      ticks: degreeTicks(low[k], high[k], step),
+    }));
+    qboundEngine.drawAxes(drawn, axes);
   }
 
   /** The arm's parts in a picture of its plane, to be moved by `moveArm`.
@@ -109,15 +142,16 @@ const qboundParts = (() => {
     return { ...drawn, ...addArm(robot, drawn), ...rest, path: none, ghost: none };
   }
 
-  /** Show the arm in a pose; the boundaries `lit` stand out with their points.
-   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>) => void} */
-  function moveArm(robot, drawn, q, lit = []) {
+  /** Show the arm in a pose; the boundaries `lit` stand out with their points, as violated ones if
+      not said otherwise.
+   * @type {(robot: Robot, drawn: PlanePicture, q: Pose, lit?: Iterable<string>, violated?: boolean) => void} */
+  function moveArm(robot, drawn, q, lit = [], violated = true) {
     const names = new Set(lit);
     const walls = robot.boundaries.filter((wall) => names.has(wall.name));
     const points = new Set(walls.flatMap((wall) => wall.points));
     const shown = { q, show: { names: false } };
     placeArm(robot, drawn, /** @type {State} */ (/** @type {unknown} */ (shown)), {
-      violated: names,
+      violated: violated ? names : new Set(),
       bold: names,
       closest: null,
       boundaries: names,
@@ -158,6 +192,27 @@ const qboundParts = (() => {
     return i < 0 ? null : i + 1;
   }
 
+  /** The pose with one joint turned so that what it carries points to a place: the next joint, or
+      the tool.
+   * @type {(robot: Robot, q: Pose, joints: number[], target: Point) => Pose} */
+  function turnedToward(robot, q, [joint, next], target) {
+    const { angle, framesOf, minus, pointPlaces, project, viewAxes, wrapped } = qboundEngine;
+    /** The angle about the joint from what it carries to the target.
+     * @type {(pose: Pose) => number} */
+    const turn = (pose) => {
+      const [frames, axes] = [framesOf(robot, pose), viewAxes(robot, pose)];
+      const tool = pointPlaces(robot, pose)[robot.tool];
+      const at = project(axes, frames[joint + 1].place);
+      const carried = project(axes, next === undefined ? tool : frames[next + 1].place);
+      return wrapped(angle(minus(target, at)) - angle(minus(carried, at)));
+    };
+    /** @type {(change: number) => Pose} */
+    const turned = (change) => q.map((value, j) => (j === joint ? value + change : value));
+    const rest = turn(q);
+    const [one, other] = [turned(rest), turned(-rest)]; // whichever way the joint counts
+    return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
+  }
+
   /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
    * @type {(one: Pair, other: Pair) => boolean} */
   function isSame(one, other) {
@@ -175,7 +230,12 @@ const qboundParts = (() => {
     whenWidthChanges,
     degrees,
     AROUND,
+    replaced,
+    jointRows,
+    armHandles,
+    degreeTicks,
     jointAxes,
+    turnedToward,
     armParts,
     moveArm,
     moveTo,

@@ -60,4 +60,14 @@
 
   for (const hook of document.querySelectorAll("div.play"))
     if (hook instanceof HTMLElement) play(hook);
+
+  // A word that names a boundary, [B7]{.lights .b7} in Markdown, lights it in the figures of its page.
+  for (const word of document.querySelectorAll(".lights")) {
+    const name = [...word.classList].find((one) => /^b\d$/.test(one))?.toUpperCase();
+    for (const [event, detail] of Object.entries({ pointerenter: name, pointerleave: null }))
+      word.addEventListener(event, () => {
+        for (const figure of document.querySelectorAll("div.play"))
+          figure.dispatchEvent(new CustomEvent("qbound-light", { detail }));
+      });
+  }
 }

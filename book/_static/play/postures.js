@@ -20,7 +20,8 @@
     const found = margins(robot, withPair(robot, robot.q, pair));
     const bad = found.filter((one) => one.used && one.value < 0).map((one) => one.name);
     const region = bad.length > 0 ? null : qboundParts.regionAt(robot, pair);
-    return { pair, safe: bad.length === 0, region, violated: bad };
+    const overlap = qboundEngine.overlapText(robot, withPair(robot, robot.q, pair)) !== "";
+    return { pair, safe: bad.length === 0, region, violated: bad, overlap };
   }
 
   /** The first dot of the sample with one safe posture, to begin with.
@@ -36,14 +37,18 @@
   /* --- the figure ------------------------------------------------------------------------------- */
 
   const LONGEST =
-    "The posture in full colour is not safe, B1 and B3 and B7 forbid it (q1 −100.0°, q2 −100.0°). The pale one is safe, in region 2, cut off from home (q1 −100.0°, q2 −100.0°).";
+    "The posture in full colour is not allowed, B1 and B3 and B7 forbid it, and its links overlap (q1 −100.0°, q2 −100.0°). The pale one is allowed by the points, in region 2, cut off from home, and its links overlap (q1 −100.0°, q2 −100.0°).";
 
   /** @type {(robot: Robot, judged: Judged) => string} */
-  function verdictText(robot, { safe, region, violated }) {
-    if (!safe)
-      return `not safe, ${violated.join(" and ")} ${violated.length > 1 ? "forbid" : "forbids"} it`;
-    if (region === null || robot.components.length < 2) return "safe";
-    return `safe, in region ${region}${region === 1 ? " with home" : ", cut off from home"}`;
+  function verdictText(robot, { safe, region, violated, overlap }) {
+    const links = overlap ? ", and its links overlap" : "";
+    if (!safe) {
+      const forbid = violated.length > 1 ? "forbid" : "forbids";
+      return `not allowed, ${violated.join(" and ")} ${forbid} it${links}`;
+    }
+    if (region === null || robot.components.length < 2) return `allowed${links}`;
+    const where = region === 1 ? " with home" : ", cut off from home";
+    return `allowed by the points, in region ${region}${where}${links}`;
   }
 
   /** @type {(robot: Robot, pair: Pair) => string} */
@@ -153,7 +158,7 @@
     root.append(
       status.spoken,
       buttons(
-        ["A dot with one safe posture", () => next((a, b) => a.safe !== b.safe)],
+        ["A dot with one allowed posture", () => next((a, b) => a.safe !== b.safe)],
         ["with two", () => next((a, b) => a.safe && b.safe)],
         ["with none", () => next((a, b) => !a.safe && !b.safe)],
       ),

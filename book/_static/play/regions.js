@@ -8,20 +8,36 @@
 
   /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
-  /** What must not be negative: each boundary in use, restricted to the joints that move.
+  /** What must not be negative: each boundary in use, restricted to the joints that move. One about
+      bodies has no form.
    * @type {(robot: Robot) => Rule[]} */
   function rulesOf(robot) {
+    const { isAboutBodies, restrict } = qboundEngine;
     return robot.boundaries
       .filter((wall) => wall.used)
-      .map((wall) => ({ wall, form: qboundEngine.restrict(wall.form, robot, robot.q) }));
+      .map((wall) => ({
+        wall,
+        form: isAboutBodies(wall) ? null : restrict(wall.form, robot, robot.q),
+      }));
   }
 
   /** The boundaries that a pair of joint values violates.
    * @type {(robot: Robot, rules: Rule[], pair: Pair) => Wall[]} */
   function violated(robot, rules, pair) {
-    const { basis, evaluate } = qboundEngine;
+    const { basis, bodiesMargin, evaluate, framesOf, isAboutBodies, placedParts } = qboundEngine;
+    const { withPair } = qboundEngine;
     const [x, y] = pair.map((value, k) => basis(robot.joints[robot.free[k]].kind, value));
-    return rules.filter(({ form }) => evaluate(form, x, y) < 0).map(({ wall }) => wall);
+    const found = rules.some(({ form }) => form === null)
+      ? framesOf(robot, withPair(robot, robot.q, pair))
+      : [];
+    const placed = found.length > 0 ? placedParts(robot, found) : [];
+    return rules
+      .filter(({ wall, form }) =>
+        isAboutBodies(wall) || !form
+          ? bodiesMargin(robot, /** @type {BodiesWall} */ (wall), found, placed) < 0
+          : evaluate(form, x, y) < 0,
+      )
+      .map(({ wall }) => wall);
   }
 
   /** Go from a safe pose towards another in small steps; where one is barred, along the boundary by
@@ -93,7 +109,7 @@
   /* --- the figure -------------------------------------------------------------------------------- */
 
   const LONGEST =
-    "B4 stops the arm: points 12 and 13 would be nearer than 0.25 cm. Behind it, 10.0° further on, lies region 5: as safe as region 1, and no way leads there.";
+    "B4 stops the arm: points 12 and 13 would be nearer than 0.25 cm. Behind it, 10.0° further on, lies region 5: the points allow it as they do region 1, and no way leads there. Overlap: the base and link 1, 10.00 cm deep.";
 
   /** @type {(robot: Robot, wall: Wall) => string} */
   function reasonOf(robot, wall) {
@@ -109,9 +125,9 @@
     const [wall] = by;
     const text = `${wall.name} stops the arm: ${reasonOf(robot, wall)}. `;
     if (!next || next.region === null || next.region === here)
-      return `${text}What lies behind is not safe.`;
+      return `${text}What lies behind is forbidden, too.`;
     const width = qboundParts.degrees(next.width);
-    return `${text}Behind it, ${width} further on, lies region ${next.region}: as safe as region ${here}, and no way leads there.`;
+    return `${text}Behind it, ${width} further on, lies region ${next.region}: the points allow it as they do region ${here}, and no way leads there.`;
   }
 
   /** @type {FigureKind} */
@@ -163,12 +179,18 @@
       const next = slid.by.length > 0 ? behind(robot, rules, slid.at, slid.goal) : null;
       drawBarred(slid);
       mark(here);
-      status.say(
+      tell(
         slid.by.length > 0
           ? stopText(robot, slid, next, here)
           : `Region ${here}${here === 1 ? ", that of the home pose" : ""}. Drag the dot to its edge.`,
         slid.by.length > 0,
       );
+    }
+
+    /** @type {(words: string, isBarred: boolean) => void} */
+    function tell(words, isBarred) {
+      const overlap = qboundEngine.overlapText(robot, arm.state.q);
+      status.say(`${words} ${overlap}`.trim(), isBarred || overlap !== "");
     }
 
     /** @type {(slid: Slid) => void} */
@@ -237,7 +259,7 @@
         i === 0
           ? "The arm stands in region 1, that of the home pose."
           : `The arm was lifted into region ${i + 1}. No way leads from here to region 1.`;
-      status.say(text, false);
+      tell(text, false);
     }
 
     const choice = buttons(
@@ -252,7 +274,7 @@
     root.addEventListener("qbound-draw", draw);
     root.addEventListener("qbound-pose", follow);
     draw();
-    status.say("Region 1, that of the home pose. Drag the dot to its edge.", false);
+    tell("Region 1, that of the home pose. Drag the dot to its edge.", false);
   }
 
   /** @type {(box: Picture["box"], x: number, y: number) => boolean} */

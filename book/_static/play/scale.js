@@ -7,7 +7,7 @@
   const MOST = 1.05;
 
   const LONGEST =
-    "Scale 1.000: the tool goes up to 10.000 cm below its limit, on the edge 3–4. Edges not safe: 1–2, 2–3, 3–4, 4–5, 5–6, 6–1.";
+    "Scale 1.000: the tool goes up to 10.000 cm below its limit, on the edge 3–4. Edges not allowed: 1–2, 2–3, 3–4, 4–5, 5–6, 6–1.";
 
   /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
@@ -69,7 +69,8 @@
   /** @type {FigureKind} */
   function show(root, options, { robot: given }) {
     if (!given?.polygon) throw new Error("Figure 6 needs a robot whose region has a polygon.");
-    const { clear, element, layer, make, number, pathText, picture, valueRow } = qboundEngine;
+    const { clear, drawGround, drawScaleBar, element, layer, make, number } = qboundEngine;
+    const { overlapText, ownColour, pathText, picture, valueRow } = qboundEngine;
     const { placeAt, pointPlaces, project, scaledPolygon, viewAxes, wholePicture, withPair } =
       qboundEngine;
     const { AROUND, armParts, buttons, canvas, jointAxes, moveArm, statusLine } = qboundParts;
@@ -78,13 +79,16 @@
     const { vertices, centroid, largest } = polygon;
     const unit = robot.length_unit;
     const floor = floorOf(robot);
-    const [limit] = robot.boundaries.flatMap((wall) =>
-      wall.kind === "half-space" && wall.used ? [wall.offset] : [],
+    const [{ limit, name }] = robot.boundaries.flatMap((wall) =>
+      wall.kind === "half-space" && wall.used ? [{ limit: wall.offset, name: wall.name }] : [],
     );
     const state = { scale: Number(options.scale ?? 0.95) };
     const [joints, plane] = [
-      canvas("The polygon in the square of both joint angles, scaled about its centroid."),
-      canvas("The arm at the lowest point that the tool reaches on the polygon's edges."),
+      canvas(
+        "The polygon in the square of both joint angles, scaled about its centroid.",
+        "Joint space",
+      ),
+      canvas("The arm at the lowest point that the tool reaches on the polygon's edges.", "Arm"),
     ];
     const status = statusLine(LONGEST);
     /** @type {ReturnType<typeof drawJoints> & ReturnType<typeof drawPlane>} */
@@ -181,23 +185,20 @@
       });
       return [0, 1].map((k) => {
         const values = places.map((place) => place[k]);
-        return [Math.min(...values) - 4, Math.max(...values) + 4];
+        return [Math.min(...values, k ? 0 : Infinity) - 4, Math.max(...values) + 4];
       });
     }
 
     function drawPlane() {
       const whole = wholePicture(plane.svg, armBox());
-      const group = layer(whole, "floor");
+      drawGround(robot, whole, viewAxes(robot, robot.q));
+      drawScaleBar(whole, unit);
       const [, y] = whole.at([0, limit]);
-      const below = `M0 ${y}H${whole.width}V${whole.height}H0Z`;
-      group.append(
-        make("path", { class: "below", d: below }),
-        make("path", { class: "wall", d: `M0 ${y}H${whole.width}` }),
-        make(
-          "text",
-          { class: "wall-name", x: whole.width - 8, y: whole.height - 10, "text-anchor": "end" },
-          `the tool must stay above ${number(limit, 2)} ${unit}`,
-        ),
+      const at = { x: whole.width - 8, y: y + 15, "text-anchor": "end" };
+      const words = `${name}, tool limit: ${number(limit, 2)} ${unit}`;
+      layer(whole, "limit").append(
+        ownColour(robot, make("path", { class: "wall limit", d: `M0 ${y}H${whole.width}` }), name),
+        ownColour(robot, make("text", { class: "wall-name", ...at }, words), name),
       );
       const arm = armParts(robot, whole);
       const depth = layer(whole, "depth").appendChild(make("path", { class: "depth" }));
@@ -233,7 +234,7 @@
       placeAt(drawn.dot, drawn.joints.at(q), "c");
       drawn.dot.classList.toggle("violated", value < -TOUCHING);
       showArm(q);
-      tell(values, worst);
+      tell(values, worst, overlapText(robot, withPair(robot, robot.q, q)));
     }
 
     /** @type {(q: Pair) => void} */
@@ -244,8 +245,8 @@
       drawn.depth.setAttribute("d", pathText([tool, [tool[0], limit]].map(drawn.plane.at)));
     }
 
-    /** @type {(values: number[], worst: number) => void} */
-    function tell(values, worst) {
+    /** @type {(values: number[], worst: number, overlap: string) => void} */
+    function tell(values, worst, overlap) {
       const edge = (/** @type {number} */ i) => `${i + 1}–${((i + 1) % values.length) + 1}`;
       const leaving = values.flatMap((value, i) => (value < -TOUCHING ? [edge(i)] : []));
       const size = `${number(Math.abs(values[worst]), 3)} ${unit}`;
@@ -253,9 +254,9 @@
       const text =
         leaving.length > 0
           ? `the tool goes up to ${size} below its limit, on the edge ${edge(worst)}. ` +
-            `${many} not safe: ${leaving.join(", ")}.`
-          : `safe. The tool stays ${size} above its limit where it is lowest, on the edge ${edge(worst)}.`;
-      status.say(`Scale ${number(state.scale, 3)}: ${text}`, leaving.length > 0);
+            `${many} not allowed: ${leaving.join(", ")}.`
+          : `the tool stays ${size} or more above its limit; lowest on the edge ${edge(worst)}.`;
+      status.say(`Scale ${number(state.scale, 3)}: ${text} ${overlap}`.trim(), leaving.length > 0);
     }
 
     qboundParts.whenWidthChanges(joints.figure, draw);

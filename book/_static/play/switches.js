@@ -191,7 +191,7 @@
   function show(root, _options, { robot: given }) {
     if (!given) throw new Error("Figure 4 needs a robot.");
     const robot = given;
-    const { clear, element, layer, make, pathText, picture } = qboundEngine;
+    const { clear, element, layer, make, ownColour, pathText, picture } = qboundEngine;
     const { AROUND, buttons, canvas, degrees, jointAxes, statusLine, whenWidthChanges } =
       qboundParts;
     const walls = curvedWalls(robot).map((wall) => ({ ...wall, rows: curveRows(wall.matrix) }));
@@ -227,7 +227,7 @@
       element(
         "fieldset",
         { className: "bounds" },
-        element("legend", {}, `B${written(name.slice(1)).slice(1)}`),
+        ownColour(robot, element("legend", {}, `B${written(name.slice(1)).slice(1)}`), name),
         ...names
           .filter((one) => one.split(",")[0] === name.slice(1))
           .flatMap((one) => boxes.get(one)?.label ?? []),
@@ -387,6 +387,7 @@
       const add = (name, d, binds) => {
         const on = state.on.has(name) ? (binds ? "binds" : "on") : "off";
         const line = make("path", { class: `bound ${on}`, d, "data-bound": name });
+        ownColour(robot, line, `B${name.split(",")[0]}`);
         line.classList.toggle("lit", state.hover === name);
         group.append(line);
       };
@@ -415,7 +416,8 @@
               : { x: right - 4, y: y - 6, "text-anchor": "end" };
           at.x = Math.min(right - 2, Math.max(left + 2, at.x));
           at.y = Math.min(bottom - 4, at.y);
-          svg.append(make("text", { class: "arc-name", ...at }, written(by)));
+          const text = make("text", { class: "arc-name", ...at }, written(by));
+          svg.append(ownColour(robot, text, `B${by.split(",")[0]}`));
         }
       }
     }

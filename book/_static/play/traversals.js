@@ -102,7 +102,9 @@
     const det = Math.abs(determinant(arm.slice.map, arm.pair()));
     const line =
       det <= NEAR_SINGULAR * arm.slice.largest ? " Both links lie in one line: det J = 0." : "";
-    return `${on}. The tool is ${number(reach, 1)} ${arm.robot.length_unit} from joint 1.${line}`;
+    const overlap = qboundEngine.overlapText(arm.robot, arm.state.q);
+    const words = `${on}. The tool is ${number(reach, 1)} ${arm.robot.length_unit} from joint 1.${line}`;
+    return `${words} ${overlap}`.trim();
   }
 
   /* --- the figure -------------------------------------------------------------------------------- */

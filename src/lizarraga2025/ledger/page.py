@@ -124,9 +124,8 @@ def _evidence(one: Claim) -> str:
 
 
 def _citation(one: Claim) -> str:
-    return (
-        f"<details><summary>Cite {one.id}</summary><pre>{escape(cite.entry(one))}</pre></details>"
-    )
+    text = escape(cite.entry(one))
+    return f'<details><summary>Cite {one.id}</summary><div class="bibtex">{text}</div></details>'
 
 
 def _erratum(leader: str, entries: Sequence[Claim]) -> str:

@@ -11,7 +11,7 @@ from qbound.boundary.evaluator import forms_bytes, limit_names
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.cli.progress import working
 from qbound.model.robot import Robot
-from qbound.model.robotfile import is_urdf, load_robot, robot_text, written_text
+from qbound.model.robotfile import as_written, is_urdf, load_robot, robot_text
 from qbound.region import Region, Rule, find_region
 from qbound.units import joint_text, margin_text
 
@@ -100,7 +100,10 @@ def sized_robot(
 
 def proved_text(name: str) -> tuple[str, str]:
     """Return the text of a robot file, or of the one that a URDF is imported as, and its name."""
-    return (written_text(load_robot(name)), name) if is_urdf(name) else robot_text(name)
+    if not is_urdf(name):
+        return robot_text(name)
+    source = as_written(load_robot(name)).source
+    return source.text if source else "", name
 
 
 def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) -> None:

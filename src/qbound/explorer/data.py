@@ -19,7 +19,7 @@ from qbound.export.document import vertex_content, workspace_content
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.geometry.polylines import flatten
-from qbound.measures.bodies import outline_in_frame
+from qbound.measures.bodies import outline_in_frame, overlap_pairs
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot, Step
 from qbound.region import Component, Region, Slices
@@ -82,6 +82,7 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": _bodies(robot),
         "flat": _flat(robot),
+        "apart": _apart(robot),
         "boundaries": [_boundary(robot, b, problem.rule) for b in _listed(robot)],
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
@@ -126,8 +127,9 @@ def _point(robot: Robot, i: int) -> Data:
 
 
 def _bodies(robot: Robot) -> list[Data]:
-    """List every body; its convex parts where a boundary is about it."""
+    """List every body; its convex parts where it is asked whether it touches another one."""
     about = {body.name for boundary in _listed(robot) for body in bounded_bodies(robot, boundary)}
+    about |= {name for pair in overlap_pairs(robot) for name in pair}
     return [
         {
             "name": body.name,
@@ -144,9 +146,15 @@ def _bodies(robot: Robot) -> list[Data]:
 
 def _flat(robot: Robot) -> list[list[float]] | None:
     """Return the axes of the plane in which bodies keep apart, None where none do."""
-    about = any(map(bounds_bodies, _listed(robot)))
+    about = any(map(bounds_bodies, _listed(robot))) or overlap_pairs(robot)
     axes: list[list[float]] | None = robot.plane.across.tolist() if about else None
     return axes
+
+
+def _apart(robot: Robot) -> list[list[int]]:
+    """List the pairs of bodies of which the page shows that they overlap, by their places."""
+    order = [body.name for body in (*robot.bodies, *robot.obstacles)]
+    return [[order.index(name) for name in pair] for pair in overlap_pairs(robot)]
 
 
 def _body_boundary(robot: Robot, boundary: Boundary) -> Data:

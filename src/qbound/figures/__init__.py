@@ -25,7 +25,7 @@ from qbound.arrays import Floats
 from qbound.export.polygons import polygons
 from qbound.extras import require
 from qbound.forms.angles import TURN, whole_turns
-from qbound.measures.bodies import outline_in_frame
+from qbound.measures.bodies import outline_in_frame, overlaps
 from qbound.model.frames import Frames
 from qbound.model.plane import COORDINATES
 from qbound.model.robot import Joint, Robot
@@ -42,11 +42,17 @@ FEASIBLE: Final = "#0072B2"
 COLLIDING: Final = "#D55E00"
 USED: Final = "#007A5E"
 UNUSED: Final = "#CC79A7"
-SECOND: Final = "#E69F00"
+SECOND: Final = "#7A4FA3"
 INK: Final = "#222222"
+OVERLAP: Final = "#C1121F"
+"""Of links that are inside each other. `COLLIDING`, which is orange, is what a boundary forbids:
+nothing else is orange."""
+BOUNDARIES: Final = ("#3B3EAC", "#1B7837", "#A3195B", "#736000", "#00797D", "#8A3FB5", "#4F2B10")
+"""Of a robot's boundaries, in the order of its file: those of the paper are B1 to B7. The pages of
+the explorer have the same."""
 DRAWN: Final = 1e-3
 """Largest deviation of a drawn polygon from its arcs, joint units; a tenth of a line's width."""
-LINKS: Final = ("#8C8C8C", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
+LINKS: Final = ("#8C8C8C", "#56B4E9", "#C9BF3F", "#009E73", "#CC79A7")
 
 STYLE: Final[dict[str, Any]] = {
     "figure.figsize": (6.4, 4.4),
@@ -70,6 +76,13 @@ STYLE: Final[dict[str, Any]] = {
     "text.usetex": False,
 }
 """The one style of the book; fixed salt and no date give the same SVG bytes on every run."""
+
+
+def boundary_colour(robot: Robot, name: str) -> str:
+    """Return the colour that a boundary has in every picture of a robot."""
+    names = [boundary.name for boundary in robot.boundaries]
+    k = names.index(name) if name in names else len(BOUNDARIES)
+    return BOUNDARIES[k] if k < len(BOUNDARIES) else FEASIBLE
 
 
 def use_style() -> None:
@@ -120,6 +133,8 @@ def draw_robot(
 ) -> list[Artist]:
     """Draw a planar arm at one configuration: obstacles, bodies, links, joints, points by name.
 
+    Bodies that are inside each other (`qbound.measures.bodies.overlaps`) are red.
+
     A joint that turns is a circle; one that slides is a carriage on a rail from its lowest value
     to its highest. A rail on the base stands where it is, without a link to the base's origin.
 
@@ -136,7 +151,8 @@ def draw_robot(
     frames = robot.frames(np.asarray(q, dtype=float))
     artists: list[Artist] = []
     if bodies and tuple(axes) == drawn_plane(robot):
-        artists += _draw_bodies(ax, robot, frames, axes, alpha)
+        deep = {name for pair in overlaps(robot, q) for name in pair}
+        artists += _draw_bodies(ax, robot, frames, axes, alpha, deep)
     artists += _draw_chain(ax, robot, frames, axes, alpha)
     # Names go left and right by turns: the two points of a pair in contact are at one place.
     for i, name in enumerate(points):
@@ -163,19 +179,27 @@ def drawn_plane(robot: Robot) -> tuple[int, int]:
 
 
 def _draw_bodies(
-    ax: Axes, robot: Robot, frames: Frames, axes: list[int], alpha: float
+    ax: Axes, robot: Robot, frames: Frames, axes: list[int], alpha: float, deep: set[str]
 ) -> list[Artist]:
-    """Draw the outlines of obstacles and bodies, each in the colour of its frame."""
+    """Draw the outlines of obstacles and bodies, each in the colour of its frame.
+
+    Those that are `deep` in another one are red, and the words say "overlap" beside them.
+    """
     artists: list[Artist] = []
     for body in (*robot.obstacles, *robot.bodies):
         colour = LINKS[frames.names.index(body.frame) % len(LINKS)]
         if body in robot.obstacles:
-            colour = COLLIDING
+            colour = INK
         turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
         corners = outline_in_frame(robot, body) @ turn.T
         seen = corners + frames.position(robot.base, body.frame, robot.base)
         look: dict[str, Any] = {"facecolor": colour, "edgecolor": INK, "lw": 1}
+        if body.name in deep:
+            look |= {"facecolor": OVERLAP, "edgecolor": OVERLAP}
         artists += ax.fill(*seen[:, axes].T, alpha=0.35 * alpha, **look)
+    if deep:
+        at: Any = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "color": OVERLAP}
+        artists.append(_halo(ax.annotate("overlap", (0.02, 0.02), weight="bold", **at)))
     return artists
 
 
@@ -256,7 +280,7 @@ def draw_spheres(
     for point in (point for point in robot.points if point.radius > 0):
         place = frames.position(robot.base, point.name, robot.base)[axes]
         fixed = point.frame == robot.base
-        look: dict[str, Any] = {"fc": COLLIDING + "55" if fixed else "none", "ec": INK, "lw": 1}
+        look: dict[str, Any] = {"fc": INK + "55" if fixed else "none", "ec": INK, "lw": 1}
         artists.append(ax.add_patch(Circle(tuple(place), point.radius, zorder=2, **look)))
     return artists
 

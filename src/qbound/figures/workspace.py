@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
-from qbound.figures import COLLIDING, FEASIBLE, SECOND, UNUSED, USED, as_text
+from qbound.figures import INK, as_text, boundary_colour
 from qbound.workspace.areas import SINGULAR, Workspace
 
 if TYPE_CHECKING:
@@ -22,10 +22,9 @@ ONCE: Final = "#CDE3F0"
 TWICE: Final = "#7FB8D8"
 """Tints of FEASIBLE for places reached in one posture, and in two."""
 
-SIDES: Final = {1: "#CDE3F0", -1: "#F8E2BF"}
-"""Tints of FEASIBLE and SECOND for the two signs of det J."""
+SIDES: Final = {1: "#CDE3F0", -1: "#F1ECBB"}
+"""Tints for the two signs of det J: of FEASIBLE, and a yellow."""
 
-COLOURS: Final = (USED, UNUSED, FEASIBLE, SECOND, "#56B4E9", "#8C8C8C")
 DASHES: Final = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (9, 2, 2, 2)))
 """Taken in turn for the boundaries: no two of the first thirty look alike."""
 
@@ -78,8 +77,12 @@ def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
     arcs = [arc for loop in loops for arc in loop]
     arcs.sort(key=lambda arc: (arc.boundary != SINGULAR, arc.boundary))  # the curve first
     names = sorted({arc.boundary for arc in arcs} - {SINGULAR})
-    looks = dict(zip(names, zip(cycle(COLOURS), cycle(DASHES), strict=False), strict=False))
-    looks[SINGULAR] = (COLLIDING, (0, (1, 1)))
+    robot = workspace.region.robot
+    looks: dict[str, tuple[str, Any]] = {
+        name: (boundary_colour(robot, name), dash)
+        for name, dash in zip(names, cycle(DASHES), strict=False)
+    }
+    looks[SINGULAR] = (INK, (0, (1, 1)))
     for arc in arcs:
         colour, dash = looks[arc.boundary]
         path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces.roots)))).T

@@ -97,6 +97,37 @@ def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
     return {pair.bodies: margins[..., k] for k, pair in enumerate(pairs)}
 
 
+def overlap_pairs(robot: Robot) -> list[tuple[str, str]]:
+    """Return the pairs of bodies on different frames that are apart at home.
+
+    An overlap of such a pair is a fault.
+    Neighbouring links that share a joint overlap at home too, because they are built so. None where
+    the robot leaves every plane, or its bodies do.
+    """
+    try:
+        found = gaps(robot, robot.home)
+    except ValueError:
+        return []
+    return [pair for pair, value in found.items() if value >= -CONTACT]
+
+
+def overlaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], float]:
+    """Return how deep the bodies of `overlap_pairs` are inside each other; length.
+
+    Parameters
+    ----------
+    q : array_like, shape (n,)
+
+    Returns
+    -------
+    dict of (str, str) to float
+        Of the pairs that overlap alone: empty where all bodies are apart.
+    """
+    pairs = overlap_pairs(robot)
+    found = gaps(robot, q) if pairs else {}
+    return {pair: -float(found[pair]) for pair in pairs if found[pair] < -CONTACT}
+
+
 def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     """Return the joint values around home between which two neighbouring links stay apart.
 

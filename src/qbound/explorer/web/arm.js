@@ -53,7 +53,7 @@ function drawPlane(svg, robot, state, slice, box) {
   const axes = viewAxes(robot, state.q);
   if (robot.plane.oblique) drawFloor(robot, drawn, axes);
   else drawGround(robot, drawn, axes);
-  drawScaleBar(robot, drawn);
+  drawScaleBar(drawn, robot.length_unit);
   if (state.show.workspace && slice.regular) drawWorkspace(drawn, slice);
   const walls = drawWalls(robot, drawn, state);
   if (state.show.sample)
@@ -65,17 +65,17 @@ function drawPlane(svg, robot, state, slice, box) {
   return { ...drawn, ...arm, ...handle(svg, mark), walls, path, ghost };
 }
 
-/** @type {(robot: Robot, drawn: Picture) => void} */
-function drawScaleBar(robot, drawn) {
+/** @type {(drawn: Picture, unit: string) => void} */
+function drawScaleBar(drawn, unit) {
   const group = layer(drawn, "axes", false);
   const [left] = drawn.from([0, 0]);
   const [right] = drawn.from([drawn.width, 0]);
-  const unit = 10 ** Math.floor(Math.log10((right - left) / 4));
-  const length = unit * ([5, 2].find((k) => k * unit <= (right - left) / 4) ?? 1);
+  const power = 10 ** Math.floor(Math.log10((right - left) / 4));
+  const length = power * ([5, 2].find((k) => k * power <= (right - left) / 4) ?? 1);
   const pixels = drawn.at([length, 0])[0] - drawn.at([0, 0])[0];
   const y = drawn.height - 10;
   group.append(make("path", { class: "wall", d: `M12 ${y - 4}v8M12 ${y}h${pixels}m0 -4v8` }));
-  const words = `${Number(length.toPrecision(2))} ${robot.length_unit}`;
+  const words = `${Number(length.toPrecision(2))} ${unit}`;
   group.append(make("text", { x: 20 + pixels, y: y + 4 }, words));
 }
 
@@ -159,21 +159,22 @@ function drawWalls(robot, drawn, state) {
     const ends = lineThrough(corners, side).map(drawn.at);
     if (wall.used && ends.length === 2 && !hatched.some((other) => isBeside(ends, other))) {
       hatched.push(ends);
-      group.append(make("path", { class: "beyond", d: strokesBelow(ends, normal) }));
+      const strokes = make("path", { class: "beyond", d: strokesBelow(ends, normal) });
+      group.append(ownColour(robot, strokes, wall.name));
     }
     const d = pathText(ends);
-    const line = make("path", { class: wall.used ? "wall" : "wall unused", d });
-    line.dataset.boundary = wall.name;
-    group.append(line);
+    const line = make("path", { class: wall.used ? "wall limit" : "wall limit unused", d });
+    group.append(ownColour(robot, line, wall.name));
     if (ends.length === 2) {
       const there = labels.get(d) ?? { walls: [], ends };
       labels.set(d, { walls: [...there.walls, wall], ends });
     }
     return line;
   });
-  const names = [...labels.values()].map(({ walls, ends }) =>
-    group.appendChild(wallLabel(wallText(robot, walls), ends, drawn)),
-  );
+  const names = [...labels.values()].map(({ walls, ends }) => {
+    const name = wallLabel(wallText(robot, walls), ends, drawn);
+    return group.appendChild(ownColour(robot, name, walls[0].name));
+  });
   thin(names, drawn.width);
   return lines;
 }
@@ -253,6 +254,7 @@ function paintByDepth(drawn, axes, places) {
  * @type {(robot: Robot, drawn: Picture) => ArmParts} */
 function addArm(robot, drawn) {
   const group = layer(drawn, "arm");
+  const ids = `${drawn.svg.id}-${drawn.svg.querySelectorAll("clipPath").length}-`; // two arms, too
   const ballClass = robot.plane.oblique ? "sphere solid" : "sphere";
   const parts = {
     shadow: robot.plane.oblique ? [make("path", { class: "shadow" })] : [],
@@ -262,9 +264,19 @@ function addArm(robot, drawn) {
         fill: linkColour(frame),
       }),
     ),
+    clips: robot.apart.map((_, k) => {
+      const clip = make("clipPath", { id: `${ids}${k}` });
+      clip.append(make("polygon", {}));
+      return clip;
+    }),
+    overlaps: robot.apart.map((_, k) =>
+      make("polygon", { class: "overlap", "clip-path": `url(#${ids}${k})`, hidden: "" }),
+    ),
     spine: make("path", { class: "spine" }),
     axles: robot.steps.map(() => make("circle", { class: "axle", r: 5 })),
-    gaps: robot.boundaries.map(() => make("line", { class: "gap", hidden: "" })),
+    gaps: robot.boundaries.map(({ name }) =>
+      ownColour(robot, make("line", { class: "gap", hidden: "" }), name),
+    ),
     nearest: robot.boundaries.flatMap(({ kind }) =>
       kind === "bodies"
         ? [0, 1].map(() => make("circle", { class: "nearest", r: 3, hidden: "" }))
@@ -307,13 +319,49 @@ function placeArm(robot, drawn, state, lit) {
   }
   if (robot.plane.oblique) paintByDepth(drawn, axes, inSpace);
   const placed = placedParts(robot, found);
+  placeOverlaps(drawn, bodyGaps(robot, placed));
   const marks = [...drawn.nearest];
   for (const [i, wall] of robot.boundaries.entries()) {
-    const ends = gapEnds(robot, wall, found, placed).map(at);
+    const near = lit.boundaries.has(wall.name);
+    const ends = near ? gapEnds(robot, wall, found, placed).map(at) : [];
     placeGap(drawn.gaps[i], wall, ends, lit);
     if (wall.kind === "bodies") placeNearest(marks.splice(0, 2), wall, ends, lit);
   }
   drawn.group.setAttribute("transform", `translate(${places[robot.tool].join(" ")})`);
+}
+
+/** Bodies that are inside each other are red, and what they share is redder.
+ * @type {(drawn: ArmParts, gaps: BodyGap[]) => void} */
+function placeOverlaps({ bodies, clips, overlaps }, gaps) {
+  const deep = new Set(gaps.flatMap((pair) => (pair.overlap ? pair.bodies : [])));
+  for (const [i, body] of bodies.entries()) body.classList.toggle("deep", deep.has(i));
+  for (const [k, pair] of gaps.entries()) {
+    overlaps[k].toggleAttribute("hidden", !pair.overlap);
+    if (!pair.overlap) continue;
+    const [one, other] = pair.bodies.map((i) => bodies[i].getAttribute("points") ?? "");
+    clips[k].firstElementChild?.setAttribute("points", one);
+    overlaps[k].setAttribute("points", other);
+  }
+}
+
+/** A body as people call it: a name that is a number is that of its frame.
+ * @type {(robot: Robot, i: number) => string} */
+function bodyName(robot, i) {
+  const { name, frame } = robot.bodies[i];
+  if (!/^\d+$/.test(name)) return name;
+  return frame === 0 ? "the base" : `link ${frame}`;
+}
+
+/** Which two bodies are deepest inside each other at a pose; no words where all are apart.
+ * @type {(robot: Robot, q: Pose) => string} */
+function overlapText(robot, q) {
+  const gaps = bodyGaps(robot, placedParts(robot, framesOf(robot, q)));
+  const over = gaps.filter((pair) => pair.overlap);
+  const deepest = leastBy(over, ({ gap }) => gap);
+  if (!deepest) return "";
+  const [one, other] = deepest.bodies.map((i) => bodyName(robot, i));
+  const more = over.length > 1 ? `, and ${over.length - 1} more` : "";
+  return `Overlap: ${one} and ${other}, ${number(-deepest.gap, 2)} ${robot.length_unit} deep${more}.`;
 }
 
 /** @type {(element: SVGElement, point: Point, prefix?: string) => void} */
@@ -385,7 +433,7 @@ function placeNearest(marks, wall, ends, lit) {
   for (const [k, mark] of marks.entries()) {
     mark.toggleAttribute("hidden", !lit.bold.has(wall.name) && lit.closest !== wall.name);
     mark.classList.toggle("lit", lit.violated.has(wall.name));
-    placeAt(mark, ends[k], "c");
+    if (ends[k]) placeAt(mark, ends[k], "c");
   }
 }
 

@@ -103,7 +103,7 @@ function nearestCorner(core, far) {
 }
 
 /** The margin of two bodies, and the nearest places of the two parts that decide it.
- * @type {(wall: BodiesWall, placed: PlacedPart[][]) => Encounter} */
+ * @type {(wall: Pick<BodiesWall, "bodies" | "clearance">, placed: PlacedPart[][]) => Encounter} */
 function bodiesEncounter(wall, placed) {
   const [ones, others] = wall.bodies.map((i) => placed[i]);
   /** @type {Encounter} */
@@ -117,6 +117,15 @@ function bodiesEncounter(wall, placed) {
     }
   }
   return least;
+}
+
+/** How far the bodies of each pair in `apart` are from each other: negative where they overlap.
+ * @type {(robot: Robot, placed: PlacedPart[][]) => BodyGap[]} */
+function bodyGaps(robot, placed) {
+  return robot.apart.map((bodies) => {
+    const gap = bodiesEncounter({ bodies, clearance: 0 }, placed).distance;
+    return { bodies, gap, overlap: gap < -TOUCH * robot.reach };
+  });
 }
 
 /** Two places of cores moved towards each other by the radii: where the surfaces are nearest.

@@ -131,7 +131,9 @@ function marginRow(found, rows) {
   const links = rows.length > 1 ? linksOf(rows[0]) : null;
   const row = element("tr", { className: used ? "" : "unused" });
   row.append(
-    element("th", { scope: "row" }, links ? `${rows.length} pairs of balls` : name),
+    links
+      ? element("th", { scope: "row" }, `${rows.length} pairs of balls`)
+      : ownColour(robot, element("th", { scope: "row" }, name), name),
     element("td", {}, links ? links.join(" and ") : betweenText(rows[0])),
     element("td", { className: "number" }),
   );
@@ -245,6 +247,10 @@ function listen() {
   draggable(planeSvg, (pixel) => moveTool(plane.from(pixel)));
   onKeys(jointSvg, stepJoints, keys);
   onKeys(planeSvg, stepTool, keys);
+  root.addEventListener("qbound-light", (event) => {
+    state.hover = event instanceof CustomEvent ? event.detail : null;
+    refresh();
+  });
   byId("home").addEventListener("click", goHome);
   byId("flip").addEventListener("click", playFlip);
   byId("task-go").addEventListener("click", playTask);

@@ -107,21 +107,58 @@ function clear(drawn) {
   drawn.svg.append(clip);
 }
 
-/** A line of the grid and its label, of the axis below (k = 0) or of the one on the left.
- * @type {(drawn: Picture, k: number, value: number, text: string, below: number, width?: number) => SVGElement[]} */
-function gridLine(drawn, k, value, text, below, width = 0) {
+/** A boundary's own colour, the same in every figure; of a seventh one and more that of the region.
+ * @type {(robot: Robot, name: string) => string} */
+function boundaryColour(robot, name) {
+  const k = robot.boundaries.findIndex((wall) => wall.name === name);
+  return k >= 0 && k < 7 ? `var(--boundary-${k + 1})` : "var(--feasible)";
+}
+
+/** Let an element show a boundary: it has its colour, and its name to be found by.
+ * @template {SVGElement | HTMLElement} T
+ * @param {Robot} robot
+ * @param {T} element
+ * @param {string} name
+ * @returns {T} */
+function ownColour(robot, element, name) {
+  element.dataset.boundary = name;
+  element.style.setProperty("--own", boundaryColour(robot, name));
+  return element;
+}
+
+/** A joint's name as it is printed: q1 is a letter with an index.
+ * @type {(name: string) => string} */
+function symbol(name) {
+  return /^[a-z]\d+$/.test(name)
+    ? name.replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)])
+    : name;
+}
+
+/** The axes of two joint values: a grid with numbers, and beside it names with units.
+ * @type {(drawn: Picture, axes: JointAxis[]) => void} */
+function drawAxes(drawn, axes) {
+  const group = layer(drawn, "axes", false);
+  const line = lineHeight(drawn.svg);
   const { left, top, right, bottom } = drawn.box;
-  const [x, y] = drawn.at([value, value]);
-  const middle = Math.min(x, drawn.width - 2 - width / 2); // the last stays in the picture
-  return k === 0
-    ? [
-        make("line", { class: "grid", x1: x, x2: x, y1: top, y2: bottom }),
-        make("text", { x: middle, y: below, "text-anchor": "middle" }, text),
-      ]
-    : [
-        make("line", { class: "grid", x1: left, x2: right, y1: y, y2: y }),
-        make("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, text),
-      ];
+  const below = bottom + 4 + line;
+  for (const [k, { name, unit, ticks: marks }] of axes.entries()) {
+    for (const { value, text } of marks) {
+      const [x, y] = drawn.at([value, value]);
+      const middle = Math.min(x, drawn.width - 2 - wordWidth(drawn.svg, text) / 2);
+      const ends =
+        k === 0 ? { x1: x, x2: x, y1: top, y2: bottom } : { x1: left, x2: right, y1: y, y2: y };
+      const at =
+        k === 0
+          ? { x: middle, y: below, "text-anchor": "middle" }
+          : { x: left - 6, y: y + 4, "text-anchor": "end" };
+      group.append(make("line", { class: "grid", ...ends }), make("text", at, text));
+    }
+    const [x, y] = k === 0 ? [(left + right) / 2, below + line] : [line - 2, (top + bottom) / 2];
+    const title = make("text", { class: "axis-title", x, y, "text-anchor": "middle" });
+    if (k === 1) title.setAttribute("transform", `rotate(-90 ${x} ${y})`);
+    title.append(make("tspan", { class: "symbol" }, symbol(name)), ` / ${unit}`);
+    group.append(title);
+  }
 }
 
 /** Random poses: round dots where safe (grey where cut off from home), crosses where not.
@@ -169,6 +206,7 @@ function thin(names, width) {
 /** @type {Record<string, string>} */
 const LEGEND_SHAPES = {
   singular: "M0 7H22",
+  arc: "M0 7H22",
   polygon: "M1 12L11 2L21 12Z",
   dots: "M5 7h0M15 7h0",
   "dots away": "M5 7h0M15 7h0",

@@ -17,7 +17,6 @@ const engine = {
   area,
   isInside,
   toSegment,
-  crossing,
   // roots.js
   basis,
   basisSlope,
@@ -42,6 +41,7 @@ const engine = {
   margins,
   withPair,
   tightest,
+  isAboutBodies,
   isSafe,
   viewAxes,
   project,
@@ -50,6 +50,9 @@ const engine = {
   determinant,
   // contacts.js
   encounter,
+  placedParts,
+  bodiesMargin,
+  bodyGaps,
   // postures.js
   armOf,
   postures,
@@ -65,6 +68,7 @@ const engine = {
   cells,
   uprights,
   // polygons.js
+  lengthOf,
   scaledPolygon,
   randomPairs,
   wayTo,
@@ -73,7 +77,8 @@ const engine = {
   stopsAt,
   alongPath,
   // drawing.js
-  gridLine,
+  ownColour,
+  drawAxes,
   legendKey,
   make,
   set,
@@ -92,9 +97,13 @@ const engine = {
   player,
   // arm.js
   planeBox,
+  drawScaleBar,
+  drawGround,
   addArm,
   placeArm,
   placeAt,
+  bodyName,
+  overlapText,
   // parts.js
   newPrefix,
   valueRow,

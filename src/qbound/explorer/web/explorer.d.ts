@@ -25,6 +25,7 @@ interface Robot {
   points: RobotPoint[];
   bodies: RobotBody[];
   flat: Place[] | null; // two axes of the plane in which bodies move
+  apart: number[][]; // pairs of bodies of which an overlap is shown, whatever boundaries ask
   boundaries: Wall[];
   limits: Limit[];
   tool: number;
@@ -159,6 +160,12 @@ interface CoreEdge {
 interface Encounter {
   distance: number;
   places: Point[];
+}
+
+interface BodyGap {
+  bodies: number[];
+  gap: number;
+  overlap: boolean;
 }
 
 interface Seen {
@@ -355,6 +362,12 @@ interface Picture {
   from: (pixel: Point) => number[];
 }
 
+interface JointAxis {
+  name: string;
+  unit: string;
+  ticks: { value: number; text: string }[];
+}
+
 type Side = (point: Point) => number; // of a line: its sign says on which side a point lies
 
 interface Handle {
@@ -376,6 +389,8 @@ interface JointPicture extends Picture, Handle, PathLayers {
 interface ArmParts {
   shadow: SVGPathElement[]; // on the floor, of an arm that is seen obliquely
   bodies: SVGPolygonElement[];
+  clips: SVGClipPathElement[];
+  overlaps: SVGPolygonElement[]; // one for each pair in `apart`: what both bodies share
   spine: SVGPathElement;
   axles: SVGCircleElement[];
   gaps: SVGLineElement[];

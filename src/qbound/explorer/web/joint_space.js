@@ -4,10 +4,13 @@
 function drawJointSpace(svg, robot, state, slice) {
   const ranges = robot.views.map((view) => [view.low, view.high]);
   const line = lineHeight(svg);
-  const margin = { left: 46, right: 12, top: 12, bottom: 12 + 2 * line };
+  const joint = robot.joints[robot.free[1]];
+  const ends = ranges[1].map((value) => wordWidth(svg, shown(joint, value)));
+  const left = 14 + line + Math.max(...ends); // a name that is turned, then numbers
+  const margin = { left, right: 12, top: 12, bottom: 12 + 2 * line };
   const drawn = picture(svg, ranges, margin, false);
   clear(drawn);
-  drawJointAxes(robot, drawn, line);
+  drawAxes(drawn, jointAxesOf(robot, drawn, line));
   drawCells(drawn, slice);
   if (state.show.sample)
     drawMarks(layer(drawn, "sample"), state.sample, (one) => drawn.at(one.pair));
@@ -21,27 +24,21 @@ function drawJointSpace(svg, robot, state, slice) {
   return { ...drawn, ...hand, singular, arcs, path, ghost };
 }
 
-/** Axes of the box; below it are two rows, beneath the label that stands at its lowest corner.
- * @type {(robot: Robot, drawn: Picture, line: number) => void} */
-function drawJointAxes(robot, drawn, line) {
-  const group = layer(drawn, "axes", false);
+/** The axes of both free joints, with as many numbers as have room.
+ * @type {(robot: Robot, drawn: Picture, line: number) => JointAxis[]} */
+function jointAxesOf(robot, drawn, line) {
   const { left, top, right, bottom } = drawn.box;
-  const rows = [bottom + 4 + line, bottom + 4 + 2 * line];
-  robot.views.forEach((view, k) => {
+  return robot.views.map((view, k) => {
     const joint = robot.joints[robot.free[k]];
     const turn = joint.kind === "revolute";
-    const widest = Math.max(
-      ...[view.low, view.high].map((value) => wordWidth(drawn.svg, shown(joint, value))),
-    );
-    const most = k === 0 ? (right - left) / (widest + 8) : (bottom - top) / (line + 4);
-    for (const value of ticks(view, turn, most))
-      group.append(...gridLine(drawn, k, value, shown(joint, value), rows[0], widest));
-    const title = `${joint.name} / ${turn ? "°" : robot.length_unit}`;
-    group.append(
-      k === 0
-        ? make("text", { x: right, y: rows[1], "text-anchor": "end" }, title)
-        : make("text", { x: 4, y: rows[1] }, `↑ ${title}`),
-    );
+    const ends = [view.low, view.high].map((value) => wordWidth(drawn.svg, shown(joint, value)));
+    const most = k === 0 ? (right - left) / (Math.max(...ends) + 8) : (bottom - top) / (line + 4);
+    const values = ticks(view, turn, most);
+    return {
+      name: joint.name,
+      unit: turn ? "°" : robot.length_unit,
+      ticks: values.map((value) => ({ value, text: shown(joint, value) })),
+    };
   });
 }
 
@@ -108,16 +105,15 @@ function drawArcs(drawn, robot, slice) {
       shifts[1].map((b) => pathText(arc.points.map(([x, y]) => drawn.at([x + a, y + b])))),
     );
     const path = make("path", { class: arc.home ? "arc" : "arc of-away", d: copies.join("") });
-    path.dataset.boundary = arc.boundary;
-    return path;
+    return ownColour(robot, path, arc.boundary);
   });
   group.append(...arcs);
-  return [...arcs, ...nameArcs(drawn, slice)];
+  return [...arcs, ...nameArcs(drawn, robot, slice)];
 }
 
 /** Write a boundary's name beside the longest of its arcs, outside the home component.
- * @type {(drawn: Picture, slice: Slice) => SVGTextElement[]} */
-function nameArcs(drawn, slice) {
+ * @type {(drawn: Picture, robot: Robot, slice: Slice) => SVGTextElement[]} */
+function nameArcs(drawn, robot, slice) {
   const arcs = slice.arcs
     .filter((arc) => arc.home)
     .map((arc) => ({ key: `${arc.boundary} ${arc.branch}`, arc, points: arc.points.map(drawn.at) }))
@@ -126,7 +122,9 @@ function nameArcs(drawn, slice) {
     .sort((a, b) => b.size - a.size);
   const longest = arcs.filter((one, i) => arcs.findIndex(({ key }) => key === one.key) === i);
   const group = layer(drawn, "arc-names", false);
-  const names = longest.map(({ arc, points }) => nameBeside(drawn, arc.boundary, points));
+  const names = longest.map(({ arc, points }) =>
+    ownColour(robot, nameBeside(drawn, arc.boundary, points), arc.boundary),
+  );
   group.append(...names);
   thin(names, drawn.width);
   return names;
@@ -141,9 +139,7 @@ function nameBeside(drawn, name, points) {
     x: between(x + (half + 7) * nx, left + half, right - half),
     y: between(y + 15 * ny + 4, top + 14, bottom - 5),
   };
-  const text = make("text", { class: "arc-name", ...at, "text-anchor": "middle" }, name);
-  text.dataset.boundary = name;
-  return text;
+  return make("text", { class: "arc-name", ...at, "text-anchor": "middle" }, name);
 }
 
 /** @type {(points: Point[]) => number[]} */

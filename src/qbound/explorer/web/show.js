@@ -35,23 +35,37 @@ function showLegends() {
   const cutOff = slice.cells.some((cell) => cell.piece !== slice.home);
   const walls = robot.boundaries.some((wall) => wall.kind === "half-space" && wall.used);
   byId("joints-legend").replaceChildren(
-    ...legend("home", "safe, with home", true),
-    ...legend("away", "safe, cut off", cutOff),
+    ...legend("home", "allowed, with home", true),
+    ...legend("away", "allowed, cut off", cutOff),
     ...legend("singular", `${curve}: det J = 0`, slice.lines.length > 0),
     ...legend(
       "polygon",
       `polygon of the vertices, at scale ${number(state.scale, 4)}`,
       polygon && slice.own,
     ),
-    ...legend("dots", "random, safe", sample),
-    ...legend("dots away", "random, safe, cut off", sample && cutOff),
-    ...legend("crosses", "random, not safe", sample),
+    ...legend("dots", "random, allowed", sample),
+    ...legend("dots away", "random, allowed, cut off", sample && cutOff),
+    ...legend("crosses", "random, forbidden", sample),
+    ...boundaryLegend(),
   );
   byId("plane-legend").replaceChildren(
-    ...legend("workspace", "one safe posture", workspace && slice.regular),
-    ...legend("workspace twice", "both postures safe", workspace && slice.lines.length > 0),
+    ...legend("workspace", "reached in one posture", workspace && slice.regular),
+    ...legend("workspace twice", "reached in both", workspace && slice.lines.length > 0),
     ...legend("ground", "ground", plane.svg.querySelector(".ground") !== null),
-    ...legend("beyond", "the side of a wall that is not safe", walls && !robot.plane.oblique),
+    ...legend("beyond", "the forbidden side of a wall", walls && !robot.plane.oblique),
+  );
+}
+
+/** The boundaries that have arcs or lines here, each in its colour, with what it is about.
+ * @type {() => HTMLLIElement[]} */
+function boundaryLegend() {
+  const seen = [...joints.arcs, ...plane.walls].map((line) => line.dataset.boundary);
+  return robot.boundaries.flatMap(({ name, kind }, i) =>
+    i < 7 && seen.includes(name)
+      ? legend("arc", kind === "bodies" ? name : `${name}: ${betweenText(i)}`, true).map((line) =>
+          ownColour(robot, line, name),
+        )
+      : [],
   );
 }
 
@@ -59,17 +73,19 @@ function showLegends() {
 function refresh() {
   const found = margins(robot, state.q);
   const lit = litParts(found);
+  const overlap = overlapText(robot, state.q);
   const [x, y] = joints.at(inView(pairOf(state.q)));
   joints.group.setAttribute("transform", `translate(${x} ${y})`);
   for (const line of [...joints.arcs, ...plane.walls])
-    line.classList.toggle("lit", lit.bold.has(line.dataset.boundary ?? ""));
+    for (const [name, names] of Object.entries({ lit: lit.bold, violated: lit.violated }))
+      line.classList.toggle(name, names.has(line.dataset.boundary ?? ""));
   for (const mark of [joints.mark, plane.mark])
-    mark.classList.toggle("violated", lit.violated.size > 0);
+    mark.classList.toggle("violated", !isSafe(found) || overlap !== "");
   placeArm(robot, plane, state, lit);
   plane.room.toggleAttribute("hidden", !slice.regular);
   showTask(isSafe(found));
   drawPaths();
-  showStatus(found);
+  showStatus(found, overlap);
   showMargins(found, lit);
   showPose();
   showScale();
@@ -114,11 +130,17 @@ function drawPaths() {
   plane.ghost.setAttribute("d", skeleton(robot, plane, withPair(robot, state.q, state.mirror)));
 }
 
-/** @type {(found: Margin[]) => void} */
-function showStatus(found) {
-  const [verdict, reason] = statusText(found);
+/** @type {(found: Margin[], overlap: string) => void} */
+function showStatus(found, overlap) {
+  const [points, nearest] = statusText(found);
+  // Points may keep clear of each other while the links that carry them do not.
+  const isHidden = overlap !== "" && isSafe(found);
+  const verdict = isHidden ? "Overlap:" : points;
+  const reason = isHidden
+    ? `${overlap.replace("Overlap: ", "")} The points allow this pose.`
+    : nearest + (overlap ? " Links overlap." : "");
   byId("status").replaceChildren(element("strong", {}, verdict), ` ${reason}`);
-  byId("status").classList.toggle("violated", !isSafe(found));
+  byId("status").classList.toggle("violated", !isSafe(found) || isHidden);
   if (shows("pose")) {
     byId("posture").textContent = postureText();
     partOf("flip", HTMLButtonElement).disabled = flipped() === null;
