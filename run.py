@@ -83,7 +83,7 @@ print(*names)
 print(*(name for name in names if has[name]))"""
 # Chapters that take long, the longest first: those that begin late are short, and both processes
 # end at about the same time. A new one may be left out; it costs nothing but time.
-LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "certainty", "many_robots"]
+LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "proof", "many_robots"]
 LONG += ["obstacles", "every_region", "sampling", "theorem_1", "real_arm", "vector_labelling"]
 # Of the sources, what every chapter is computed with; a change of it executes all of them.
 SHARED = ("src/", "tools/", "benchmarks/", "pyproject.toml")

@@ -14,6 +14,7 @@ sys.path.insert(0, str(HERE / "_ext"))
 PYPROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))
 METADATA = PYPROJECT["project"]
 REPOSITORY = PYPROJECT["tool"]["qbound"]["repository"]
+html_baseurl = PYPROJECT["tool"]["qbound"].get("pages", "")  # where the book is read
 
 
 def mathjax_file() -> str:
@@ -44,9 +45,11 @@ extensions = [
     "sphinxcontrib.bibtex",
     "paper_numbers",
     "book_pages",
+    "folded_code",
     "ledger_links",
     "glossary_links",
     "cards",
+    "page_head",
     "panels",
     "explorer_pages",
     "front_page",

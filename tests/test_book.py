@@ -119,6 +119,36 @@ def test_no_page_shows_what_a_cell_complained_of(page):
     assert [e.get_text()[:200] for e in read(page).select(".output.stderr")] == []
 
 
+CHAPTERS = [page for page in PAGES if page.startswith("chapters/")] or ["index.html"]
+
+
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_a_section_has_one_box_of_code(page):
+    boxes = [box.find_parent("section")["id"] for box in read(page).select("details.above-input")]
+    assert [name for name, times in Counter(boxes).items() if times > 1] == []
+    for box in read(page).select("details.above-input"):  # in its section's own text
+        assert box.parent.find_previous_siblings("section") == []
+
+
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_an_exercise_says_where_it_runs_and_not_that_nobody_has_filled_it_in(page):
+    assert "Not filled in yet" not in read(page).select_one("article").get_text()
+    for section in read(page).select("section#exercises"):
+        assert not section.select("details") or "notebook" in section.p.get_text()
+
+
+@pytest.mark.parametrize("page", ["index.html", *CHAPTERS])
+def test_a_page_tells_search_engines_and_chats_what_it_is(page):
+    told = {meta.get("name") or meta.get("property"): meta["content"] for meta in metas(page)}
+    assert 40 < len(told["description"]) < 230
+    assert told["description"] == told["og:description"]
+    assert told["og:title"] in read(page).title.get_text()
+
+
+def metas(page):
+    return read(page).select("meta[content]:is([name], [property])")
+
+
 def test_every_notebook_is_a_chapter():
     chapters = [Path(page).stem for page in PAGES if page.startswith("chapters/")]
     assert read("index.html")
@@ -258,6 +288,13 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
 )
 def test_with_an_address_a_chapter_leads_to_its_notebook_in_the_repository(published, address):
     assert address in published
+
+
+def test_with_an_address_the_foot_of_a_page_has_doors_out(published):
+    report = (
+        "https://github.com/someone/qbound/issues/new?title=On%20the%20page%20chapters/01_trial"
+    )
+    assert report in published
 
 
 def test_with_an_address_a_chapter_lets_a_reader_report(published):

@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterator
 from copy import copy
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,7 +21,7 @@ from support.browser import chapter_page, open_page
 from support.pages import HTML, read
 
 LEDGER = [from_content(content) for content in recorded.claims()]
-PAGE, ERRATA = chapter_page("what_holds"), chapter_page("errata")
+PAGE, ERRATA = cite.PAGE, chapter_page("errata")
 
 every_entry = pytest.mark.parametrize("one", LEDGER, ids=lambda one: one.id)
 
@@ -67,10 +66,10 @@ def test_the_evidence_of_an_entry_is_in_the_book_and_leads_back(one) -> None:
     chapter, _, anchor = one.evidence.chapter.partition("#")
     page = chapter_page(chapter)
     (link,) = by_id(PAGE)[one.anchor].select(".ledger-evidence a")
-    assert link["href"] == f"{Path(page).name}#{anchor}"
+    assert link["href"] == f"{page}#{anchor}"
     place = by_id(page).get(anchor)
     assert place is not None, f"no {anchor} in {chapter}"
-    back = f"{Path(PAGE).name}#{one.anchor}"
+    back = f"../{PAGE}#{one.anchor}"
     section = place if place.name == "section" else place.find_parent("section")
     assert section.select(f'.in-ledger a[href="{back}"]')
 
@@ -118,7 +117,7 @@ def test_the_errata_are_what_the_ledger_would_change() -> None:
     found = {part.code.get_text().split()[2]: part for part in shown}
     assert sorted(found) == sorted(parts)
     for leader, part in found.items():
-        links = [link for link in part.select("a") if f"{Path(PAGE).name}#" in link["href"]]
+        links = [link for link in part.select("a") if f"../{PAGE}#" in link["href"]]
         assert [link.get_text() for link in links] == [one.id for one in parts[leader]]
         (one,) = (one for one in parts[leader] if one.id == leader)
         text = part.get_text()
@@ -130,7 +129,7 @@ def test_the_errata_are_what_the_ledger_would_change() -> None:
 
 
 def test_the_table_of_verdicts_counts_entries_and_findings() -> None:
-    table = read(PAGE).select_one("#tab-verdicts table")
+    table = read(chapter_page("what_holds")).select_one("#tab-verdicts table")
     rows = [[cell.get_text(strip=True) for cell in row.select("td")] for row in table.select("tr")]
     numbers = {row[0]: tuple(map(int, row[-2:])) for row in rows if row}
     assert numbers == {v: (c.entries, c.findings) for v, c in counts(LEDGER).items()}
@@ -206,4 +205,4 @@ def test_the_ledger_needs_no_other_host_and_no_module() -> None:
     scripts = [tag for tag in read(PAGE).find_all("script") if "ledger" in tag.get("src", "")]
     assert len(scripts) == 1
     assert scripts[0].get("type") in (None, "text/javascript")
-    assert json.dumps(scripts[0]["src"]).startswith('"../_static/')
+    assert json.dumps(scripts[0]["src"]).startswith('"_static/')

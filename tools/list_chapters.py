@@ -15,7 +15,7 @@ TARGET = NOTEBOOKS / "README.md"
 ROW = re.compile(
     r"^\| \{[\w:]+\}`(\w+):(\w+)` \| ([^|]+) \| \[[^\]]+\]\(chapters/(\w+)\.ipynb\)", re.M
 )
-TITLE = re.compile(r"^# (\d+\. .+)$", re.M)
+TITLE = re.compile(r"^# ((?:\d+|[A-Z])\. .+)$", re.M)
 
 HEAD = """\
 # The chapters

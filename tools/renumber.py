@@ -1,7 +1,8 @@
 """Number the chapters in the order of the book: files, titles, and every link to them.
 
-The order is that of the toctrees in book/index.md. To put a chapter in the middle, write
-notebooks/NAME.md (any number, or none, before the name), name it there as chapters/NAME, and run
+The order is that of the toctrees in book/index.md; what stands below the caption "Appendices" is
+called by a letter. To put a chapter in the middle, write notebooks/NAME.md (any number, or none,
+before the name), name it there as chapters/NAME, and run
 
     python3 run.py renumber
 
@@ -22,20 +23,24 @@ INDEX = ROOT / "book" / "index.md"
 ORDER = ROOT / "src" / "lizarraga2025" / "recorded.py"
 
 ENTRY = re.compile(r"^chapters/(?:\d\d_)?(\w+)$", re.M)
+APPENDED = re.compile(r"^:caption: Appendices$.*", re.M | re.S)
 LISTED = re.compile(r"(?<=^CHAPTERS = \(\n).*?(?=^\)$)", re.M | re.S)
-TITLE = re.compile(r'^(\s*"?# )(?:\d+\. )?', re.M)  # the first of a file, of a notebook too
+LETTERED = re.compile(r"(?<=^APPENDICES = \().*?(?=\)$)", re.M)
+TITLE = re.compile(r'^(\s*"?# )(?:(?:\d+|[A-Z])\. )?', re.M)  # of a file, of a notebook too
 LINK = re.compile(r"\[[^\[\]]*\]\((?:\.\./notebooks/|chapters/)?\d\d_(\w+)\.(?:ipynb|md)[^)]*\)")
-SAID = re.compile(r"(?<=[Cc]hapter )\d+|(?<=^\[)\d+(?=\. )")
+SAID = re.compile(r"([Cc]hapter|[Aa]ppendix) (?:\d+|[A-Z])\b|(?<=^\[)(?:\d+|[A-Z])(?=\. )")
 
 
 def main(arguments: list[str]) -> int:
     """Write what has to change, or with --check only name it."""
-    names = ENTRY.findall(INDEX.read_text(encoding="utf-8"))
+    index = INDEX.read_text(encoding="utf-8")
+    names, appended = ENTRY.findall(index), APPENDED.search(index)
+    appendices = ENTRY.findall(appended[0]) if appended else []
     problem = unlisted(names)
     if problem:
         print(problem, file=sys.stderr)
         return 1
-    changes = renumbered(names)
+    changes = renumbered(names, appendices)
     moves = {old: new for old, new in moved(names).items() if old != new}
     if "--check" in arguments:
         return report([*changes, *moves], "is out of order")
@@ -66,16 +71,34 @@ def moved(names: list[str]) -> dict[Path, Path]:
     return {path: path.with_name(stems[name_of(path)] + path.suffix) for path in chapters()}
 
 
-def renumbered(names: list[str]) -> dict[Path, str]:
+def called(names: list[str], appendices: list[str]) -> dict[str, str]:
+    """Return what a reader calls each chapter: a number, or the letter of an appendix."""
+    count = len(names) - len(appendices)
+    letters = [chr(ord("A") + k) for k in range(len(appendices))]
+    return dict(zip(names, [*map(str, range(1, count + 1)), *letters], strict=True))
+
+
+def renumbered(names: list[str], appendices: list[str]) -> dict[Path, str]:
     """Return the new text of every file that has to change."""
     numbers = {name: number for number, name in enumerate(names, start=1)}
+    calls = called(names, appendices)
     stem = re.compile(rf"\b\d\d_({'|'.join(names)})\b")
 
     def with_number(match: re.Match[str]) -> str:
         return f"{numbers[match[1]]:02d}_{match[1]}"
 
     def with_spoken_number(match: re.Match[str]) -> str:
-        return SAID.sub(str(numbers[match[1]]), match[0])
+        if match[1] not in calls:
+            return match[0]  # no chapter of that name: Sphinx will say so
+        call = calls[match[1]]
+        word = "chapter" if call.isdigit() else "appendix"
+
+        def said(found: re.Match[str]) -> str:
+            if found[1] is None:
+                return call
+            return f"{word.capitalize() if found[1][0].isupper() else word} {call}"
+
+        return SAID.sub(said, match[0])
 
     changes, titled = {}, set(chapters())
     for path in texts():
@@ -85,8 +108,9 @@ def renumbered(names: list[str]) -> dict[Path, str]:
             new = ENTRY.sub(lambda entry: f"chapters/{with_number(entry)}", new)
         if path == ORDER:
             new = LISTED.sub("".join(f'    "{name}",\n' for name in names), new)
+            new = LETTERED.sub(", ".join(f'"{name}"' for name in appendices), new)
         if path in titled:
-            new = TITLE.sub(rf"\g<1>{numbers[name_of(path)]}. ", new, count=1)
+            new = TITLE.sub(rf"\g<1>{calls[name_of(path)]}. ", new, count=1)
         if new != old:
             changes[path] = new
     return changes

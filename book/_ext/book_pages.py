@@ -38,7 +38,7 @@ HELP_WIDTH = "82"
 # Chapters are built from executed copies; readers run and edit the notebooks themselves.
 COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
 
-# A link between notebooks, as it works beside them: [Theorem 1](03_theorem_1.md).
+# A link between notebooks, as it works beside them: [Theorem 1](04_theorem_1.md).
 LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
 
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.

@@ -85,7 +85,7 @@ def theorem(found: Tag) -> Card:
     body = found.find("section")
     if title is None or body is None:
         return {}
-    for later in body.select(".in-ledger"):
+    for later in body.select(".claims-box"):
         later.decompose()
     number = title.select_one(".caption-number")
     name = (number or title).get_text().strip()

@@ -1,8 +1,8 @@
-"""Link the book and the ledger both ways: ids in the text, and the entries that a section supports.
+"""Link the book and the table of claims both ways, and show that table.
 
-An id such as E-34 in the text becomes a link to its row. Each section of a chapter that an entry
-names as its evidence ends with a line that leads to the entry. Both come from results/claims.json,
-which the chapters have written when the pages are built.
+An id such as E-34 in the text becomes a link to its row. Each section of a chapter that a claim
+names as its evidence ends with a folded box that lists these claims with their verdicts. All come
+from results/claims.json, which the chapters have written when the pages are built.
 """
 
 from __future__ import annotations
@@ -17,11 +17,14 @@ from typing import Any
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
+from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.claims import from_content
+from lizarraga2025.ledger.page import ledger_table
 
-PAGE = cite.page().removesuffix(".html")
+PAGE = cite.PAGE.removesuffix(".html")
 ID = re.compile(r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b")
 NO_TEXT = (nodes.literal, nodes.literal_block, nodes.reference, nodes.title, nodes.raw, nodes.math)
 
@@ -47,14 +50,14 @@ class LedgerLinks(SphinxPostTransform):
 
     def name_entries(self, ledger: Iterable[dict[str, Any]], page: str) -> None:
         chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
-        entries: dict[nodes.Element, list[str]] = defaultdict(list)
+        entries: dict[nodes.Element, list[dict[str, Any]]] = defaultdict(list)
         for entry in ledger:
             document, _, anchor = entry["evidence"]["chapter"].partition("#")
             section = section_of(self.document, anchor) if document == chapter else None
             if section is not None:
-                entries[section].append(entry["id"])
-        for section, names in entries.items():
-            section.insert(end_of_own_text(section), line(names, page))
+                entries[section].append(entry)
+        for section, own in entries.items():
+            section.insert(end_of_own_text(section), box(own, page))
 
 
 def read_ledger(app: Sphinx) -> list[dict[str, Any]]:
@@ -86,10 +89,21 @@ def link(name: str, page: str) -> nodes.reference:
     return nodes.reference("", name, internal=True, refuri=f"{page}#{anchor}")
 
 
-def line(names: list[str], page: str) -> nodes.paragraph:
-    """Return the line "In the ledger: E-34, E-37"."""
-    links = [part for name in names for part in (nodes.Text(", "), link(name, page))]
-    return nodes.paragraph("", "", nodes.Text("In the ledger: "), *links[1:], classes=["in-ledger"])
+def box(entries: list[dict[str, Any]], page: str) -> nodes.admonition:
+    """Return the folded box of the claims of a section: where in the paper, and the verdict."""
+    number = "One statement" if len(entries) == 1 else f"{len(entries)} statements"
+    title = nodes.title("", f"{number} of the paper, judged")
+    items = nodes.bullet_list("", *(nodes.list_item("", verdict(one, page)) for one in entries))
+    return nodes.admonition("", title, items, classes=["dropdown", "claims-box"])
+
+
+def verdict(entry: dict[str, Any], page: str) -> nodes.paragraph:
+    """Return the line "E-34, eq. (34), proof of Theorem 2: confirmed with a condition"."""
+    kind = nodes.make_id(entry["verdict"])
+    badge = nodes.inline("", entry["verdict"], classes=["verdict", f"verdict-{kind}"])
+    where = nodes.Text(f", {entry['where']}: ")
+    name = link(entry["id"], page)
+    return nodes.paragraph("", "", name, where, badge, classes=["in-ledger"])
 
 
 def section_of(document: nodes.document, anchor: str) -> nodes.section | None:
@@ -105,7 +119,17 @@ def end_of_own_text(section: nodes.section) -> int:
     return next(below, len(section.children))
 
 
+class ClaimsTable(SphinxDirective):
+    """Show every claim, ``{claims}``: what is said, how it is read, the verdict and the numbers."""
+
+    def run(self) -> list[nodes.Node]:
+        self.env.note_dependency(str(Path(self.env.app.confdir).parent / "results" / "claims.json"))
+        ledger = [from_content(content) for content in read_ledger(self.env.app)]
+        return [nodes.raw("", ledger_table(ledger), format="html")]
+
+
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register the links with Sphinx."""
+    """Register links and directive with Sphinx."""
     app.add_post_transform(LedgerLinks)
+    app.add_directive("claims", ClaimsTable)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -50,8 +50,15 @@ def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
 def section(chapter: str, title: str, entries: list[dict[str, Any]]) -> nodes.section:
     """Return the section of a chapter."""
     part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
-    part += [nodes.title("", title), nodes.raw("", table(entries), format="html")]
+    part += [nodes.title("", title), nodes.raw("", folded(entries), format="html")]
     return part
+
+
+def folded(entries: list[dict[str, Any]]) -> str:
+    """Return a chapter's results behind one line: a browser lays out what is unfolded only."""
+    count = f"{len(entries)} results" if len(entries) > 1 else "One result"
+    head = f'<details class="results-of-chapter"><summary>{count}</summary>'
+    return f"{head}{table(entries)}</details>"
 
 
 def table(entries: list[dict[str, Any]]) -> str:

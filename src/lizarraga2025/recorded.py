@@ -21,30 +21,33 @@ LEDGER = "claims.json"
 
 CHAPTERS = (
     "introduction",
+    "planar_robot",
     "vector_labelling",
     "theorem_1",
-    "planar_robot",
     "boundary_functions",
     "theorem_2",
     "region",
     "workspace",
     "sampling",
+    "what_holds",
+    "bodies",
     "every_region",
     "exact_workspace",
-    "bodies",
     "obstacles",
     "proof",
-    "certainty",
-    "what_holds",
-    "errata",
     "your_own_robot",
     "prismatic_joints",
     "three_joints",
     "real_arm",
     "many_robots",
+    "errata",
+    "theorem_1_proof",
     "side_by_side",
 )
-"""In the order of the book, which ``run.py renumber`` writes here."""
+"""In the order of the book, which ``run.py renumber`` writes here, appendices last."""
+
+APPENDICES = ("errata", "theorem_1_proof", "side_by_side")
+"""The chapters that are appendices; ``run.py renumber`` writes them."""
 
 HEAD = ("chapter", "version", "robots")
 """What an entry takes over from its file."""
@@ -59,6 +62,19 @@ def file_stem(chapter: str) -> str:
         If the book has no such chapter.
     """
     return f"{CHAPTERS.index(chapter) + 1:02d}_{chapter}"
+
+
+def called(chapter: str) -> str:
+    """Return what the book calls a chapter.
+
+    Examples
+    --------
+    >>> called("introduction")
+    'Chapter 1'
+    """
+    if chapter in APPENDICES:
+        return f"Appendix {chr(ord('A') + APPENDICES.index(chapter))}"
+    return f"Chapter {CHAPTERS.index(chapter) + 1}"
 
 
 def folder() -> Traversable:

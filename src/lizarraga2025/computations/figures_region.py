@@ -330,9 +330,9 @@ def which_factor_and_which_centroid() -> Outcome:
     both = [largest_scale(centre).scale for centre in ("area", "vertices")]
     return Outcome(
         undetermined(fits),
-        f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried are"
-        f" safe. The centroids of the area and of the six points are {apart:.4f}° apart and allow"
-        f" scales up to {both[0]:.9f} and {both[1]:.9f}. {PICTURE}",
+        f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried keep"
+        f" the floor. The centroids of the area and of the six points are {apart:.4f}° apart and"
+        f" allow scales up to {both[0]:.9f} and {both[1]:.9f}. {PICTURE}",
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.computations.sentences_workspace import pass_made_safe
+from lizarraga2025.computations.sentences_workspace import pass_keeps_bounds
 from lizarraga2025.evidence.arms import of_slides, pairs, robot, sliding, symbolic_robot, symmetric
 from lizarraga2025.evidence.joint_region import SCALE, largest_scale, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
@@ -196,7 +196,7 @@ def scaling_resolves_singularities() -> Outcome:
     least = {s: float(np.abs(det_jacobian(scaled(s))).min()) for s in (1.0, *scales)}
     return strongest(
         {
-            "a path that passes the singular pose safely (S-32)": pass_made_safe(),
+            "a path that passes the pose with every bound kept (S-32)": pass_keeps_bounds(),
             "a region without singular poses": judge(holds=not any(inside)),
             "paths that meet none": judge(holds=not any(passing)),
             "points farther from them": judge(holds=min(least.values()) == least[1.0]),

@@ -112,7 +112,7 @@ def scaling_settles_the_stretched_pose() -> Outcome:
     passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
     return strongest(
         {
-            "a path planned in joint space that passes the stretched pose safely": pass_made_safe(),
+            "a path in joint space that passes it with every bound kept": pass_keeps_bounds(),
             "a path that keeps off the stretched pose": judge(holds=not all(passing)),
         },
         "Where the outline of the six points passes the stretched pose, the tool's height above"
@@ -123,7 +123,7 @@ def scaling_settles_the_stretched_pose() -> Outcome:
     )
 
 
-def pass_made_safe() -> Verdict:
+def pass_keeps_bounds() -> Verdict:
     """Judge whether scaling makes a path feasible where it passes the stretched pose."""
     least = heights_of_the_pass()
     return judge(
@@ -371,8 +371,8 @@ def overlap_comes_from_postures() -> Outcome:
     drawn_area, error = float(share.mean()), float(share.std() / np.sqrt(len(share)))
     return Outcome(
         judge(holds=areas["once"] > SMALL and abs(drawn_area - areas["once"]) < 4 * error),
-        "A place shows both colours exactly where one of its two postures is safe:"
-        f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² of safe places, without"
+        "A position shows both colours exactly where one of its two postures is allowed:"
+        f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² that the tool reaches, without"
         f" sampling. The draw gives {drawn_area:.0f} cm², with a standard error of {error:.0f}.",
     )
 
@@ -386,6 +386,6 @@ def lobes_show() -> Outcome:
     return Outcome(
         judge(holds=same and sides == [-1, 1]),
         f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in {len(parts)}"
-        f" parts, is just the part with one safe posture ({areas['once']:.2f} cm²): the lateral"
+        f" parts, is just the part with one allowed posture ({areas['once']:.2f} cm²): the lateral"
         " shapes, one on either side, are the places of both colours.",
     )

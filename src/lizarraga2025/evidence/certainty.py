@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from qbound.region.exact import window_end
 
 from qbound.arrays import Array
 from qbound.boundary.functions import position
@@ -27,6 +26,7 @@ from qbound.proofs.exact.region import BITS as AREA_BITS
 from qbound.proofs.exact.region import ProvedComponent, prove_region
 from qbound.proofs.exact.runs import area_under
 from qbound.region import Problem, paper_rule, solve
+from qbound.region.paper_rule import window_end
 from qbound.workspace import planar
 from qbound.workspace.areas import SINGULAR
 

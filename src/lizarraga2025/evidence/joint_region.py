@@ -51,7 +51,7 @@ def scaled(factor: float | None = None, of: Robot | None = None) -> Floats:
 
 @cache
 def largest_scale(centre: str = "area") -> SafeScale:
-    """Return the largest safe scale of the polygon about either centroid."""
+    """Return the largest scale about either centroid at which the polygon keeps the floor."""
     p = vertices()
     about = polygon.centroid(p) if centre == "area" else p.mean(axis=0)
     return scaling.largest_safe_scale(p, about, floor()[None])

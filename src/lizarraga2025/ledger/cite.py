@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections.abc import Mapping
-from importlib import resources
 from typing import Any, Final
 
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.latex import escaped
 from lizarraga2025.ledger.state import state
-from lizarraga2025.recorded import file_stem, sentence
+from lizarraga2025.recorded import sentence
 from qbound import __version__
+
+PAGE: Final = "claims.html"
+"""The page of the book that shows all claims."""
 
 YEAR: Final = 2026
 """Of the release; a test compares it with CITATION.cff."""
@@ -36,13 +37,6 @@ PAPER: Final = r"""@article{Lizarraga2025,
   pages   = {5383},
   doi     = {10.3390/app15105383}
 }"""
-
-
-def page() -> str:
-    """Return the page of the book that shows the ledger."""
-    file = resources.files("lizarraga2025") / "ledger" / "book.toml"
-    chapter = tomllib.loads(file.read_text(encoding="utf-8"))["chapter"]
-    return f"chapters/{file_stem(chapter)}.html"
 
 
 TITLE = "qbound: feasible joint and geometric workspaces of robots through boundary functions"
@@ -72,8 +66,8 @@ def entry(claim: Claim) -> str:
     """Return the BibTeX entry of one claim: its place in the paper, verdict, anchor, version."""
     return f"""@misc{{qbound-{claim.id},
   author       = {{{{qbound maintainers}}}},
-  title        = {{{{What holds, entry {claim.id}: {escaped(claim.where)}}}}},
-  howpublished = {{{_version()}, {escaped(page())}\\#{claim.anchor}}},
+  title        = {{{{Claim {claim.id}: {escaped(claim.where)}}}}},
+  howpublished = {{{_version()}, {PAGE}\\#{claim.anchor}}},
   year         = {{{YEAR}}},
   note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""

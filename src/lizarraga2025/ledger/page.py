@@ -1,4 +1,4 @@
-"""The ledger as a table of a web page: whole without a script, filtered and searched with one."""
+"""The claims as a table of a web page: whole without a script, filtered and searched with one."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from html import escape
 from lizarraga2025.ledger import cite, errata
 from lizarraga2025.ledger.claims import Claim, findings
 from lizarraga2025.ledger.entries import KINDS
-from lizarraga2025.recorded import file_stem
+from lizarraga2025.recorded import called, file_stem
 from lizarraga2025.verdicts import VERDICTS
 
 WORDS = '<input type="search" name="words" autocomplete="off"'
-HEADER = ("Entry", "What the paper says", "Verdict", "What was found")
+HEADER = ("Claim", "What the paper says", "Verdict", "What was found")
 
 
 def ledger_table(ledger: Sequence[Claim]) -> str:
-    """Return the ledger as HTML: a form that the page's script shows, and the table with all rows.
+    """Return the claims as HTML: a form that the page's script shows, and the table with all rows.
 
     Each row has the entry's anchor as its id and carries its kind and verdict, links to the entries
     that rest on the same finding and to the chapter that shows the evidence, the test, and the
@@ -29,7 +29,7 @@ def ledger_table(ledger: Sequence[Claim]) -> str:
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     return (
         f'<div class="ledger">\n{_controls()}\n<table class="ledger-table">\n'
-        f"<caption>The ledger: {len(ledger)} statements of the paper,"
+        f"<caption>{len(ledger)} statements of the paper,"
         f" {len(findings(ledger))} findings.</caption>\n"
         f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
     )
@@ -57,11 +57,10 @@ def badge(verdict: str) -> str:
     return f'<span class="verdict verdict-{verdict.replace(" ", "-")}">{verdict}</span>'
 
 
-def link_to_chapter(one: Claim) -> str:
+def link_to_chapter(one: Claim, folder: str = "") -> str:
     """Return a link to the place in the book that shows the evidence."""
     chapter, _, anchor = one.evidence.chapter.partition("#")
-    stem = file_stem(chapter)
-    return f'<a href="{stem}.html#{escape(anchor)}">Chapter {int(stem[:2])}</a>'
+    return f'<a href="{folder}{file_stem(chapter)}.html#{escape(anchor)}">{called(chapter)}</a>'
 
 
 def typeset(text: str) -> str:
@@ -120,7 +119,8 @@ def _corrected(one: Claim) -> str:
 
 def _evidence(one: Claim) -> str:
     test = escape(one.evidence.test).replace("::", "::<wbr>").replace("_", "_<wbr>")
-    return f'<p class="ledger-evidence">{link_to_chapter(one)}; <code>{test}</code></p>'
+    chapter = link_to_chapter(one, "chapters/")
+    return f'<p class="ledger-evidence">{chapter}; <code>{test}</code></p>'
 
 
 def _citation(one: Claim) -> str:
@@ -131,8 +131,7 @@ def _citation(one: Claim) -> str:
 def _erratum(leader: str, entries: Sequence[Claim]) -> str:
     one = next(entry for entry in entries if entry.id == leader)
     printed, proposed = errata.change(leader) or (one.says, one.corrected)
-    page = cite.page().rpartition("/")[2]
-    links = _links(entries, page)
+    links = _links(entries, f"../{cite.PAGE}")
     words = (f"qbound claims {leader}", "--recompute")
     command = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     return (
@@ -151,7 +150,7 @@ def _lines(text: str) -> str:
 
 def _controls() -> str:
     return (
-        '<form class="ledger-controls" role="search" aria-label="Filter the ledger" hidden>\n'
+        '<form class="ledger-controls" role="search" aria-label="Filter the claims" hidden>\n'
         f"{_choice('verdict', 'Verdict', VERDICTS)}\n{_choice('kind', 'Kind', KINDS)}\n"
         f"{_labelled('words', 'Search', WORDS)}</div>\n"
         '<button type="reset">Show all</button>\n'

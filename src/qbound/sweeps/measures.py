@@ -103,7 +103,7 @@ class Measure:
 
 MEASURES: Mapping[str, Measure] = {
     "region.area": Measure(
-        lambda arm: region_area(arm.region), "joints", "two joints", "area of all safe components"
+        lambda arm: region_area(arm.region), "joints", "two joints", "area of all components"
     ),
     "region.home.area": Measure(
         lambda arm: home_area(arm.region),
@@ -112,7 +112,7 @@ MEASURES: Mapping[str, Measure] = {
         "area of the component with the home pose; 0 where home is in none",
     ),
     "region.components": Measure(
-        lambda arm: len(arm.region.components), "one", "two joints", "number of safe components"
+        lambda arm: len(arm.region.components), "one", "two joints", "number of components"
     ),
     "workspace.area": Measure(
         lambda arm: workspace_area(arm.region),
@@ -124,19 +124,19 @@ MEASURES: Mapping[str, Measure] = {
         lambda arm: rounded_down(arm.paving.inner_fraction),
         "one",
         "any joints",
-        "part of the joint range that is proved safe",
+        "part of the joint range that is proved feasible",
     ),
     "paving.outer": Measure(
         lambda arm: -rounded_down(-arm.paving.inner_fraction - arm.paving.undecided_fraction),
         "one",
         "any joints",
-        "part of the joint range outside which all is proved unsafe",
+        "part of the joint range outside which all is proved infeasible",
     ),
     "fibre.length": Measure(
         lambda arm: float(arm.fibre.length[0]),
         "joint",
         "a fibre",
-        "length of all safe values of the joint `fibre`, the others held or at home",
+        "length of all feasible values of the joint `fibre`, the others held or at home",
     ),
     "fibre.home.length": Measure(
         lambda arm: home_length(arm.fibre, arm.robot),
@@ -148,7 +148,7 @@ MEASURES: Mapping[str, Measure] = {
         lambda arm: arm.reached.volume,
         "space",
         "every joint",
-        "estimated volume of the places that the tool reaches by any safe configuration",
+        "estimated volume of the positions that the tool reaches by any feasible configuration",
     ),
     "reach.error": Measure(
         lambda arm: arm.reached.error,
