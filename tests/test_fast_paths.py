@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -261,3 +262,24 @@ def test_the_version_is_told_whatever_the_plugins_are(plugins, capsys):
 def test_an_empty_command_is_no_option_without_a_value(capsys):
     assert main([""]) == 2
     assert capsys.readouterr().err.startswith("qbound: an empty value where a command is wanted")
+
+
+def test_a_region_that_is_found_again_runs_through_few_files():
+    """Somebody who mends a region reads these files: six of them are the region's own."""
+    robot, root, files = load_robot("minervabot-v2"), Path(qbound.__file__).parent, set()
+
+    def entered(frame, event, _):
+        file = Path(frame.f_code.co_filename)
+        if root in file.parents:
+            files.add(file.relative_to(root).as_posix())
+
+    find_region(robot)  # the robot's forms, once
+    before = sys.gettrace()
+    sys.settrace(entered)
+    find_region(robot)
+    sys.settrace(before)
+    own = {"problem", "plane", "events", "cells", "outline", "region"}
+    assert {file for file in files if file.startswith("region/")} == {
+        f"region/{name}.py" for name in own
+    }
+    assert len(files) <= 13, sorted(files)

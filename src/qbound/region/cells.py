@@ -185,7 +185,7 @@ def find_events(precise: Precise) -> tuple[Lines, Pieces]:
     plane, finder = precise.plane, Finder(precise.plane, precise)
     pieces = find_pieces(plane, finder)
     found = [pieces.events, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
-    if plane.contacts.pairs:
+    if plane.pairs:
         found.append(finder.isolated(crossings(plane, pieces, finder))[1])
     # All events stay, so that pieces know theirs; those that are no lines are left out of them.
     events, own = Events.joined(found), len(pieces.events)
@@ -323,7 +323,7 @@ class _Fibres:
         """Return a base value inside each slab; an exact one where doubles are too near."""
         lines, exact = self.lines, dict[int, Any]()
         # Off the middle where bodies touch, because it may be a place of symmetry.
-        part = INSIDE if self.plane.contacts.pairs else 0.5
+        part = INSIDE if self.plane.pairs else 0.5
         widths = lines.t[1:] - lines.t[:-1]
         t = lines.t[:-1] + part * widths
         doubt = 8 * (lines.radius[1:] + lines.radius[:-1]) + 64 * UNIT * np.abs(t)
@@ -342,7 +342,7 @@ class _Fibres:
     def _gather(self) -> None:
         """Find the roots in the lift's range and its ends; on a circle without roots, its cut."""
         parts = [self._of_forms()]
-        if self.plane.contacts.pairs:
+        if self.plane.pairs:
             parts.append(self._of_contacts())
         rows: list[Any] = [np.concatenate(x) for x in zip(*parts, strict=True)]
         self.slab, self.values, self.errors, self.roots, self.piece = self._in_range(*rows)
@@ -484,7 +484,7 @@ class _Fibres:
         else:
             gap[last] = False
         self.double = self._doubles()
-        if self.plane.contacts.pairs:
+        if self.plane.pairs:
             gap &= self._apart(gap, first, last)
         free = which(gap)
         free = free[self._positive(free)]
@@ -627,7 +627,7 @@ class _Fibres:
         Of one pair several features may touch at one place: it is one contact. Where a pair seems
         to come into collision and out of it at once, it may only touch: both sides are tested.
         """
-        pieces, pairs = self.pieces, self.plane.contacts.pairs
+        pieces, pairs = self.pieces, self.plane.pairs
         rows = which(self.piece >= 0)
         pair = self.plane.contacts.pair[pieces.feature[self.piece[rows]]]
         counted = ~pieces.resting[pair]
@@ -665,7 +665,7 @@ class _Fibres:
         found = np.zeros(len(gaps), dtype=np.bool_)
         order = np.argsort(pairs, kind="stable")
         for first, last in zip(*runs(pairs[order]), strict=True):
-            chosen = np.zeros(self.plane.contacts.pairs, dtype=np.bool_)
+            chosen = np.zeros(self.plane.pairs, dtype=np.bool_)
             at = order[first : last + 1]
             chosen[pairs[at]] = True
             found[at] = self._colliding(gaps[at], chosen)[:, 0]

@@ -875,7 +875,7 @@ class Pieces:
 def find_pieces(plane: Plane, finder: Finder) -> Pieces:
     """Find all contacts of the bodies of a plane, and the walls."""
     contacts = plane.contacts
-    if not contacts.pairs:
+    if not plane.pairs:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         no = np.zeros(0, dtype=np.bool_)
         rows = (none, none, nothing, nothing, none, none, no, nothing, nothing)
@@ -888,9 +888,9 @@ def find_pieces(plane: Plane, finder: Finder) -> Pieces:
     alive &= (most >= -16 * plane.side_eps).all(axis=1)
     lifts = forms[:, :, 1:].any(axis=(1, 2))
     moved: Bools = np.asarray(lifts | sides[:, :, :, 1:].any(axis=(1, 2, 3)))
-    base_only = ~_any_of(moved, contacts.pair, contacts.pairs)
-    idle = ~_any_of(alive, contacts.pair, contacts.pairs)
-    resting = _any_of(alive & ~forms.any(axis=(1, 2)), contacts.pair, contacts.pairs)
+    base_only = ~_any_of(moved, contacts.pair, plane.pairs)
+    idle = ~_any_of(alive, contacts.pair, plane.pairs)
+    resting = _any_of(alive & ~forms.any(axis=(1, 2)), contacts.pair, plane.pairs)
     walls = _walls(plane, finder, np.flatnonzero(alive))
     found = _Contacts(plane, finder, np.flatnonzero(alive & lifts))
     events = Events.joined([found.events, walls])

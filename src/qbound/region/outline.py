@@ -901,7 +901,8 @@ def outlined(
     base, parts, part = cells.plane.base, cells.parts, cells.parts.of_cells()
     areas, middles = _moments_of_parts(cells)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
-    bounded = ~np.array(parts.wraps, dtype=np.bool_).reshape(-1, 2).any(axis=1)
+    around = np.array(parts.wraps, dtype=np.bool_).reshape(-1, 2)
+    bounded: Bools = np.asarray(~around.any(axis=1))
     shifts = (nearest_turn(middles, 0) - middles) * circles * bounded[:, None]
     at_home: dict[int, Placed] = {}
     for one in {one.cell: one for one in closures(problem, cells, base, home)}.values():

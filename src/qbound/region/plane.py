@@ -267,6 +267,7 @@ class Plane:
     ) -> None:
         self.caution = caution
         self.count, self.base, self.contacts = len(forms.coefficients), base, contacts
+        self.pairs = len(contacts.boundaries)
         self.base_kind: Kind = forms.kinds[base]
         self.lift_kind: Kind = forms.kinds[1 - base]
         self.base_range, self.lift_range = ranges[base], ranges[1 - base]
@@ -573,7 +574,7 @@ class Separation:
 
     def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
         contacts = plane.contacts
-        chosen = np.full(contacts.pairs, True) if pairs is None else pairs
+        chosen = np.full(plane.pairs, True) if pairs is None else pairs
         self.plane, self.pairs = plane, which(chosen)
         self.discs: Floats = (plane.scale(contacts.discs[self.pairs]) / plane.powers).reshape(-1, 9)
         doubts = (plane.eps[plane.count :] + 16 * UNIT) * plane.scaled_size[plane.count :]

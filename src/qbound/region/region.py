@@ -148,6 +148,8 @@ class Region:
         What `components` gives, unless the region is unresolved.
     problem : Problem
         What was asked: robot, joints, held values, rule, forms.
+    inner : Problem
+        What is left of the problem for the search: forms that some joint moves and that matter.
     cells : CellComplex
         The cells that make them up.
     base : int
@@ -163,8 +165,6 @@ class Region:
         Where and why the structure could not be decided: empty, but for scenes in which more
         coincides than 1,024 bits can tell. Then `components`, and all that rests on them, raise
         `UnresolvedError`; `contains` and `margins` work.
-    inner : Problem, optional
-        What is left of the problem for the search: forms that some joint moves and that matter.
 
     Notes
     -----
@@ -187,13 +187,13 @@ class Region:
 
     found: tuple[Component, ...]
     problem: Problem
+    inner: Problem
     cells: CellComplex
     base: int
     owner: dict[int, int]
     empty_because: tuple[str, ...] = field(default_factory=tuple)
     irrelevant: tuple[str, ...] = field(default_factory=tuple)
     unresolved: tuple[str, ...] = field(default_factory=tuple)
-    inner: Problem | None = None
 
     def __eq__(self, other: object) -> bool:
         """Tell whether it is the region of the same problem: a problem has one region."""
@@ -705,10 +705,22 @@ def _verified(problem: Problem, home: Floats, base: int) -> Region:
 
 
 def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
-    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting."""
-    constraints, irrelevant = problem.searched  # eqs. 9-12; of many forms those that may bind
-    precise = Precise.of(constraints, base, caution)  # along the lift: Theorem 2
-    if problem.blocked:
+    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting step.
+
+    1. Constraints: a form for each boundary (eqs. 9-12), without those that no joint moves.
+    2. Relevant ones: of many forms those that are proved to bind nowhere are left out.
+    3. Events: base values at which roots along the lift (Theorem 2) meet, appear, or pass an end.
+    4. Cells: between two events nothing changes; all forms are positive between two roots.
+    5. Adjacency: cells touch over an open interval of a line on which all forms are positive.
+    6. Components: cells that hang together.
+    7. Outlines: the closed loops of arcs round each component.
+    8. `_verified` asks the margins whether the result is right.
+
+    Only the forms are the paper's; steps 3 to 8 are not in it.
+    """
+    constraints, irrelevant = problem.searched
+    precise = Precise.of(constraints, base, caution)
+    if problem.blocked:  # a form that no joint moves leaves no room
         decomposition = nothing_in(precise)
     else:
         events, contacts = find_events(precise)
@@ -718,14 +730,14 @@ def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
     owner = {k: i for i, (_, own) in enumerate(components) for k in own}
     found = tuple(component for component, _ in components)
     because = problem.blocked[:1] or (() if found else irreducible(constraints, base))
-    return Region(found, problem, cells, base, owner, because, irrelevant, inner=constraints)
+    return Region(found, problem, constraints, cells, base, owner, because, irrelevant)
 
 
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
     """Return a region without components that says why it has none."""
     inner, irrelevant = problem.searched
     cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
-    return Region((), problem, cells, base, {}, (), irrelevant, why, inner)
+    return Region((), problem, inner, cells, base, {}, (), irrelevant, why)
 
 
 def _is_delicate(region: Region) -> bool:
@@ -1007,7 +1019,7 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
     """Tell in balls whether every form is positive at a place and all bodies are apart."""
     plane = precise.plane
     return all(precise.sign(row, base, place) > 0 for row in range(plane.count)) and all(
-        apart(precise, pair, base, place) for pair in range(plane.contacts.pairs)
+        apart(precise, pair, base, place) for pair in range(plane.pairs)
     )
 
 

@@ -379,7 +379,7 @@ class Layers:
         """
         forms, features = set[int](), set[int]()
         for part in self.sides.values():
-            kept = () if part.inner is None else part.inner.names
+            kept = part.inner.names
             for cell in part.cells.cells:
                 for row in (cell.lower.form, cell.upper.form):
                     if row >= len(kept):
