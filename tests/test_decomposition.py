@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
-from qbound.region.cells import find_events
+from qbound.region.events import find_events
 from qbound.region.plane import Plane, Precise, precision
 from support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, TORUS, TURN, forms
 from support.regions import pieces, problem_of

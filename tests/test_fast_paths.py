@@ -18,8 +18,7 @@ from qbound.forms.factors import basis, basis_and_slope, basis_slope
 from qbound.measures import nearest
 from qbound.model.frames import cross
 from qbound.region import events
-from qbound.region.cells import find_events
-from qbound.region.events import Events, Finder, _Request
+from qbound.region.events import Events, Finder, _Request, find_events
 from qbound.region.outline import CELL_NODES, NODES, _smooth_rules, legendre
 from qbound.region.plane import HIGHEST, LOWEST, Plane, Precise, Root, runs
 from qbound.region.problem import clearance_problem

@@ -30,13 +30,11 @@ from qbound.region.events import (
     END,
     INSIDE,
     NO_EVENTS,
-    Events,
     Finder,
     Lines,
     Pieces,
-    crossings,
+    find_events,
     find_lines,
-    find_pieces,
 )
 from qbound.region.plane import (
     HIGHEST,
@@ -176,26 +174,6 @@ def nothing_in(precise: Precise) -> Decomposition:
 # --- critical base values -------------------------------------------------------------------------
 
 
-def find_events(precise: Precise) -> tuple[Lines, Pieces]:
-    """Return every base value at which the order of roots may change, and the contacts of bodies.
-
-    The ends of the range are among them. Some are spurious, which costs time; none is missing,
-    which would cost the answer.
-    """
-    plane, finder = precise.plane, Finder(precise.plane, precise)
-    pieces = find_pieces(plane, finder)
-    found = [pieces.events, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
-    if plane.pairs:
-        found.append(finder.isolated(crossings(plane, pieces, finder))[1])
-    # All events stay, so that pieces know theirs; those that are no lines are left out of them.
-    events, own = Events.joined(found), len(pieces.events)
-    chosen = np.concatenate([pieces.lines, np.arange(own, len(events))])
-    lines = find_lines(finder, events[chosen])
-    of = np.full(len(events), -1)
-    of[chosen] = lines.of
-    return replace(lines, of=of), pieces
-
-
 def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
     """Return the feasible cells between critical lines.
 
@@ -207,15 +185,6 @@ def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
     plane, fibres = lines.finder.plane, _Fibres(lines, pieces)
     cells, standing = fibres.cells(), _standing(plane, lines, pieces)
     return _without_idle_lines(Decomposition(plane, lines, fibres.t, *cells, standing))
-
-
-def _of_forms(plane: Plane, finder: Finder) -> list[Any]:
-    """Return the events of forms that stand alone, and those at which two of them meet."""
-    lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
-    moved = which(lifts)
-    i, j = np.nonzero(moved[:, None] < moved)
-    meetings = finder.meetings(moved[i], moved[j])
-    return [*finder.fixed(which(~lifts)), *finder.own(moved), *meetings]
 
 
 def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:

@@ -1438,3 +1438,35 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     slack = NEAR * plane.base_unit + found.radius[pick]
     near = (t >= pieces.start[k] - slack) & (t <= pieces.end[k] + slack)
     return Events.joined([lone, found[np.unique(pick[near])]])
+
+
+# --- all events -----------------------------------------------------------------------------------
+
+
+def find_events(precise: Precise) -> tuple[Lines, Pieces]:
+    """Return every base value at which the order of roots may change, and the contacts of bodies.
+
+    The ends of the range are among them. Some are spurious, which costs time; none is missing,
+    which would cost the answer.
+    """
+    plane, finder = precise.plane, Finder(precise.plane, precise)
+    pieces = find_pieces(plane, finder)
+    found = [pieces.events, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
+    if plane.pairs:
+        found.append(finder.isolated(crossings(plane, pieces, finder))[1])
+    # All events stay, so that pieces know theirs; those that are no lines are left out of them.
+    events, own = Events.joined(found), len(pieces.events)
+    chosen = np.concatenate([pieces.lines, np.arange(own, len(events))])
+    lines = find_lines(finder, events[chosen])
+    of = np.full(len(events), -1)
+    of[chosen] = lines.of
+    return replace(lines, of=of), pieces
+
+
+def _of_forms(plane: Plane, finder: Finder) -> list[Any]:
+    """Return the events of forms that stand alone, and those at which two of them meet."""
+    lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
+    moved = which(lifts)
+    i, j = np.nonzero(moved[:, None] < moved)
+    meetings = finder.meetings(moved[i], moved[j])
+    return [*finder.fixed(which(~lifts)), *finder.own(moved), *meetings]

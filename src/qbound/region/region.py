@@ -21,11 +21,10 @@ from qbound.region.cells import (
     apart,
     decompose,
     find_cells,
-    find_events,
     nothing_in,
     turned_root,
 )
-from qbound.region.events import INSIDE
+from qbound.region.events import INSIDE, find_events
 from qbound.region.outline import Component, closures, drawn, numbered, ordered, outlined
 from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
 from qbound.region.problem import Problem, Rule, clearance_problem
