@@ -23,7 +23,6 @@ from qbound.forms.circle import circle_roots
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.printable import printable
-from qbound.region.plane import Ball, flint
 from qbound.region.problem import Problem, state
 from qbound.tolerances import ZERO_AMPLITUDE
 
@@ -191,7 +190,7 @@ def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
 # --- exact ends -----------------------------------------------------------------------------------
 
 
-def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Ball, Ball]:
+def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Any, Any]:
     """Return the highest lower end and the lowest upper end of a joint's windows and limits.
 
     Of ends that are not certainly apart the first one stands for both.
@@ -205,9 +204,11 @@ def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Ba
     limits : pair of balls, optional
         Of the joint.
     """
+    from flint import arb
+
     own = [window for window in windows(robot) if window.joint == joint]
     upper = [window_end(exact, window) for window in own]
-    lower = [end - 2 * flint.arb.pi() for end in upper]
+    lower = [end - 2 * arb.pi() for end in upper]
     if limits is not None:
         lower, upper = [*lower, limits[0]], [*upper, limits[1]]
     low, high = lower[0], upper[0]
@@ -216,7 +217,7 @@ def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Ba
     return low, high
 
 
-def window_end(exact: Robot, window: Window) -> Ball:
+def window_end(exact: Robot, window: Window) -> Any:
     r"""Return the upper end of a window as a ball: the root :math:`\theta + \alpha` (eq. 39).
 
     Raises
@@ -224,15 +225,17 @@ def window_end(exact: Robot, window: Window) -> Ball:
     ValueError
         If it is not certain that the component reaches zero.
     """
+    from flint import arb
+
     pair: Any = exact.boundary(window.boundary)
     component = pair_vector(exact, pair)[window.component - 1]
-    c, a, b = component.along(window.joint, [flint.arb(0)] * len(exact.joints))
-    square = flint.arb(a * a + b * b - c * c)
+    c, a, b = component.along(window.joint, [arb(0)] * len(exact.joints))
+    square = arb(a * a + b * b - c * c)
     if not square >= 0:
         text = "it is not proved that this component reaches zero"
         raise ValueError(f"{printable(window.boundary)}: {text}")
     half = square.sqrt()
-    found: Ball = flint.arb.atan2(a * half - b * c, -a * c - b * half)
+    found: Any = arb.atan2(a * half - b * c, -a * c - b * half)
     turns = round((window.upper - float(found)) / (2 * np.pi))
-    end: Ball = found + 2 * turns * flint.arb.pi()
+    end: Any = found + 2 * turns * arb.pi()
     return end
