@@ -24,8 +24,7 @@ from typing import Final, Literal
 import numpy as np
 
 from qbound.arrays import Bools, Floats, Ints
-from qbound.boundary.body_contacts import body_contacts
-from qbound.boundary.contacts import NO_CONTACTS, Contacts
+from qbound.boundary.contacts import NO_CONTACTS, Contacts, body_contacts
 from qbound.boundary.errors import clearance_error
 from qbound.boundary.evaluator import (
     Evaluator,
