@@ -18,15 +18,7 @@ from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary
 from qbound.model.joints import Joint
 from qbound.model.robot import Robot
-from qbound.model.shapes import (
-    Body,
-    Capsule,
-    Disc,
-    Point,
-    Polygon,
-    Shape,
-    default_names,
-)
+from qbound.model.shapes import Body, Point, default_names
 from qbound.tolerances import ROUNDING, TANGENT
 
 if TYPE_CHECKING:
@@ -114,14 +106,12 @@ class ExactNumbers:
 
     def body(self, body: Body) -> Body:
         """Return a body with exact numbers."""
-        shape, row = body.shape, self._rows["body"].get(body.name, NO_ROW)
-        value = row.get(shape.key)
-        if isinstance(shape, Polygon):
-            return replace(body, shape=_shape(shape, _places(value, shape.places), 0))
-        keys = ("from", "to") if isinstance(shape, Capsule) else ("at",)
-        rows = None if value is None else [value[key] for key in keys]
-        radius = _number(None if value is None else value["radius"], getattr(shape, "radius", 0))
-        return replace(body, shape=_shape(shape, _places(rows, shape.places), radius))
+        shape = body.shape
+        value = self._rows["body"].get(body.name, NO_ROW).get(shape.key)
+        written, radius = (None, None) if value is None else shape.written(value)
+        places = _places(written, shape.places)
+        own = _number(radius, getattr(shape, "radius", 0))
+        return replace(body, shape=shape.with_numbers(places, own))
 
     def boundary(self, boundary: Boundary) -> Boundary:
         """Return a boundary with exact numbers, also one that the robot makes of two bodies."""
@@ -309,15 +299,6 @@ def _floats(written: Sequence[Any]) -> Array:
 
 def _array(numbers: Iterable[Any]) -> Array:
     return np.array(list(numbers), dtype=object)
-
-
-def _shape(shape: Shape, places: Array, radius: Any) -> Shape:
-    """Return a shape of the same kind with other numbers."""
-    if isinstance(shape, Polygon):
-        return Polygon(places)
-    if isinstance(shape, Capsule):
-        return Capsule(places[0], places[1], radius)
-    return Disc(places[0], radius)
 
 
 def _unit(vector: Sequence[Any]) -> Array:

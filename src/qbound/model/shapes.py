@@ -92,6 +92,15 @@ class Shape(ABC):
         """Which places are the corners of each part."""
         return (tuple(range(len(self.places))),)
 
+    @abstractmethod
+    def with_numbers(self, places: Array, radius: Any) -> "Shape":
+        """Return a shape of the same kind with other places and another radius."""
+
+    @staticmethod
+    @abstractmethod
+    def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
+        """Return places and radius of what stands under its key in a file."""
+
     @property
     def fault(self) -> str | None:
         """What is wrong with the shape itself; None: nothing."""
@@ -162,6 +171,15 @@ class Polygon(Shape):
         """What keeps it from being a simple polygon."""
         return polygon_fault(self._flat)
 
+    def with_numbers(self, places: Array, radius: Any) -> "Polygon":
+        """Return the polygon of other corners."""
+        return Polygon(places)
+
+    @staticmethod
+    def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
+        """Return the corners, and no radius."""
+        return value, 0
+
     @property
     def _flat(self) -> Array:
         """The corners in two of their coordinates, shape (m, 2): its shadow along the third.
@@ -201,6 +219,15 @@ class Capsule(Shape):
         """The segment with the radius."""
         return (Part(self.places, self.radius),)
 
+    def with_numbers(self, places: Array, radius: Any) -> "Capsule":
+        """Return the capsule between two other places."""
+        return Capsule(places[0], places[1], radius)
+
+    @staticmethod
+    def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
+        """Return both ends and the radius."""
+        return (value["from"], value["to"]), value["radius"]
+
     @property
     def fault(self) -> str | None:
         """Both ends at one place."""
@@ -238,6 +265,15 @@ class Disc(Shape):
     def parts(self) -> tuple[Part, ...]:
         """The centre with the radius."""
         return (Part(self.places, self.radius),)
+
+    def with_numbers(self, places: Array, radius: Any) -> "Disc":
+        """Return the disc about another centre."""
+        return Disc(places[0], radius)
+
+    @staticmethod
+    def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
+        """Return the centre and the radius."""
+        return (value["at"],), value["radius"]
 
     def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
         """Return a circle."""
