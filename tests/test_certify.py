@@ -727,22 +727,10 @@ point = [{ name = "tip", frame = "2", at = [0.35, 0, 0] }]
 body = [{ name = "upper", frame = "1", capsule = { from = [0, 0], to = [0.4, 0], radius = 0.04 } },
         { name = "fore", frame = "2", capsule = { from = [0, 0], to = [0.35, 0], radius = 0.03 } }]
 obstacle = [{ name = "post", disc = { at = [0.5, -0.35], radius = 0.06 } }]
-[[joint]]
-name = "s"
-type = "revolute"
-parent = "0"
-frame = "1"
-origin = [0, 0, 0]
-axis = [0, 0, 1]
-limits = [-170, 170]
-[[joint]]
-name = "e"
-type = "revolute"
-parent = "1"
-frame = "2"
-origin = [0.4, 0, 0]
-axis = [0, 0, 1]
-limits = [-150, 150]
+joint = [
+  { name = "s", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-170, 170] },
+  { name = "e", type = "revolute", parent = "1", frame = "2", origin = [0.4, 0, 0], axis = [0, 0, 1], limits = [-150, 150] },
+]
 """
 
 

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """The second checker: its normal form, its bounds against samples, and what it must refuse."""
 
 import json
@@ -206,37 +207,19 @@ home = { q = 0, s = 0 }
 tool = "p"
 collisions = "all"
 clearance = 1e-2
-
-[[joint]]
-name = "q"
-type = "revolute"
-parent = "b"
-frame = "f"
-origin = [0, 0, 0.50]
-axis = [0, -2, 0]
-
-[[joint]]
-name = "s"
-type = "prismatic"
-parent = "f"
-frame = "g"
-origin = [1e1, 0, 0]
-rpy = [1.5707963267948966, 0, 0]
-axis = [1, 0, 0]
-limits = [-1, 2.50]
-
-[[point]]
-name = "p"
-frame = "g"
-at = [1, 2, 3]
-
-[[body]]
-frame = "g"
-capsule = { from = [1, 0], to = [2, 0], radius = 0.5 }
-
-[[obstacle]]
-name = "hook"
-polygon = [[-5, -5], [5, -5], [5, 0], [0, 0], [0, 5], [-5, 5]]
+joint = [
+  { name = "q", type = "revolute", parent = "b", frame = "f", origin = [0, 0, 0.50], axis = [0, -2, 0] },
+  { name = "s", type = "prismatic", parent = "f", frame = "g", origin = [1e1, 0, 0], rpy = [1.5707963267948966, 0, 0], axis = [1, 0, 0], limits = [-1, 2.50] },
+]
+point = [
+  { name = "p", frame = "g", at = [1, 2, 3] },
+]
+body = [
+  { frame = "g", capsule = { from = [1, 0], to = [2, 0], radius = 0.5 } },
+]
+obstacle = [
+  { name = "hook", polygon = [[-5, -5], [5, -5], [5, 0], [0, 0], [0, 5], [-5, 5]] },
+]
 """
 PARTS = {"hook": [[0, 1, 2, 3], [0, 3, 4, 5]]}
 
@@ -310,7 +293,7 @@ tool = "end"
 joint = [{ name = "q", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 1, 0] }]
 point = [{ name = "end", frame = "1", at = [1, 0, 0] }]
 boundary = [{ name = "floor", type = "half-space", point = "end", normal = [0, 0, 1], offset = -0.99 }]
-"""  # noqa: E501
+"""
     claim = {"set": "box", "points": [[["-80"], ["80"]]]}
     data = certificates.proved(robot, claim)
     assert len(data["proof"]["trees"][0][0]) > 1

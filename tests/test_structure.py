@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """Proved components of regions with bodies: scenes, proposals that are wrong, and what touches."""
 
 from dataclasses import dataclass, replace
@@ -140,34 +141,20 @@ angle_unit = "deg"
 home = {{ x = 1, y = 1 }}
 tool = "tip"
 collisions = "all"
-[[joint]]
-name = "x"
-type = "prismatic"
-parent = "base"
-frame = "cart"
-axis = [1, 0, 0]
-origin = [0, 0, 0]
-limits = [0.6, 3.4]
-[[joint]]
-name = "y"
-type = "prismatic"
-parent = "cart"
-frame = "hand"
-axis = [0, 0, 1]
-origin = [0, 0, 0]
-limits = [0.6, 3.4]
-[[point]]
-name = "tip"
-frame = "hand"
-at = [0, 0, 0]
-[[body]]
-frame = "hand"
-name = "disc"
-disc = {{ at = [0, 0], radius = 0.5 }}
-[[obstacle]]
-polygon = [[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]]
-[[obstacle]]
-polygon = [[1.9, {top}], [2.1, {top}], [2.1, 5], [1.9, 5]]
+joint = [
+  {{ name = "x", type = "prismatic", parent = "base", frame = "cart", axis = [1, 0, 0], origin = [0, 0, 0], limits = [0.6, 3.4] }},
+  {{ name = "y", type = "prismatic", parent = "cart", frame = "hand", axis = [0, 0, 1], origin = [0, 0, 0], limits = [0.6, 3.4] }},
+]
+point = [
+  {{ name = "tip", frame = "hand", at = [0, 0, 0] }},
+]
+body = [
+  {{ frame = "hand", name = "disc", disc = {{ at = [0, 0], radius = 0.5 }} }},
+]
+obstacle = [
+  {{ polygon = [[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]] }},
+  {{ polygon = [[1.9, {top}], [2.1, {top}], [2.1, 5], [1.9, 5]] }},
+]
 """
 """A disc on two slides, and a gate in a wall, as wide as the disc where `top` is 2.3."""
 
@@ -198,39 +185,21 @@ home = { q1 = 134.064, q2 = 68.255 }
 tool = "tip"
 collisions = "all"
 allowed = [["upper", "fore"], ["bulge", "fore"]]
-[[joint]]
-name = "q1"
-type = "revolute"
-parent = "base"
-frame = "L1"
-origin = [0.031, 0.0, -0.085]
-axis = [0.0, -1.0, 0.0]
-[[joint]]
-name = "q2"
-type = "revolute"
-parent = "L1"
-frame = "L2"
-origin = [0.751, 0.0, 0.0]
-axis = [0.0, 1.0, 0.0]
-[[point]]
-name = "tip"
-frame = "L2"
-at = [0.639, 0.0, 0.0]
-[[body]]
-name = "upper"
-frame = "L1"
-polygon = [[-0.066, -0.037], [0.751, -0.037], [0.751, 0.234], [0.696, 0.234], [0.696, 0.037],
-    [-0.066, 0.037]]
-[[body]]
-name = "bulge"
-frame = "L1"
-polygon = [[0.287, 0.028], [0.224, 0.062], [0.186, 0.236], [0.244, 0.302], [0.473, 0.19]]
-[[body]]
-name = "fore"
-frame = "L2"
-polygon = [[-0.032, -0.031], [0.639, -0.022], [0.639, 0.022], [-0.032, 0.031]]
-[[obstacle]]
-disc = { at = [0.733, 0.292], radius = 0.03 }
+joint = [
+  { name = "q1", type = "revolute", parent = "base", frame = "L1", origin = [0.031, 0.0, -0.085], axis = [0.0, -1.0, 0.0] },
+  { name = "q2", type = "revolute", parent = "L1", frame = "L2", origin = [0.751, 0.0, 0.0], axis = [0.0, 1.0, 0.0] },
+]
+point = [
+  { name = "tip", frame = "L2", at = [0.639, 0.0, 0.0] },
+]
+body = [
+  { name = "upper", frame = "L1", polygon = [[-0.066, -0.037], [0.751, -0.037], [0.751, 0.234], [0.696, 0.234], [0.696, 0.037], [-0.066, 0.037]] },
+  { name = "bulge", frame = "L1", polygon = [[0.287, 0.028], [0.224, 0.062], [0.186, 0.236], [0.244, 0.302], [0.473, 0.19]] },
+  { name = "fore", frame = "L2", polygon = [[-0.032, -0.031], [0.639, -0.022], [0.639, 0.022], [-0.032, 0.031]] },
+]
+obstacle = [
+  { disc = { at = [0.733, 0.292], radius = 0.03 } },
+]
 """
 """Two components; in floats one critical value may come out twice, and specks between the two."""
 

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """Components that go all the way round a joint: cut open, proved, and every angle is in them."""
 
 import tomllib
@@ -20,38 +21,20 @@ length_unit = "cm"
 angle_unit = "{unit}"
 home = {{ q1 = 0, q2 = 0 }}
 tool = "tip"
-[[joint]]
-name = "q1"
-type = "revolute"
-parent = "0"
-frame = "1"
-origin = [0, 0, 0]
-axis = [0, 1, 0]
-[[joint]]
-name = "q2"
-type = "revolute"
-parent = "1"
-frame = "2"
-origin = [10, 0, 0]
-axis = [0, 1, 0]
-{limits}
-[[point]]
-name = "tip"
-frame = "2"
-at = [6, 0, 0]
-[[point]]
-name = "base"
-frame = "0"
-at = [0, 0, 0]
-[[point]]
-name = "post"
-frame = "0"
-at = [0, 0, 14]
+joint = [
+  {{ name = "q1", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 1, 0] }},
+  {{ name = "q2", type = "revolute", parent = "1", frame = "2", origin = [10, 0, 0], axis = [0, 1, 0]{limits} }},
+]
+point = [
+  {{ name = "tip", frame = "2", at = [6, 0, 0] }},
+  {{ name = "base", frame = "0", at = [0, 0, 0] }},
+  {{ name = "post", frame = "0", at = [0, 0, 14] }},
+]
 {boundaries}"""
 PAIR = '[[boundary]]\nname = "{0}"\ntype = "pair"\npoints = ["tip", "{0}"]\nclearance = {1}\n'
 BASE, POST = PAIR.format("base", 8), PAIR.format("post", 1)
 WALL = '[[boundary]]\nname = "wall"\ntype = "half-space"\npoint = "tip"\nnormal = {}\noffset = {}\n'
-LIMITS = "limits = [-100, 90]"
+LIMITS = ", limits = [-100, 90]"
 
 ARMS = {
     "a ring": (ARM.format(unit="deg", limits="", boundaries=BASE), "q1"),

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """An arm of three joints that turn, whose elbow is blocked in closed form, and a cart, as text."""
 
 import math
@@ -91,50 +92,18 @@ length_unit = "m"
 angle_unit = "deg"
 home = { x = -1, q = 0 }
 tool = "b/1"
-
-[[joint]]
-name = "x"
-type = "prismatic"
-parent = "base"
-frame = "cart"
-origin = [0, 0, 0]
-axis = [1, 0, 0]
-limits = [-2, 2]
-
-[[joint]]
-name = "q"
-type = "revolute"
-parent = "cart"
-frame = "arm"
-origin = [0, 0, 0]
-axis = [0, 1, 0]
-
-[[point]]
-name = "a/1"
-frame = "base"
-at = [0, 0, 0.3]
-radius = 0.2
-
-[[point]]
-name = "b/1"
-frame = "cart"
-at = [0, 0, 0]
-radius = 0.3
-
-[[point]]
-name = "c/1"
-frame = "arm"
-at = [0.1, 0, 0]
-radius = 0.3
-
-[[boundary]]
-name = "passing"
-type = "pair"
-points = ["a/1", "b/1"]
-
-[[boundary]]
-name = "arm passing"
-type = "pair"
-points = ["a/1", "c/1"]
+joint = [
+  { name = "x", type = "prismatic", parent = "base", frame = "cart", origin = [0, 0, 0], axis = [1, 0, 0], limits = [-2, 2] },
+  { name = "q", type = "revolute", parent = "cart", frame = "arm", origin = [0, 0, 0], axis = [0, 1, 0] },
+]
+point = [
+  { name = "a/1", frame = "base", at = [0, 0, 0.3], radius = 0.2 },
+  { name = "b/1", frame = "cart", at = [0, 0, 0], radius = 0.3 },
+  { name = "c/1", frame = "arm", at = [0.1, 0, 0], radius = 0.3 },
+]
+boundary = [
+  { name = "passing", type = "pair", points = ["a/1", "b/1"] },
+  { name = "arm passing", type = "pair", points = ["a/1", "c/1"] },
+]
 """
 """A cart passes a ball: 0.3^2 + x^2 < 0.5^2 is blocked, that is |x| < 0.4."""
