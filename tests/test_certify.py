@@ -31,6 +31,7 @@ from qbound.proofs.certificates.certify import bracket_scale, certify, certify_r
 from qbound.proofs.certificates.loops import triangulate
 from qbound.proofs.certificates.statements import DECIMAL, read_points
 from qbound.region import find_region
+from support.claims import BODIES
 from support.robot_files import box_of, robot_file
 from support.robots import OF_POINTS, drawn_robot, random_robot
 
@@ -242,6 +243,13 @@ def test_a_long_cell_along_a_slide_is_cut_there(kind):
     answer = certify(LONG_CELLS, asked)
     assert answer.verdict == "proved"
     assert answer.leaves < 300
+
+
+def test_an_outline_with_a_corner_nearly_on_an_edge_has_a_certificate():
+    bent = BODIES.replace("[[0.2, -0.9]", "[[0.20000000000000018, -0.9]")
+    answer = certify(bent, statements.box(["-1", "-1"], ["1", "1"]))
+    assert answer.verdict == "proved"
+    assert second.verify(answer.text) == "proved"
 
 
 # --- random robots --------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robotfile import parse_robot, robot_text
+from qbound.proofs.exact import parts
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import balls, precision
 from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
@@ -177,3 +178,23 @@ def test_a_bound_of_coefficients_around_nothing_is_a_number():
         around = arb(0, "1e-150")
         form = HarmonicForm(np.array([around, arb(1), around], dtype=object), ("revolute",))
         assert 1.0 <= magnitude(form, [1.0]) < 1.0 + 1e-12
+
+
+@pytest.mark.parametrize("digits", [2, 4, 17])
+def test_parts_fill_outlines_with_corners_that_are_nearly_on_an_edge(digits):
+    """Of 17 digits none was filled: floats took the corner for one of the edge."""
+    filled = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(4, 12)))
+        rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        loop = (rays * rng.uniform(0.5, 2, (len(rays), 1))).round(digits).tolist()
+        loop.insert(1, [(a + b) / 2 for a, b in zip(*loop[:2], strict=True)])
+        corners = [tuple(Fraction(repr(x)) for x in corner) for corner in loop[:: (-1) ** seed]]
+        try:
+            found = parts.cut(corners)
+        except ValueError:  # the outline crosses itself
+            continue
+        parts.check_parts(corners, found, "outline")
+        filled += 1
+    assert filled > 20

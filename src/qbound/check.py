@@ -670,7 +670,7 @@ def read_spots(arm: "Arm") -> Reader:
 
 def _holds_disc(corners: Sequence[Exact], seen: Sequence[int], at: Exact, radius: Fraction) -> bool:
     """Tell whether a disc lies within a convex part: every edge is that far from its middle."""
-    Work.add(60 * len(corners))
+    Work.add(120 * len(corners))
     i, k = seen
     flat = [(p[i], p[k]) for p in corners]
     sense = 1 if doubled_area(flat) > 0 else -1

@@ -133,8 +133,8 @@ def _outline(corners: ArrayLike) -> Outline:
 
 
 def _whole(corners: ArrayLike) -> list[Whole]:
-    """Return the corners times a power of two that makes them whole numbers."""
-    ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=float).ravel().tolist()]
+    """Return the corners times a number that makes them whole: whole numbers as they are."""
+    ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=object).ravel().tolist()]
     scale = max(denominator for _, denominator in ratios)
     flat = [numerator * (scale // denominator) for numerator, denominator in ratios]
     return list(zip(flat[::2], flat[1::2], strict=True))

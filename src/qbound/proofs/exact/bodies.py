@@ -243,7 +243,7 @@ def _cores(body: Body, chain: _Chain) -> Iterator[Core]:
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
     own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
     seen = [chain.flat(body.frame, place) for place in places]
-    loops = parts.cut(own, body.name) if len(places) > 2 else [list(range(len(places)))]
+    loops = parts.cut(own) if len(places) > 2 else [list(range(len(places)))]
     order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
     if order[0] > order[-1]:
         loops = [loop[::-1] for loop in loops]

@@ -13,8 +13,6 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from qbound.geometry.convex import convex_parts
 from qbound.model.robot import BodyPair, Robot
 from qbound.printable import printable
@@ -22,12 +20,9 @@ from qbound.printable import printable
 Corner = tuple[Any, ...]
 Edge = tuple[int, int]
 
-LARGEST_WHOLE = 2**53
-"""Whole numbers up to this are floats."""
 
-
-def cut(corners: Sequence[Corner], name: str = "an outline") -> list[list[int]]:
-    """Cut an outline into convex parts; those of one with long decimals are verified.
+def cut(corners: Sequence[Corner]) -> list[list[int]]:
+    """Cut an outline into convex parts.
 
     Raises
     ------
@@ -35,12 +30,7 @@ def cut(corners: Sequence[Corner], name: str = "an outline") -> list[list[int]]:
         If it crosses itself.
     """
     whole = in_whole_numbers(corners)
-    if max(abs(x) for corner in whole for x in corner) > LARGEST_WHOLE:
-        found = convex_parts(np.array(corners, dtype=float))
-        parts = [[*part] for part in found]
-        check_parts(corners, parts if turns_left(whole) else [p[::-1] for p in parts], name)
-    else:
-        parts = [_with_straight_corners(whole, part) for part in convex_parts(whole, exact=True)]
+    parts = [_with_straight_corners(whole, part) for part in convex_parts(whole, exact=True)]
     return parts if turns_left(whole) else [part[::-1] for part in parts]
 
 
@@ -62,7 +52,7 @@ def parts_of(robot: Robot) -> dict[str, list[list[int]]]:
         if own is None:
             raise ValueError(f"{printable(name)}: its frame has no axis along that of the joints")
         rows = [[x for k, x in enumerate(p) if k != own] for p in body.shape.places.tolist()]
-        pieces = cut([tuple(Fraction(repr(x)) for x in row) for row in rows], name)
+        pieces = cut([tuple(Fraction(repr(x)) for x in row) for row in rows])
         if len(pieces) > 1:
             found[name] = pieces
     return found

@@ -10,7 +10,7 @@ all of these are listed, proved complete, and found on the runs.
 The area of a loop is the integral of q1 dq2 along its runs, by Arb's rigorous integration.
 
 Bodies have too many curves for that. Of a region with bodies the components are proved, and how
-many loops each has, by `structure`; vertices and areas are not.
+many loops each has, by `components`; vertices and areas are not.
 """
 
 from __future__ import annotations

@@ -62,8 +62,9 @@ DEEPEST_HERE = 14
 MOST_NUMBERS = 500_000
 """Balls in the forms that are remembered, some 100 bytes each."""
 
-LETTER_WORK, NODE_WORK = 100, 3
-"""Microseconds for each node that is kept, and for each one that is compared."""
+LETTER_WORK, NODE_WORK, CORNER_WORK = 100, 3, 15
+"""Microseconds for each node that is kept, for each one that is compared, and for each corner of a
+place."""
 
 TOUCHING = fmpq(1, 2**100)
 """Leaves nearer than this, in radians or parts of the largest length, count as touching."""
@@ -300,6 +301,7 @@ class Place:
         self.scene, self.moving, self.values = scene, moving, values
         self.keep = scene.keep[index(table["keep"], "place", len(scene.keep))]
         parts = self.keep.near.corners, self.keep.far.corners
+        scene.work.add(CORNER_WORK * sum(map(len, parts)))
         self.near, self.far = (
             _mean(weights_of(table[end], end, len(part)), part)
             for end, part in zip(("near", "far"), parts, strict=True)

@@ -7,8 +7,8 @@ its sign is proved. A slab is as thick as the form bends over the cell, which fa
 of the cell's width; a cell of `paving` leaves undecided what falls with the width alone. Where the
 two roots are not proved apart, near a fold, bounds of the form all over the cell decide.
 
-Not in the paper. The bounds are those of `dyadic`: sums and products of doubles, their rounding
-taken off; cosines and sines by `trigonometry`.
+Not in the paper. The bounds are those of `bounds`: sums and products of doubles, their rounding
+taken off; cosines and sines by `numbers`.
 """
 
 from __future__ import annotations
