@@ -13,6 +13,8 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
+from qbound.proofs.certify import bracket_scale, certify, certify_region
+from qbound.proofs.statements import box
 
 import qbound
 from qbound import (
@@ -43,6 +45,52 @@ OWN = solve(
     Problem(forms(RR, {"10": 1.0, "01": 1.0, "00": -0.5}), ("lens",), ((-3.0, 3.0), None), LIMITS)
 )
 """A region of a form of one's own: cos q1 + cos q2 > 0.5."""
+FLOOR = clearance(MINERVA, "B7")
+UR5 = load_robot("ur5")
+WRONG = {
+    "solve(None)": (lambda: solve(None), "problem: wanted a Problem"),
+    "solve of a robot": (lambda: solve(MINERVA), "problem: wanted a Problem"),
+    "base": (lambda: solve(OWN.problem, base=5), "base: 0 or 1 is wanted, found 5"),
+    "held": (lambda: find_region(MINERVA, held=[0]), "held: wanted values by joint"),
+    "values of slices": (lambda: find_slices(UR5, 2, ["a"]), "no array of real numbers"),
+    "no path": (lambda: load_robot(None), "source: wanted a path"),
+    "robot as path": (lambda: load_robot(MINERVA), "source: wanted a path"),
+    "limits": (lambda: load_robot("ur5.urdf", limits=5), "limits: wanted ranges by joint"),
+    "one limit": (lambda: load_robot("ur5.urdf", limits={"j": 5}), "limits of 'j': wanted two"),
+    "chain": (lambda: load_robot("ur5.urdf", chain="tool0"), "chain: wanted a first and a last"),
+    "excess": (lambda: load_robot("ur5.urdf", excess="2cm"), "excess: wanted a number of metres"),
+    "SRDF": (lambda: load_robot("ur5.urdf", srdf=5), "srdf: wanted the path"),
+    "saved": (lambda: save_robot("minervabot-v2", "x.toml"), "save_robot takes a Robot"),
+    "saved where": (lambda: save_robot(MINERVA, None), "path: wanted the path"),
+    "boundary": (lambda: clearance(MINERVA, 7), "boundary: wanted a boundary of the robot"),
+    "boundary's name": (lambda: clearance(MINERVA, "B8"), "no boundary 'B8'; there are B1, "),
+    "form of texts": (lambda: HarmonicForm([["a"]], RR), "coefficients: wanted numbers"),
+    "form of None": (lambda: HarmonicForm(np.eye(3), None), "kinds: wanted one a joint"),
+    "form of one kind": (lambda: HarmonicForm(np.eye(3), "revolute"), "kinds: wanted one a joint"),
+    "form at a text": (lambda: FLOOR("a"), "joint values: wanted numbers"),
+    "sum": (lambda: FLOOR + "a", "unsupported operand"),
+    "difference": (lambda: FLOOR - None, "unsupported operand"),
+    "quotient": (lambda: FLOOR / FLOOR, "quotient of two forms"),
+    "by zero": (lambda: FLOOR / 0, "divided by zero"),
+    "problem of None": (lambda: Problem(None, (), (), ()), "forms: wanted a stack of forms"),
+    "one name": (lambda: Problem(OWN.problem.forms, "a", (), ()), "names: wanted a tuple"),
+    "rows of unlike lengths": (lambda: is_feasible(MINERVA, [[0, 0], [1]]), "no array of real"),
+    "clear of 5": (lambda: keeps_clear(5, [0, 0]), "keeps_clear takes a Robot"),
+    "sample of texts": (lambda: sample(MINERVA, "a"), "n: wanted a whole number"),
+    "sample of none": (lambda: sample(MINERVA, 0), "n: 0; 1 or more"),
+    "seed": (lambda: sample(MINERVA, 5, seed="a"), "seed: wanted a whole number"),
+    "predicate": (lambda: sample(MINERVA, 5, 5), "predicate: wanted a function"),
+    "region's sample": (lambda: REGION.sample(1.5), "n: wanted a whole number"),
+    "why of 5": (lambda: why(5, [0, 0], [0, 0]), "source: wanted a Robot"),
+    "why's seed": (lambda: why(MINERVA, [0, 0], [0, 0], seed=-1), "seed: -1; 0 or more"),
+    "voxel": (lambda: qbound.reach(UR5, "a"), "voxel: wanted a number above 0"),
+    "deviation": (lambda: REGION.to_geojson("a"), "deviation: wanted a number above 0"),
+    "axes": (lambda: REGION.plot(5), "ax: wanted the Axes"),
+    "certified": (lambda: certify("minervabot-v2", {}), "text: wanted a Robot, or the content"),
+    "inset": (lambda: certify_region(MINERVA, None), "inset: wanted a number above 0"),
+    "width": (lambda: bracket_scale(MINERVA, width=0), "width: 0 is no finite number above 0"),
+    "narrow": (lambda: bracket_scale(MINERVA, width=1e-14), "width: 1e-14; 4e-12 or more"),
+}
 BAD = [float("nan"), float("inf"), 1j]
 
 
@@ -51,6 +99,26 @@ def configurations(robot, n=500):
     low, high = np.array([joint.limits or (-4.0, 4.0) for joint in robot.joints]).T
     room = 0.1 * (high - low)
     return np.random.default_rng(5).uniform(low - room, high + room, (n, len(low)))
+
+
+# --- arguments of other types ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_an_argument_of_another_type_is_named(name) -> None:
+    """Most of them ended in an AttributeError from far inside; a form plus a text was a form."""
+    call, said = WRONG[name]
+    with pytest.raises((TypeError, ValueError, ZeroDivisionError), match=re.escape(said)):
+        call()
+
+
+def test_what_is_natural_is_taken() -> None:
+    half = FLOOR / 2
+    assert_allclose(half.coefficients, FLOOR.coefficients / 2)
+    assert_array_equal(HarmonicForm(np.eye(3).tolist(), RR).coefficients, np.eye(3))
+    assert_array_equal(FLOOR.coefficients, clearance(MINERVA, MINERVA.boundary("B7")).coefficients)
+    assert certify(MINERVA, box(["0", "0"], ["1", "1"])).verdict == "proved"
+    assert_array_equal(sample(MINERVA, 5).q, sample(MINERVA, 5, seed=0).q)
 
 
 # --- names ----------------------------------------------------------------------------------------

@@ -185,7 +185,7 @@ BAD = {
     "at least 2": {"scrambles": 1},
     "a seed is 0 or above": {"seed": -1},
     "voxels; take a longer": {"voxel": 1e-4},
-    "is no length above 0": {"voxel": 0.0},
+    "is no finite number above 0": {"voxel": 0.0},
     "three finite numbers": {"axis": [0, 0, 0]},
     "no joint 'q9'": {"joint": "q9"},
 }

@@ -14,7 +14,7 @@ from qbound import RobotFileError, check, load_robot, save_robot
 from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
-from qbound.urdf.arm import import_urdf, packaged_or_path
+from qbound.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path
 from qbound.urdf.robot_text import robot_text
 from support.urdf import BALL, joint, link, rotation, three_links, transform, written
 
@@ -170,6 +170,7 @@ def test_too_many_pairs_name_an_excess_that_makes_few_enough(tmp_path, size, exc
     fewer = import_urdf(file, excess=float(larger))
     assert len(fewer.robot.boundaries) == int(pairs.replace(",", "")) <= check.MAX_BOUNDARIES
     assert not any("an excess of" in note for note in fewer.notes)
+    assert check.MAX_BOUNDARIES == MANY_PAIRS
 
 
 def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:

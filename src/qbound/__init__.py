@@ -9,7 +9,7 @@ What most users need is here, in `__all__`. All else is in the subpackages.
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
 `sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
-`printable`, `extras`, `arrays`, `version`.
+`printable`, `extras`, `arguments`, `arrays`, `version`.
 """
 
 from importlib import import_module

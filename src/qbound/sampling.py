@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arguments import refuse_type, whole_number
 from qbound.arrays import Bools, Floats
 from qbound.boundary.compiled import compiled_feasible
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
-from qbound.model.robot import Robot
+from qbound.model.robot import Robot, refuse_no_robot
 
 Predicate = Callable[[Robot, Floats], Bools]
 
@@ -62,7 +63,7 @@ def sample(
     n: int,
     predicate: Predicate | None = None,
     *,
-    seed: int,
+    seed: int = 0,
     limits: ArrayLike | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Sample:
@@ -80,6 +81,11 @@ def sample(
     progress : callable, optional
         Told, now and then, how many are done.
 
+    Raises
+    ------
+    ValueError
+        If n is less than 1, or the seed is negative.
+
     Examples
     --------
     >>> from qbound import load_robot
@@ -89,7 +95,11 @@ def sample(
 
     The region's exact part of the square is 0.6546; a sample knows it to its standard error only.
     """
+    refuse_no_robot("sample", robot)
+    n, seed = whole_number("n", n, 1), whole_number("seed", seed, 0)
     predicate = keeps_clear if predicate is None else predicate
+    if not callable(predicate):
+        refuse_type("predicate", predicate, "a function of a robot and configurations")
     low, high = np.asarray(joint_ranges(robot) if limits is None else limits, dtype=float).T
     q = np.random.default_rng(seed).uniform(low, high, (n, len(robot.joints)))
     tool, free = np.empty((n, 3)), np.empty(n, dtype=bool)
@@ -141,6 +151,7 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     >>> bool(keeps_clear(robot, q)), [name for name, _ in violated(robot, q)]
     (True, ['shoulder_pan_joint.upper'])
     """
+    refuse_no_robot("keeps_clear", robot)
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)
     return evaluator(robot, limits=False).feasible(q)

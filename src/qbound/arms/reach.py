@@ -24,6 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arguments import number_above_zero
 from qbound.arms.fibres import fibres
 from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.chain import Chain
@@ -313,9 +314,7 @@ def _grid(robot: Robot, voxel: float | None, bins: int) -> Grid:
     """Return a grid that holds all places of the tool, with a voxel to spare on every side."""
     centre = np.asarray(robot.joints[0].origin, dtype=float)
     length = robot.stretched(robot.tool) - float(np.linalg.norm(centre))
-    edge = _round_below(length / 20) if voxel is None else float(voxel)
-    if not 0 < edge < np.inf:
-        raise ValueError(f"voxel: {edge:g} is no length above 0")
+    edge = _round_below(length / 20) if voxel is None else number_above_zero("voxel", voxel)
     if edge > LONGEST_EDGE * max(length, 1.0):
         raise ValueError(f"voxel: an edge of {edge:g} is too long for an arm of {length:g}")
     half = float(np.ceil(length / edge)) + 1.0

@@ -13,12 +13,14 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
+from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arguments import refuse_type, whole_number
 from qbound.arms.links import link_pair
 from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
@@ -27,7 +29,7 @@ from qbound.boundary.evaluator import evaluator, limit_names
 from qbound.boundary.parts import bounds_bodies
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
-from qbound.model.robotfile import parse_robot, robot_text
+from qbound.model.robotfile import is_urdf, load_robot, parse_robot, robot_text
 from qbound.proofs import Unproved, Verdict
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import Certificate, Subject, certify, no_certificate
@@ -191,6 +193,11 @@ def why(
     >>> found.answer, found.separation, found.certificate.verdict.value
     ('separated', None, 'proved')
     """
+    seed = whole_number("seed", seed, 0)
+    if not isinstance(source, Robot | str | PathLike):
+        refuse_type("source", source, "a Robot, a path, or the name of a packaged robot")
+    if not isinstance(source, Robot) and is_urdf(source):
+        source = load_robot(source)
     robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
     subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])

@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arguments import whole_number
 from qbound.arrays import Bools, Floats
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.machine import SINES, is_programmable, machine, program
@@ -67,8 +68,7 @@ def compiled_feasible(
     [True, False]
     """
     refuse_no_robot("compiled_feasible", robot)
-    if threads < 1:
-        raise ValueError(f"threads {threads}: one thread or more")
+    threads = whole_number("threads", threads, 1)
     (run, run_one), table = machine(), evaluator(robot, limits=limits)
     screen, one = table.screen(SINES), (table.joints,)
     if screen is None or not is_programmable(screen):

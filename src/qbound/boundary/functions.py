@@ -12,6 +12,7 @@ from functools import reduce, singledispatch
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arguments import refuse_type
 from qbound.arrays import Array
 from qbound.forms.factors import FACTORS
 from qbound.forms.harmonic import HarmonicForm, Kind, add_constant, times_function
@@ -97,8 +98,14 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
     return vector if sign > 0 else -vector
 
 
-def clearance(robot: Robot, boundary: Boundary) -> HarmonicForm:
+def clearance(robot: Robot, boundary: Boundary | str) -> HarmonicForm:
     r"""Return the form that is positive exactly where the boundary is respected (eqs. 9, 11, 12).
+
+    Parameters
+    ----------
+    robot : Robot
+    boundary : Boundary or str
+        One of its boundaries, or the name of one.
 
     Returns
     -------
@@ -111,18 +118,18 @@ def clearance(robot: Robot, boundary: Boundary) -> HarmonicForm:
     --------
     >>> from qbound import clearance, load_robot
     >>> robot = load_robot("minervabot-v2")
-    >>> floor = clearance(robot, robot.boundary("B7"))
+    >>> floor = clearance(robot, "B7")
     >>> round(float(floor([0.2, -0.5])), 3), floor.gradient([0.2, -0.5]).round(3).tolist()
     (41.05, [-43.746, -23.883])
 
     Of a pair the value is a difference of squares; `qbound.margins` gives lengths:
 
-    >>> pair = clearance(robot, robot.boundary("B1"))
+    >>> pair = clearance(robot, "B1")
     >>> round(float(pair([0.2, -0.5])), 3)
     179.453
     """
     refuse_no_robot("clearance", robot)
-    return _clearance(boundary, robot)
+    return _clearance(robot.boundary(boundary) if isinstance(boundary, str) else boundary, robot)
 
 
 def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
@@ -239,6 +246,8 @@ def geometric_vector(robot: Robot, boundary: HalfSpace) -> HarmonicForm:
 
 @singledispatch
 def _clearance(boundary: Boundary, robot: Robot) -> HarmonicForm:
+    if not isinstance(boundary, Boundary):
+        refuse_type("boundary", boundary, "a boundary of the robot, or its name")
     raise TypeError(
         f"{printable(boundary.name)}: no clearance form for a {type(boundary).__name__}"
     )
@@ -246,6 +255,8 @@ def _clearance(boundary: Boundary, robot: Robot) -> HarmonicForm:
 
 @singledispatch
 def _components(boundary: Boundary, robot: Robot) -> HarmonicForm:
+    if not isinstance(boundary, Boundary):
+        refuse_type("boundary", boundary, "a boundary of the robot")
     raise TypeError(
         f"{printable(boundary.name)}: eq. (29) has no row for a {type(boundary).__name__}"
     )

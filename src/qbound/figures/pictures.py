@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound import figures
+from qbound.arguments import refuse_type
 from qbound.arms.reach import Reach
 from qbound.arrays import Floats
 from qbound.extras import require
@@ -142,6 +143,8 @@ def plot_region(
         from matplotlib import pyplot
 
         ax = pyplot.subplots()[1]
+    if not hasattr(ax, "add_patch"):
+        refuse_type("ax", ax, "the Axes of a matplotlib figure")
     chosen = region.components if component is None else (region.components[component],)
     home = np.empty((0, 2)) if region.problem.home is None else region.problem.home[None]
     _joint_panel(ax, region, next(iter(chosen), None), home, chosen, unit, **style)

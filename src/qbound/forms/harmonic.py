@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from qbound.arguments import refuse_type
 from qbound.arrays import Array
 from qbound.forms.factors import FACTORS, Kind, basis, basis_slope
 from qbound.forms.waves import Waves, to_waves
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     import sympy
 
 __all__ = ["HarmonicForm", "Kind", "add_constant", "basis", "basis_slope", "times_function"]
+
+NUMBERS = "biufcO"
+"""Kinds of arrays that hold numbers: by NumPy's letters, and objects such as balls."""
 
 Values = ArrayLike | Sequence[Any]
 """Joint values: floats, or objects such as balls and symbols."""
@@ -62,10 +66,10 @@ class HarmonicForm:
     >>> float(form([0.0, 5.0])), form.gradient([0.0, 5.0]).tolist()
     (3.0, [-15.0, 0.0])
 
-    Forms of the same joints are added, and multiplied by numbers:
+    Forms of the same joints are added, and multiplied and divided by numbers:
 
-    >>> float((2 * form - form + 1)([0.0, 5.0]))
-    4.0
+    >>> float((2 * form - form / 3 + 1)([0.0, 5.0]))
+    6.0
 
     Configurations are rows; a column for each joint is wanted:
 
@@ -81,10 +85,17 @@ class HarmonicForm:
 
     def __post_init__(self) -> None:
         """Refuse what is no array of a form: its axes, its kinds or its numbers."""
-        n = len(self.kinds)
+        coefficients, kinds = (getattr(self, name) for name in ("coefficients", "kinds"))
+        if not isinstance(coefficients, np.ndarray):
+            object.__setattr__(self, "coefficients", np.asarray(coefficients))
+        if isinstance(kinds, str) or not isinstance(kinds, Sequence):
+            refuse_type("kinds", kinds, "one a joint, such as ('revolute', 'revolute')")
+        n = len(kinds)
         for j, kind in enumerate(self.kinds):
             if kind not in FACTORS:
                 raise ValueError(f"kinds[{j}]: {kind!r} is none of {', '.join(FACTORS)}")
+        if self.coefficients.dtype.kind not in NUMBERS:
+            refuse_type("coefficients", self.coefficients.tolist(), "numbers")
         if self.coefficients.shape[self._first :] != (3,) * n:
             raise ValueError(
                 f"{n} joints need {n} last axes of length 3, found {self.coefficients.shape}"
@@ -119,6 +130,8 @@ class HarmonicForm:
     def __add__(self, other: ArrayLike | HarmonicForm) -> HarmonicForm:
         """Add forms of the same joints, or a constant, one or an array of them, to each form."""
         if not isinstance(other, HarmonicForm):
+            if not _is_numbers(other):
+                return NotImplemented
             constant = np.broadcast_to(np.asarray(other), self.shape)
             return HarmonicForm(add_constant(self.coefficients, constant), self.kinds)
         if other.kinds != self.kinds:
@@ -129,7 +142,9 @@ class HarmonicForm:
 
     def __sub__(self, other: ArrayLike | HarmonicForm) -> HarmonicForm:
         """Subtract forms of the same joints, or a constant from each form."""
-        return self + (-other if isinstance(other, HarmonicForm) else -np.asarray(other))
+        if isinstance(other, HarmonicForm):
+            return self + -other
+        return self + -np.asarray(other) if _is_numbers(other) else NotImplemented
 
     def __rsub__(self, constant: ArrayLike) -> HarmonicForm:
         """Subtract each form from a constant."""
@@ -139,11 +154,23 @@ class HarmonicForm:
         """Multiply each form by a number, or by its own of an array of the stack's shape."""
         if isinstance(factor, HarmonicForm):  # cos² is none of 1, cos, sin
             raise TypeError("a product of two forms is no harmonic form; multiply their values")
+        if not _is_numbers(factor):
+            return NotImplemented
         factor = np.asarray(factor)
         axes = (...,) + (None,) * len(self.kinds) * (factor.ndim > 0)
         return HarmonicForm(self.coefficients * factor[axes], self.kinds)
 
     __rmul__ = __mul__
+
+    def __truediv__(self, divisor: ArrayLike) -> HarmonicForm:
+        """Divide each form by a number, or by its own of an array of the stack's shape."""
+        if isinstance(divisor, HarmonicForm):
+            raise TypeError("a quotient of two forms is no harmonic form; divide their values")
+        if not _is_numbers(divisor):
+            return NotImplemented
+        if (np.asarray(divisor) == 0).any():
+            raise ZeroDivisionError("a form divided by zero")
+        return self * (1 / np.asarray(divisor))
 
     def __neg__(self) -> HarmonicForm:
         """Change the sign of each form."""
@@ -302,6 +329,8 @@ class HarmonicForm:
     def _columns(self, q: Values) -> list[Array]:
         """Split (..., n) joint values into n arrays of shape (...), of floats or of objects."""
         values, n = np.asarray(q), len(self.kinds)
+        if values.dtype.kind not in NUMBERS:
+            refuse_type("joint values", q, "numbers")
         if values.dtype.kind == "c":
             raise ValueError("joint values are real numbers, found complex ones")
         if values.dtype != object:
@@ -312,6 +341,14 @@ class HarmonicForm:
                 f"expected {n} joint value{'s' * (n != 1)} on the last axis, found {found}"
             )
         return list(np.moveaxis(values, -1, 0))
+
+
+def _is_numbers(value: object) -> bool:
+    """Tell whether something is a number, or an array of numbers; balls and symbols are, too."""
+    array = np.asarray(value)
+    if array.dtype != object:
+        return array.dtype.kind in NUMBERS
+    return all(hasattr(x, "__mul__") and not isinstance(x, Sequence) for x in array.flat)
 
 
 def _outer(left: Array, right: Array) -> Array:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arguments import number_above_zero
 from qbound.arrays import Floats
 from qbound.tolerances import ON_BOUNDARY
 
@@ -47,8 +48,7 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
         If the tolerance is not above zero, takes more than `MOST` points, or is not reached by
         pieces of a thousand-millionth of the curve.
     """
-    if not tolerance > 0:
-        raise ValueError(f"a deviation must be above 0, found {tolerance:g}")
+    number_above_zero("deviation", tolerance)
     s = np.linspace(0.0, 1.0, PART * parts + 1)
     while True:
         off = deviations(curve, s)

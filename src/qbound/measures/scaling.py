@@ -25,8 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats, Ints
-from qbound.boundary.body_contacts import body_contacts
-from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
+from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts, body_contacts
 from qbound.boundary.functions import clearance, margin_of
 from qbound.boundary.parts import bounded_bodies, bounds_bodies
 from qbound.boundary.separation import Separation, largest_speeds

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arguments import refuse_type
 from qbound.arrays import Array
 from qbound.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
 from qbound.model.frames import Frame, Frames
@@ -264,6 +265,8 @@ class Robot:
         >>> load_robot("minervabot-v2").held_indices({"q2": 0.5})
         {1: 0.5}
         """
+        if not isinstance(held, Mapping):
+            refuse_type("held", held, "values by joint, such as {'q3': 0.5}")
         found: dict[int, float] = {}
         for joint, value in held.items():
             index = self.joint_index(joint)
@@ -275,6 +278,8 @@ class Robot:
 
     def free(self, held: Collection[int] | Collection[str]) -> list[int]:
         """Return the joints that are not held, by index; `held` has indices or names."""
+        if isinstance(held, str) or not isinstance(held, Collection):
+            refuse_type("held", held, "several joints")
         taken = {self.joint_index(joint) for joint in held}
         return [j for j in range(len(self.joints)) if j not in taken]
 

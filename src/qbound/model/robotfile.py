@@ -16,10 +16,11 @@ import msgspec
 import numpy as np
 from msgspec import UNSET
 
+from qbound.arguments import refuse_type
 from qbound.extras import require
 from qbound.files import write_whole
 from qbound.model.bodycheck import check_bodies
-from qbound.model.robot import Body, Robot
+from qbound.model.robot import Body, Robot, refuse_no_robot
 from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
 from qbound.model.rows import quotient
 from qbound.model.schema import place
@@ -106,6 +107,8 @@ def load_robot(
     """
     asked = {"chain": chain, "srdf": srdf, "limits": limits, "excess": excess}
     given = {key: value for key, value in asked.items() if value is not None}
+    if not isinstance(source, str | os.PathLike):
+        refuse_type("source", source, "a path, or the name of a packaged robot")
     if is_urdf(source):
         from qbound.urdf.arm import import_urdf
 
@@ -158,6 +161,9 @@ def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
     ...     load_robot(Path(folder, "portal.toml")).home.tolist()
     [600.0, 100.0]
     """
+    refuse_no_robot("save_robot", robot)
+    if not isinstance(path, str | os.PathLike):
+        refuse_type("path", path, "the path of a file")
     require("tomlkit")
     import tomlkit
 

@@ -19,10 +19,9 @@ def real_numbers(q: ArrayLike) -> NDArray[np.float64]:
     ValueError
         If they are complex numbers, texts, or of no shape.
     """
-    values = np.asarray(q)
-    if values.dtype == np.float64:
-        return values
-    found = _array(values, symbols=False)
+    if isinstance(q, np.ndarray) and q.dtype == np.float64:
+        return q
+    found = _array(q, symbols=False)
     if found is None:
         raise ValueError(f"{one_line(repr(q))} is no array of real numbers")
     return found

@@ -23,6 +23,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from qbound.arguments import refuse_type
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, Contacts, body_contacts
 from qbound.boundary.errors import clearance_error
@@ -100,6 +101,11 @@ class Problem:
 
     def __post_init__(self) -> None:
         """Refuse what is no question about two joints."""
+        if not isinstance(self.forms, HarmonicForm):
+            refuse_type("forms", self.forms, "a stack of forms, a HarmonicForm")
+        for what in ("names", "ranges", "limits"):
+            if isinstance(found := getattr(self, what), str) or not isinstance(found, Sequence):
+                refuse_type(what, found, "a tuple")
         if len(self.forms.kinds) != 2 or len(self.forms.shape) != 1:
             raise ValueError(
                 f"forms: a stack of forms of two joints is wanted, shape (m, 3, 3); found"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qbound.arguments import refuse_type, whole_number
 from qbound.arrays import Bools, Floats, Ints
 from qbound.forms.angles import TURN
 from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
@@ -476,7 +477,7 @@ class Region:
         """
         if not self.components:
             raise ValueError("the region is empty: there is nothing to draw from")
-        own = np.array(sorted(self.owner))
+        own, n = np.array(sorted(self.owner)), whole_number("n", n, 0)
         return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(rng))
 
     def plot(
@@ -673,8 +674,12 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     A region is handed out only if it is right by its own account. Where balls decided anything, or
     critical values nearly coincide, the region over the other joint must agree with it.
     """
+    if not isinstance(problem, Problem):
+        refuse_type("problem", problem, "a Problem (find_region takes a robot)")
+    if base not in (None, 0, 1):
+        raise ValueError(f"base: 0 or 1 is wanted, found {base!r}")
     home = problem.home if home is None else home
-    home = np.zeros(2) if home is None else np.asarray(home, dtype=float)
+    home = np.zeros(2) if home is None else real_numbers(home)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     found = _verified(problem, home, base)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.model.robot import Held, Robot, refuse_no_robot
+from qbound.model.values import real_numbers
 from qbound.region.region import Region, find_region
 from qbound.tolerances import SAME_POINT
 
@@ -132,7 +133,7 @@ def find_slices(
     name, fixed = robot.joints[joint].name, robot.held_indices(held or {})
     if joint in fixed:
         raise ValueError(f"joint {name!r} is held, and slices go along it: leave it out of `held`")
-    chosen = np.asarray(values, dtype=float)
+    chosen = real_numbers(values)
     if chosen.ndim != 1 or not 0 < len(chosen) <= MOST_SLICES:
         raise ValueError(
             f"1 to {MOST_SLICES} values of {name!r} in a row are wanted, found shape {chosen.shape}"

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from qbound import check
+from qbound.arguments import refuse_type
 from qbound.arrays import Floats
 from qbound.model.joints import JOINT_TYPES, Joint
 from qbound.model.robot import Pair, Point, Robot
@@ -38,6 +38,9 @@ LEAST_EXCESS, MOST_EXCESS = 1e-6, 1e3
 
 MOST_PAIRS = 20_000
 """Pairs of balls of a robot at most."""
+
+MANY_PAIRS = 2_000
+"""Pairs of balls above which a coarser cover is proposed: as many as `qbound.check` takes."""
 
 COARSER, COARSEST = 1.25, 12
 """Factor from one excess to the next, and how many are tried, where one makes too many pairs."""
@@ -126,6 +129,7 @@ def import_urdf(
     >>> imported.robot.home.round(3).tolist()
     [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
     """
+    _check_arguments(chain, srdf, limits, excess)
     urdf = read_urdf(packaged_or_path(source))
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
     _check_same_arm(urdf, links)
@@ -161,9 +165,31 @@ def import_urdf(
     read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
     notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
     if fewer:
-        most = f"certificates take at most {check.MAX_BOUNDARIES:,}"
+        most = f"certificates take at most {MANY_PAIRS:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
     return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
+
+
+def _check_arguments(chain: object, srdf: object, limits: object, excess: object) -> None:
+    """Refuse arguments of other types."""
+    pair = isinstance(chain, Sequence) and not isinstance(chain, str) and len(chain) == 2
+    if chain is not None and not pair:
+        refuse_type("chain", chain, "a first and a last link, such as (None, 'tool0')")
+    if srdf is not None and not isinstance(srdf, str | Path):
+        refuse_type("srdf", srdf, "the path of an SRDF")
+    if excess is not None and not isinstance(excess, float | int):
+        refuse_type("excess", excess, "a number of metres")
+    if limits is None:
+        return
+    if not isinstance(limits, Mapping):
+        refuse_type("limits", limits, "ranges by joint, such as {'elbow': (-2.0, 2.0)}")
+    for joint, ends in limits.items():
+        try:
+            low, high = map(float, ends)
+        except (TypeError, ValueError):
+            refuse_type(f"limits of {shown(joint)}", ends, "two numbers")
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise ValueError(f"limits of {shown(joint)}: {ends} are no finite numbers")
 
 
 def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
@@ -303,12 +329,12 @@ def _fewer(
     excess: float,
 ) -> str:
     """Name an excess that makes few enough pairs for a certificate; nothing where they are."""
-    if count <= check.MAX_BOUNDARIES:
+    if count <= MANY_PAIRS:
         return ""
     for _ in range(COARSEST):
         excess = float(f"{COARSER * excess:.2g}")
         fewer = len(_pairs(_balls(shapes, chain, excess)[0], links))
-        if fewer <= check.MAX_BOUNDARIES:
+        if fewer <= MANY_PAIRS:
             return f"an excess of {excess:g} m makes {fewer:,}"
     return ""
 

@@ -16,6 +16,7 @@ from textwrap import wrap
 from typing import Any
 
 from qbound import check
+from qbound.arguments import number_above_zero, refuse_type
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import json_text
@@ -57,6 +58,9 @@ SEARCHING = 0.99
 
 WIDER = 10
 """How often the distance to a scale that is to be refuted is doubled."""
+
+FINEST = 4e-12
+"""Least distance of two scales that are told apart: they are written with twelve decimals."""
 
 MOST_NAMED = 5
 """Boundaries that are named as undecided."""
@@ -127,8 +131,18 @@ class Subject:
 
     @classmethod
     def of(cls, source: str | Robot | Subject) -> Subject:
-        """Make it of what it is made of; one that there is stays."""
-        return source if isinstance(source, Subject) else cls(source)
+        """Make it of what it is made of; one that there is stays.
+
+        Raises
+        ------
+        TypeError
+            If it is neither a robot nor the content of a robot file.
+        """
+        if isinstance(source, Subject):
+            return source
+        if not isinstance(source, Robot) and (not isinstance(source, str) or "\n" not in source):
+            refuse_type("subject", source, "a Robot, or the content of a robot file")
+        return cls(source)
 
     @cached_property
     def robot(self) -> Robot:
@@ -261,7 +275,7 @@ def certify_region(
     too few points, and says nothing of the component: it is drawn again through more, and what is
     left in the end is undecided.
     """
-    subject = Subject.of(subject)
+    subject, inset = Subject.of(subject), number_above_zero("inset", inset)
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
             statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
@@ -348,8 +362,16 @@ def bracket_scale(
         Halving stops here, or where the answer is undecided.
     highest : float
         Scales above it are not tried.
+
+    Raises
+    ------
+    ValueError
+        If the width is less than `FINEST`, or the highest scale is not above 0.
     """
     subject = Subject.of(subject)
+    highest = number_above_zero("highest", highest)
+    if number_above_zero("width", width) < FINEST:
+        raise ValueError(f"width: {width:g}; {FINEST:g} or more is wanted")
     arm, corners = Arm(subject.form), home_vertices(subject.robot)
     low, high, tries, undecided = 0.0, 0.0, highest, ("", "")
     while low < highest and (not low or not high or high - low > width) and tries > width:
