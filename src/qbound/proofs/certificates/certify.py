@@ -140,7 +140,8 @@ class Subject:
         """
         if isinstance(source, Subject):
             return source
-        if not isinstance(source, Robot) and (not isinstance(source, str) or "\n" not in source):
+        given: object = source
+        if not isinstance(given, Robot) and not (isinstance(given, str) and "\n" in given):
             refuse_type("subject", source, "a Robot, or the content of a robot file")
         return cls(source)
 
