@@ -13,6 +13,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from qbound import clearance, load_robot
+from qbound.geometry.distance import signed_distance
 from qbound.measures import bodies
 from qbound.model.robot import Body, Polygon, Prismatic
 from qbound.region import paper_rule, solve, state
@@ -39,7 +40,7 @@ def outlines(draw, spread: float = 3.0) -> np.ndarray:
 
 @given(outlines(), outlines())
 def test_a_gap_is_negative_exactly_where_two_outlines_overlap(one, other) -> None:
-    found, a, b = bodies.gap(one, other), shapely.Polygon(one), shapely.Polygon(other)
+    found, a, b = signed_distance(one, other), shapely.Polygon(one), shapely.Polygon(other)
     assume(abs(found) > 1e-9)
     assert (found < 0) == (a.intersection(b).area > 0)
     assert found <= a.distance(b) + 1e-12
@@ -47,7 +48,7 @@ def test_a_gap_is_negative_exactly_where_two_outlines_overlap(one, other) -> Non
 
 @given(outlines(0.4), outlines(0.4))
 def test_an_overlap_is_as_deep_as_its_shortest_way_out(one, other) -> None:
-    depth = -bodies.gap(one, other)
+    depth = -signed_distance(one, other)
     assume(depth > 0.05)
     ways = np.radians(np.arange(0, 360, 0.5))
     for reach, apart in ((0.99 * depth, False), (1.01 * depth, True)):
@@ -59,14 +60,16 @@ def test_an_overlap_is_as_deep_as_its_shortest_way_out(one, other) -> None:
 
 def test_a_gap_is_the_same_whichever_way_round_the_corners_go() -> None:
     one, other = (body.shape.corners[:, [0, 2]] for body in PRINTED.bodies[:2])
-    assert bodies.gap(one, other) == pytest.approx(bodies.gap(one[::-1], other), abs=1e-12)
-    assert bodies.gap(one, other) == bodies.gap(other, one)
+    assert signed_distance(one, other) == pytest.approx(
+        signed_distance(one[::-1], other), abs=1e-12
+    )
+    assert signed_distance(one, other) == signed_distance(other, one)
 
 
 def test_an_outline_that_is_not_convex_is_refused() -> None:
     dart = np.array([(0, 0), (2, 0), (0.5, 0.5), (0, 2)])
     with pytest.raises(ValueError, match="must be convex"):
-        bodies.gap(dart, dart)
+        signed_distance(dart, dart)
 
 
 # --- outlines in place ----------------------------------------------------------------------------

@@ -288,8 +288,8 @@ def in_cells(region: Region, q: Floats) -> NDArray[np.bool_]:
         base = cells.abscissae[0] + (base - cells.abscissae[0]) % (2 * pi)
     slab = np.searchsorted(cells.abscissae, base, side="right") - 1
     found = np.zeros(len(q), dtype=np.bool_)
-    for k, cell in enumerate(cells.cells):
-        at = np.flatnonzero(slab == cell.slab)
+    for k, own in enumerate(cells.slabs.tolist()):
+        at = np.flatnonzero(slab == own)
         if not len(at):
             continue
         if cells.whole[k]:

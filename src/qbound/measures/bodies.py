@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 from qbound.arrays import Floats
 from qbound.boundary.parts import flat_parts
 from qbound.boundary.separation import Separation
-from qbound.geometry.distance import signed_distance
 from qbound.model.robot import Body, BodyPair, Robot
 from qbound.tolerances import CONTACT
 
@@ -53,25 +52,6 @@ def outline_in_frame(robot: Robot, body: Body, deviation: float | None = None) -
     except ValueError:
         normal = np.eye(3)[1]
     return np.asarray(body.shape.outline(deviation, normal))
-
-
-def gap(one: ArrayLike, other: ArrayLike) -> Floats:
-    """Return how far two convex outlines are apart, negative by how deep they overlap.
-
-    The signed distance of `qbound.geometry.distance`: zero where they touch, and minus the
-    shortest way out where they overlap.
-
-    Parameters
-    ----------
-    one, other : array_like, shapes (..., m, 2) and (..., k, 2)
-        Corners in order, either way round; broadcast against each other.
-
-    Raises
-    ------
-    ValueError
-        If an outline is not convex.
-    """
-    return signed_distance(one, other)
 
 
 def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:

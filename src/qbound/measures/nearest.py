@@ -185,19 +185,6 @@ def _green(q: Floats, dq: Floats) -> Floats:
     return np.stack(parts, axis=-1)
 
 
-def vertex_centroid(component: Component) -> Floats:
-    """Return the mean of a component's vertices, shape (2,): the other reading of "centroid".
-
-    Raises
-    ------
-    ValueError
-        If the component has no vertex or goes round a joint.
-    """
-    if any(component.wraps) or not component.vertices:
-        raise ValueError("the component has no vertices, or goes round a joint")
-    return np.asarray(np.mean([vertex.q for vertex in component.vertices], axis=0))
-
-
 # --- the nearest boundary point -------------------------------------------------------------------
 
 

@@ -43,7 +43,6 @@ from qbound.region.plane import (
     NUMBER,
     Plane,
     Precise,
-    Root,
     Separation,
     UndecidedError,
     flint,
@@ -62,17 +61,6 @@ Rows = tuple[Ints, Floats, Floats, Ints, Ints]
 
 PLACES = (0.29, 0.5, 0.77)
 """Parts of an element at which it is asked whether bodies touch there; one place may be special."""
-
-
-class Cell(NamedTuple):
-    """A piece of the plane over one slab, between two roots, in which every form is positive.
-
-    On a lift that turns round, a cell from end to end is the whole fibre and has no boundary.
-    """
-
-    slab: int
-    lower: Root
-    upper: Root
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,12 +104,6 @@ class Decomposition:
     def precise(self) -> Precise:
         """What decides where doubles cannot."""
         return self.critical.finder.precise
-
-    @cached_property
-    def cells(self) -> list[Cell]:
-        """The cells one by one."""
-        rows = zip(self.slabs.tolist(), self.roots.tolist(), strict=True)
-        return [Cell(slab, Root(*lower), Root(*upper)) for slab, (lower, upper) in rows]
 
     def joined(self, line: Ints, place: Callable[[int, float], Any]) -> Bools:
         """Tell whether what is free on both sides of parts of lines is so on them.
@@ -869,11 +851,6 @@ class CellComplex:
         self.ends, self._errors = self._ends()
         self.elements: Elements = self._elements()
         self._join()
-
-    @property
-    def cells(self) -> list[Cell]:
-        """The cells, one by one."""
-        return self.decomposition.cells
 
     # --- places ---------------------------------------------------------------------------------
 

@@ -116,15 +116,15 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, off its middles; None where there is no cell."""
     precise = Precise.of(problem, base)
-    plane, found = precise.plane, decompose(precise)
-    if not found.cells:
+    found = decompose(precise)
+    if not len(found.slabs):
         return None
     # Of the cells over the widest slab, the first.
-    slab, lower, upper = max(found.cells, key=lambda cell: np.diff(found.lines)[cell.slab])
-    t = found.lines[slab] + INSIDE * (found.lines[slab + 1] - found.lines[slab])
-    low, high = (float(plane.follow([root], np.array([[t]]))[0, 0]) for root in (lower, upper))
-    v = low + INSIDE * (high - low)
-    return np.array([t, v] if base == 0 else [v, t])
+    k = int(np.diff(found.lines)[found.slabs].argmax())
+    start, end = found.lines[found.slabs[k] + np.array([0, 1])]
+    t = start + INSIDE * (end - start)
+    low, high = precise.plane.follow(found.roots[k], np.array([[t], [t]]))[:, 0]
+    return ordered(np.array([t, low + INSIDE * (high - low)]), base)
 
 
 class UnresolvedError(ValueError):

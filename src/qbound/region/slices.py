@@ -57,12 +57,6 @@ class Slices:
         """Feasible area of each slice, all components, shape (k,); products of joint units."""
         return np.array([region.area for region in self.regions])
 
-    @property
-    def home_areas(self) -> Floats:
-        """Area of each slice's component with home's values of the two joints; 0 without one."""
-        homes = [region.home for region in self.regions]
-        return np.array([0.0 if home is None else home.area for home in homes])
-
     def holds_home(self, k: int) -> bool:
         """Tell whether the home pose lies in slice `k`: all held joints are at home."""
         held = self.regions[k].problem.held

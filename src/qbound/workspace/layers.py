@@ -25,6 +25,7 @@ from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.harmonic import HarmonicForm, basis
 from qbound.region import Problem, Region, UnresolvedError, solve
 from qbound.region.outline import NODES, converged, legendre
+from qbound.region.plane import which
 from qbound.tolerances import CHORD, NEAR_CIRCLE, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
 from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, turns_within
 
@@ -179,7 +180,7 @@ class Fibres(Region):
         low = self.lines[0]
         turns = math.floor((q2 - low) / TURN) if self.problem.ranges[1] is None else 0
         slab = int(np.searchsorted(self.lines, q2 - TURN * turns)) - 1
-        return TURN * turns, [k for k, cell in enumerate(self.cells.cells) if cell.slab == slab]
+        return TURN * turns, which(self.cells.slabs == slab).tolist()
 
     def intervals(self, cells: list[int], q2: Floats) -> Floats:
         """Return the ends of cells' intervals of the first joint over their slab, (2, k, n)."""
@@ -380,12 +381,11 @@ class Layers:
         forms, features = set[int](), set[int]()
         for part in self.sides.values():
             kept = part.inner.names
-            for cell in part.cells.cells:
-                for row in (cell.lower.form, cell.upper.form):
-                    if row >= len(kept):
-                        features.add(row - len(kept))
-                    elif row >= 0:
-                        forms.add(problem.names.index(kept[row]))
+            for row in part.cells.roots[:, :, 0].reshape(-1).tolist():
+                if row >= len(kept):
+                    features.add(row - len(kept))
+                elif row >= 0:
+                    forms.add(problem.names.index(kept[row]))
         if len(forms) + len(features) > MOST_BOUNDING:
             raise NoPlanarWorkspaceError(
                 f"the workspace is not computed: {len(forms) + len(features)} boundaries bound the"
