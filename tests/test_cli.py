@@ -330,8 +330,8 @@ def test_an_unsafe_home_pose_has_no_workspace_and_says_why(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--at", "3"), "a place is two lengths"),
-        (("--at", "3,high"), "a place is two lengths"),
+        (("--at", "3"), "a place is two finite lengths"),
+        (("--at", "3,high"), "a place is two finite lengths"),
         (("--at", "nan,1"), "finite"),
         (("--go", "0", "0,0"), "2 joint values are needed"),
         (("--go", "0,0", "0,x"), "'x' is no value"),

@@ -348,6 +348,23 @@ def test_a_citation_states_value_error_version_and_robot(
     assert wanted["version"] in entry.fields["howpublished"]
 
 
+def test_a_citation_names_the_robots_of_its_result_alone(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The area of one arm's slice named all fourteen robots of its chapter."""
+    for entry in recorded.results():
+        about = recorded.robots_of(entry)
+        assert about.items() <= entry["robots"].items()
+        spelled = {name for name in entry["robots"] if "-" in name and name in entry["id"]}
+        assert spelled - {"minervabot-v2"} <= set(about)
+    note = said(capsys, "results", "scara.slice.area", "--bibtex")
+    robots = RESULTS["scara.slice.area"]["robots"]
+    assert [name for name in robots if f"{name}, sha256" in note] == [
+        "scara.urdf",
+        "scara.srdf",
+    ]
+
+
 def test_a_citation_names_the_commit_and_the_tree(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,7 +10,7 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -116,8 +116,49 @@ def distinct(entries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 @cache
 def sentences() -> dict[str, str]:
     """Return what results are, by patterns of their ids."""
-    file = resources.files("lizarraga2025") / "sentences.toml"
+    return _table("sentences.toml")
+
+
+def _table(name: str) -> dict[str, Any]:
+    file = resources.files("lizarraga2025") / name
     return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+@cache
+def _robots() -> dict[str, dict[str, list[str]]]:
+    """Return which robots results are about, by chapters and by patterns of their ids."""
+    return _table("robots.toml")
+
+
+def robots_of(entry: Mapping[str, Any]) -> dict[str, str]:
+    """Return the robots that one result is about, a hash each; a chapter may have more.
+
+    Parameters
+    ----------
+    entry : mapping
+        Of `results`.
+
+    Raises
+    ------
+    ValueError
+        If the chapter has several, and it is not written down which count.
+
+    Examples
+    --------
+    >>> [found] = [each for each in results() if each["id"] == "areas.minervabot-v2-symmetric"]
+    >>> len(found["robots"]), [*robots_of(found)]
+    (3, ['minervabot-v2-symmetric'])
+    """
+    recorded: dict[str, str] = entry["robots"]
+    if len(recorded) < 2:
+        return recorded
+    patterns = _robots().get(entry["chapter"], {})
+    pattern = _longest(patterns, entry["id"])
+    if pattern is None:
+        raise ValueError(f"{entry['id']}: it is not written down which robots it is about")
+    parts = re.fullmatch(_as_expression(pattern), entry["id"])
+    names = [name.format(*parts.groups() if parts else ()) for name in patterns[pattern]]
+    return {name: recorded[name] for name in names}
 
 
 @cache
@@ -141,10 +182,16 @@ def sentence(name: str) -> str:
 @cache
 def pattern_of(name: str) -> str:
     """Return the pattern of ``sentences.toml`` that counts for an id."""
-    fitting = [p for p in sentences() if re.fullmatch(_as_expression(p), name)]
-    if not fitting:
+    pattern = _longest(sentences(), name)
+    if pattern is None:
         raise ValueError(f"{name}: no sentence says what this result is")
-    return max(fitting, key=len)
+    return pattern
+
+
+def _longest(patterns: Iterable[str], name: str) -> str | None:
+    """Return the longest pattern that fits an id."""
+    fitting = (p for p in patterns if re.fullmatch(_as_expression(p), name))
+    return max(fitting, key=len, default=None)
 
 
 def _as_expression(pattern: str) -> str:

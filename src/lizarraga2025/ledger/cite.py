@@ -10,7 +10,7 @@ from typing import Any, Final
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.ledger.latex import escaped
 from lizarraga2025.ledger.state import state
-from lizarraga2025.recorded import sentence
+from lizarraga2025.recorded import robots_of, sentence
 from qbound import __version__
 
 PAGE: Final = "claims.html"
@@ -75,7 +75,7 @@ def entry(claim: Claim) -> str:
 
 def result(recorded: Mapping[str, Any]) -> str:
     """Return the BibTeX entry of a recorded result: what it is, value, error, robots, state."""
-    robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in recorded["robots"].items())
+    robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in robots_of(recorded).items())
     unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
     error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
     about = [recorded["reference"], RULES[recorded["rule"]], f"Robots: {robots}" if robots else ""]

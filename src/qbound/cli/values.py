@@ -101,7 +101,7 @@ def place(robot: Robot, text: str) -> tuple[float, float]:
     try:
         x, z = (parse_length(each, robot.length_unit, "") for each in text.split(","))
     except ValueError:
-        raise ValueError(f"--at {text}: a place is two lengths, such as --at=-20,40") from None
+        raise ValueError(f"--at {text}: a place is two finite lengths, as --at=-20,40") from None
     if not (abs(x) <= LARGEST and abs(z) <= LARGEST):
         raise ValueError(f"--at {text}: two finite lengths are wanted, {LARGEST:g} at most")
     return x, z
