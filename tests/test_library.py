@@ -13,8 +13,8 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
-from qbound.proofs.certify import bracket_scale, certify, certify_region
-from qbound.proofs.statements import box
+from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
+from qbound.proofs.certificates.statements import box
 
 import qbound
 from qbound import (

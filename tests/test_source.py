@@ -12,7 +12,7 @@ from qbound import load_robot
 from qbound.arms.why import why
 from qbound.model.robotfile import as_written, parse_robot, robot_text
 from qbound.model.source import Source
-from qbound.proofs import statements
+from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import Subject, certify
 
 
