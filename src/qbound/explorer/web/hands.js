@@ -34,7 +34,8 @@ function middleOnScreen(part) {
 }
 
 /** Drag from a handle, or with a mouse from anywhere; a tap moves at once. A handle stays where it is
-    under the hand; `take` hears which one is taken. A finger beside the handles scrolls the page.
+    under a finger, and comes to a mouse. `take` hears which one is taken. A finger beside the handles
+    scrolls the page.
  * @type {(svg: SVGSVGElement, move: (pixel: Point, handle: Element | null) => void, take?: (pixel: Point, handle: Element | null) => void) => void} */
 function draggable(svg, move, take = () => {}) {
   /** @type {number | null} */
@@ -62,7 +63,7 @@ function draggable(svg, move, take = () => {}) {
     svg.focus({ preventScroll: true });
     event.preventDefault();
     grip = [0, 0];
-    if (handle instanceof SVGCircleElement)
+    if (handle instanceof SVGCircleElement && pointerType !== "mouse")
       grip = minus([clientX, clientY], middleOnScreen(handle));
     take(pixelOf(svg, event), handle);
     if (!handle) move(pixelOf(svg, event), null);
