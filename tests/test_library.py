@@ -13,8 +13,6 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
-from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
-from qbound.proofs.certificates.statements import box
 
 import qbound
 from qbound import (
@@ -35,6 +33,8 @@ from qbound import (
 from qbound.boundary.evaluator import evaluator
 from qbound.export.outlines import find_outlines
 from qbound.forms.circle import circle_arc, circle_roots
+from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
+from qbound.proofs.certificates.statements import box
 from qbound.region import Problem, clearance_problem, solve
 from support.forms import LENS, LIMITS, PP, RR, forms
 
