@@ -17,10 +17,9 @@ import signal
 import subprocess
 import sys
 import time
-import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -50,8 +49,7 @@ Row = dict[str, Any]
 
 def regions_of(text: str) -> tuple[list[Region], list[float]]:
     """Find the region of a file over each joint, and how long each took: processor time, s."""
-    robot = parse_robot(tomllib.loads(text))
-    problem = clearance_problem(replace(robot, source=text))  # decimals, as of a file
+    problem = clearance_problem(parse_robot(text))
     found, seconds = [], []
     for base in (0, 1):
         start = time.process_time()

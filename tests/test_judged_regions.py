@@ -65,8 +65,7 @@ SUITE = [seed for seed in range(306) if seed % 50 != 49]
 
 def regions_of(text: str, *, decimals: bool = False) -> list[Region]:
     """The region over each joint: of a text's doubles, or of its decimals as they are written."""
-    robot = parse_robot(tomllib.loads(text))
-    problem = clearance_problem(replace(robot, source=text) if decimals else robot)
+    problem = clearance_problem(parse_robot(text if decimals else tomllib.loads(text)))
     with within(PATIENCE):
         return [solve(problem, base=base) for base in (0, 1)]
 
