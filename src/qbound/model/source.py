@@ -60,7 +60,7 @@ class Source:
 
         Raises
         ------
-        RobotFileError
+        ValueError
             If the text is not TOML.
         """
         try:
