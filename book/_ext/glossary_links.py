@@ -17,7 +17,11 @@ from sphinx.util.nodes import make_refnode
 from sphinx.util.typing import ExtensionMetadata
 
 # A component of a boundary function, the arc of an inequality, the branch of an arctangent.
-AMBIGUOUS = {"arc", "branch", "component", "configuration", "margin"}
+AMBIGUOUS = {"allowed", "arc", "branch", "claim", "component", "configuration", "margin", "safe"}
+
+# Words that mean the paper's robot: in chapters on other robots and programs they mean others.
+OF_THE_ROBOT = {"floor", "tool", "vertex"}
+OTHER_ROBOTS = ("obstacles", "your_own_robot", "three_joints", "real_arm", "many_robots", "by_side")
 
 PLURALS = {"vertex": "vertices"}
 NO_PROSE = (
@@ -42,6 +46,8 @@ class GlossaryLinks(SphinxPostTransform):
 
     def run(self, **kwargs: Any) -> None:
         homes = dict(self.words())
+        if self.env.docname.endswith(OTHER_ROBOTS):
+            homes = {word: home for word, home in homes.items() if word not in OF_THE_ROBOT}
         if not homes or not self.env.docname.startswith("chapters/"):
             return
         forms = sorted((form for word in homes for form in forms_of(word)), key=len, reverse=True)
