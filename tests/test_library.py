@@ -86,7 +86,7 @@ WRONG = {
     "voxel": (lambda: qbound.reach(UR5, "a"), "voxel: wanted a number above 0"),
     "deviation": (lambda: REGION.to_geojson("a"), "deviation: wanted a number above 0"),
     "axes": (lambda: REGION.plot(5), "ax: wanted the Axes"),
-    "certified": (lambda: certify("minervabot-v2", {}), "text: wanted a Robot, or the content"),
+    "certified": (lambda: certify("minervabot-v2", {}), "subject: wanted a Robot, or the content"),
     "inset": (lambda: certify_region(MINERVA, None), "inset: wanted a number above 0"),
     "width": (lambda: bracket_scale(MINERVA, width=0), "width: 0 is no finite number above 0"),
     "narrow": (lambda: bracket_scale(MINERVA, width=1e-14), "width: 1e-14; 4e-12 or more"),
