@@ -243,6 +243,20 @@ def test_arcs_that_do_not_meet_are_joined_and_may_run_backwards(capsys) -> None:
     assert_allclose(there, [stop["q"] for stop in back["stops"]][::-1], atol=1e-9)
 
 
+def test_margins_along_a_path_are_summed_up_by_links(capsys) -> None:
+    """A slice of a UR5 printed 205 margins."""
+    held = "shoulder_pan_joint=0 wrist_1_joint=-90deg wrist_2_joint=-90deg wrist_3_joint=0"
+    status, out, err = run(capsys, f"traverse ur5 1 4 2 --slice {held}")
+    least = dict(re.findall(r"smallest margin of (.+?): (\S+) m", out))
+    assert len(out.splitlines()) < 45
+    assert "upper_arm_link, wrist_1_link" in least
+    violated = {links for links, value in least.items() if float(value) < -1e-9}
+    assert status == 1
+    assert violated == {"base_link, forearm_link", "base_link, wrist_1_link"}
+    assert violated <= set(re.findall(r"outside: (.+?) from", out))
+    assert "it violates base_link, forearm_link; base_link, wrist_1_link, first on 1 to 4" in err
+
+
 def test_the_csv_is_the_path_with_units_in_its_header(capsys, arm) -> None:
     status, _, _ = run(capsys, f"traverse {arm} 1 2 --csv path.csv")
     assert status in (0, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from qbound.arms.links import link_pair
 from qbound.cli.chosen import (
     add_memory,
     add_robot,
@@ -30,6 +31,9 @@ from qbound.paths.trajectory import (
     timed,
 )
 from qbound.paths.traversal import Route, plan_route
+
+MOST_LISTED = 24
+"""Margins above which those of balls are summed up by their links."""
 
 
 def add_to(commands: Any) -> None:
@@ -91,9 +95,11 @@ def run(options: argparse.Namespace) -> int:
     ]
     if times is not None:
         outputs.append((options.ros, lambda: json_text(ros_trajectory(robot, times), None)))
-    deliver(outputs, route_lines(found, times))
+    many = len(found.margins) > MOST_LISTED
+    labels = {b.name: link_pair(robot, b) for b in robot.used} if many else None
+    deliver(outputs, route_lines(found, times, labels))
     if not found.feasible:
-        complain(infeasible_line(found))
+        complain(infeasible_line(found, labels))
         return 1
     return 0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from qbound.arrays import Floats
@@ -58,7 +58,13 @@ def route_document(found: PathReport, times: Trajectory | None = None) -> dict[s
     }
 
 
-def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[str]:
+Labels = Mapping[str, str]
+"""What boundaries are called, where that is not their names: several may be one, such as balls."""
+
+
+def route_lines(
+    found: PathReport, times: Trajectory | None = None, labels: Labels | None = None
+) -> Iterator[str]:
     """Say in sentences what a route meets, in the units of the robot file."""
     route, path = found.route, found.route.path
     robot, unit = route.region.robot, route.region.robot.length_unit
@@ -76,21 +82,38 @@ def route_lines(found: PathReport, times: Trajectory | None = None) -> Iterator[
         yield f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}"
     for place in found.singular or ():
         yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
-    for least in found.margins:
+    for label, least in _least(found, labels).items():
         where = _where(route, least.place)
-        yield f"smallest margin of {least.boundary.name}: {_margin_text(least)}, {where}"
-    for least in found.margins:
-        if least.leaves is not None:
-            pose, where = joint_text(robot, least.leaves.q), _where(route, least.leaves)
-            yield f"outside: {least.boundary.name} from {pose}, {where}"
+        yield f"smallest margin of {label}: {_margin_text(least)}, {where}"
+    for label, leaves in _left(found, labels).items():
+        yield f"outside: {label} from {joint_text(robot, leaves.q)}, {_where(route, leaves)}"
 
 
-def infeasible_line(found: PathReport) -> str:
+def infeasible_line(found: PathReport, labels: Labels | None = None) -> str:
     """Say of a path that leaves the region where it does so, whatever else is written of it."""
-    out = [least for least in found.margins if least.leaves is not None]
-    names = ", ".join(least.boundary.name for least in out)
-    legs = dict.fromkeys(found.route.leg_of(each.leaves.s) for each in out if each.leaves)
-    return f"the path is not feasible: it violates {names}, first on {', '.join(legs)}"
+    out = _left(found, labels)
+    legs = dict.fromkeys(found.route.leg_of(place.s) for place in out.values())
+    return f"the path is not feasible: it violates {'; '.join(out)}, first on {', '.join(legs)}"
+
+
+def _least(found: PathReport, labels: Labels | None) -> dict[str, Margin]:
+    """Return the smallest margin under each label."""
+    least: dict[str, Margin] = {}
+    for margin in found.margins:
+        label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
+        if label not in least or margin.value < least[label].value:
+            least[label] = margin
+    return least
+
+
+def _left(found: PathReport, labels: Labels | None) -> dict[str, ParameterPoint]:
+    """Return the first place at which the path leaves each label's boundaries behind."""
+    left: dict[str, ParameterPoint] = {}
+    for margin in found.margins:
+        label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
+        if margin.leaves is not None and (label not in left or margin.leaves.s < left[label].s):
+            left[label] = margin.leaves
+    return left
 
 
 def _margin_text(least: Margin) -> str:
