@@ -758,6 +758,7 @@ def everything(robot: Robot) -> tuple[list[Any], list[float], list[float]]:
     return words, numbers, mounts
 
 
+@pytest.mark.filterwarnings("ignore:.*turns wide")
 @given(full_tables())
 def test_a_robot_written_and_read_is_the_same(table) -> None:
     """Every number to one unit in its last place; a mount goes through three angles."""

@@ -68,8 +68,8 @@ class HarmonicForm:
 
     Forms of the same joints are added, and multiplied and divided by numbers:
 
-    >>> float((2 * form - form / 3 + 1)([0.0, 5.0]))
-    6.0
+    >>> float((2 * form - form / 2 + 1)([0.0, 5.0]))
+    5.5
 
     Configurations are rows; a column for each joint is wanted:
 
