@@ -197,8 +197,8 @@ def test_without_a_script_the_whole_table_is_shown(tabs) -> None:
 def test_the_citation_unfolds_by_keyboard(page) -> None:
     summary = page.locator("#e-34 summary")
     summary.press("Enter")
-    assert page.locator("#e-34 pre").is_visible()
-    assert "qbound-E-34" in page.locator("#e-34 pre").text_content()
+    assert page.locator("#e-34 .bibtex").is_visible()
+    assert "qbound-E-34" in page.locator("#e-34 .bibtex").text_content()
 
 
 def test_the_ledger_needs_no_other_host_and_no_module() -> None:

@@ -404,7 +404,7 @@ def bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> It
 
 
 def volume_unit(robot: Robot, kinds: Iterable[str]) -> str:
-    """Write the product of the joints' units, such as rad^2 cm."""
+    """Write the product of the joints' units, such as ``rad^2 cm``."""
     units = Counter("rad" if kind == "revolute" else robot.length_unit for kind in kinds)
     return " ".join(unit if n == 1 else f"{unit}^{n}" for unit, n in units.items())
 
