@@ -112,6 +112,28 @@ def test_an_argument_of_another_type_is_named(name) -> None:
         call()
 
 
+def test_what_a_notebook_shows_of_an_answer_is_a_line() -> None:
+    """They showed arrays and whole certificates, thousands of letters."""
+    far = np.where(np.arange(6) == 2, 4.7, UR5.home)
+    for found, said in (
+        (why(MINERVA, [0, 0], [0.2, -0.5]), "<Why: connected by a path of 2 corners>"),
+        (why(MINERVA, [0, 0], [1.6, 0.0]), "<Why: infeasible: goal violates B7>"),
+        (why(UR5, UR5.home, far), "<Why: separated: elbow_joint cannot pass>"),
+        (certify(MINERVA, box(["0", "0"], ["1", "1"])), "<Certificate: proved, 5 cells>"),
+        (certify(MINERVA, box(["90", "0"], ["90", "0"])), "<Certificate: refuted, B7 is violated>"),
+        (
+            qbound.fibres(UR5, 2, UR5.home),
+            "<Fibres of elbow_joint: 3 intervals of 1 configuration>",
+        ),
+        (sample(MINERVA, 1000), "<Sample: 1000 configurations, 0.6.* [+]- 0.015 of them free>"),
+        (
+            qbound.reach(load_robot("pr-gantry-arm"), 0.5),
+            r"<Reach of Gantry.*: \d+ voxels of .* m>",
+        ),
+    ):
+        assert re.fullmatch(said, repr(found))
+
+
 def test_what_is_natural_is_taken() -> None:
     half = FLOOR / 2
     assert_allclose(half.coefficients, FLOOR.coefficients / 2)

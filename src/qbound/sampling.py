@@ -39,6 +39,11 @@ class Sample:
     tool: Floats
     free: Bools
 
+    def __repr__(self) -> str:
+        """Say in a line how many there are, and which part is free."""
+        free = f"{self.fraction_free:.4g} +- {self.standard_error:.2g}"
+        return f"<Sample: {len(self.q)} configurations, {free} of them free>"
+
     @property
     def fraction_free(self) -> float:
         """Part of the configurations that are free."""

@@ -37,7 +37,8 @@ from qbound.geometry.arcs import (
     on_line,
 )
 from qbound.model.robot import Joint, Robot, refuse_no_robot
-from qbound.units import amount, joint_text
+from qbound.printable import printable
+from qbound.units import amount, counted, joint_text
 
 MOST_SHOWN = 10
 """Pairs of links that a sentence names."""
@@ -86,6 +87,12 @@ class Fibres:
     below: Indices
     above: Indices
     names: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Say in a line of which joint they are, and how many."""
+        name = printable(self.robot.joints[self.joint].name)
+        rows = counted(len(self), "configuration")
+        return f"<Fibres of {name}: {counted(len(self.low), 'interval')} of {rows}>"
 
     def __len__(self) -> int:
         """Return the number of rows."""

@@ -32,6 +32,7 @@ from qbound.export.formats import heading, npz_bytes
 from qbound.extras import require
 from qbound.model.robot import Robot, refuse_no_robot
 from qbound.model.rows import unit_vector
+from qbound.printable import printable
 from qbound.sampling import joint_ranges
 from qbound.units import counted
 
@@ -89,6 +90,13 @@ class Reach:
     fibres: int
     seed: int
     volumes: Floats
+
+    def __repr__(self) -> str:
+        """Say in a line how much is reached."""
+        edge = f"{self.grid.edge:g} {self.robot.length_unit}"
+        return (
+            f"<Reach of {printable(self.robot.name)}: {int(self.reached.sum())} voxels of {edge}>"
+        )
 
     @property
     def volume(self) -> float:

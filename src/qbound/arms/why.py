@@ -30,6 +30,7 @@ from qbound.boundary.parts import bounds_bodies
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import is_urdf, load_robot, parse_robot, robot_text
+from qbound.printable import printable
 from qbound.proofs import Unproved, Verdict
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import Certificate, Subject, certify, no_certificate
@@ -123,6 +124,17 @@ class Why:
     held: Connection | None = None
     certificate: Certificate | None = None
     tried: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        """Say the answer in a line; `qbound.arms.answers.why_lines` says it in sentences."""
+        reason = ""
+        if self.violated:
+            reason = f": {('start', 'goal')[self.violated[0][0]]} violates {self.violated[0][1]}"
+        elif self.separation is not None:
+            reason = f": {self.separation.travel.name} cannot pass"
+        elif self.path is not None:
+            reason = f" by a path of {len(self.path)} corners"
+        return f"<Why: {self.answer}{printable(reason)}>"
 
     @property
     def no_certificate(self) -> str:

@@ -22,6 +22,7 @@ from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import json_text
 from qbound.model.robot import Robot
 from qbound.model.robotfile import as_written, parse_robot
+from qbound.printable import printable
 from qbound.proofs import Verdict
 from qbound.proofs.certificates import search as safe
 from qbound.proofs.certificates.inequality import (
@@ -91,6 +92,13 @@ class Certificate:
     said: str
     searches: dict[str, Search] = field(default_factory=dict)
     witness: Witness | None = None
+
+    def __repr__(self) -> str:
+        """Say in a line what is proved, and how."""
+        if self.witness is not None:
+            return f"<Certificate: refuted, {printable(self.witness.boundary)} is violated>"
+        cells = f", {counted(self.leaves, 'cell')}" if self.searches else ""
+        return f"<Certificate: {self.verdict.value}{cells}>"
 
     @property
     def leaves(self) -> int:
