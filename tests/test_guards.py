@@ -255,3 +255,49 @@ def test_where_a_quadratic_is_affine_an_arc_is_on_the_root_that_stays(
         if arc.form is not None:
             q = np.concatenate([arc.points, arc.at(np.linspace(0, 1, 97))])
             assert_allclose(arc.form(q), 0, atol=1e-12)
+
+
+BLANK = {
+    # q1^2 (1 - q2) and a form that is zero there too: the resultant has a root five times
+    "five at once": (
+        PP,
+        ((-2.0, 2.0), (-1.0, 3.0)),
+        {"00": 1, "01": -2, "02": 1, "10": 2, "12": -1, "20": -1, "21": -1, "22": -2},
+        {"20": 1, "21": -1},
+    ),
+    # sin(q1) (cos(q2) - 1) has a double root all along, so no fold, and vanishes at q1 = 0; so does
+    # 2 - 2 cos(q1), which is negative nowhere
+    "double all along": (
+        RR,
+        ((-pi, pi), (-pi, pi)),
+        {"20": -1, "21": 1},
+        {"00": 2, "10": -2},
+    ),
+}
+
+
+@both_bases
+@pytest.mark.parametrize("name", BLANK)
+def test_forms_that_vanish_on_a_fibre_or_many_times_have_their_region(name, base) -> None:
+    kinds, ranges, *terms = BLANK[name]
+    problem = stated(forms(kinds, *terms), ranges)
+    region = solve(problem, base=base)
+    assert not region.unresolved
+    for arc in (arc for part in region.components for loop in part.loops for arc in loop):
+        if arc.form is not None:
+            assert_allclose(arc.form(arc.at(np.linspace(0, 1, 97))), 0, atol=1e-9)
+    low, high = np.array(ranges).T
+    q = np.random.default_rng(5).uniform(low, high, (200_000, 2))
+    drawn = region.contains(q).mean() * np.prod(high - low)
+    assert_allclose(region.area, drawn, rtol=0.02)
+
+
+@both_bases
+def test_an_arc_keeps_near_its_end_where_its_form_vanishes_on_the_fibre(base) -> None:
+    """To the last digit of the base value; what the form says there is rounding."""
+    file = Path(__file__).parent / "once_wrong" / "bare-segments-in-line.toml"
+    region = solve(clearance_problem(load_robot(file)), base=base)
+    steps = 10.0 ** -np.arange(3, 16)
+    for arc in (arc for part in region.components for loop in part.loops for arc in loop):
+        assert_allclose(arc.at(steps), np.tile(arc.start, (13, 1)), rtol=0, atol=0.02)
+        assert_allclose(arc.at(1 - steps), np.tile(arc.end, (13, 1)), rtol=0, atol=0.02)

@@ -24,6 +24,7 @@ SCENES = Path(__file__).with_name("once_wrong")
 HARD = Path(__file__).with_name("not_decided")
 COMPONENTS = {
     "acute-10728": 1,
+    "bare-segments-in-line": 2,
     "corner-at-the-base": 1,
     "corner-of-a-square": 1,
     "corridor-1e-14": 1,
@@ -31,6 +32,7 @@ COMPONENTS = {
     "edges-meet": 2,
     "far-slide": 4,
     "hair-10779": 1,
+    "hair-50205": 1,
     "line-through-the-base": 1,
     "slide-20": 1,
     "slide-20-scaled": 1,
@@ -44,6 +46,7 @@ COMPONENTS = {
     "star": 1,
     "tie-75": 1,
     "triangle-1e-12": 1,
+    "two-turns": 1,
     "wedge-at-the-base": 1,
     "whole-10155": 6,
     "whole-10832": 5,

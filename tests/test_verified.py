@@ -86,6 +86,22 @@ def test_a_vertex_that_is_moved_is_named_with_its_place(region):
     assert any(f.startswith(f"an arc of {arc.boundary} is ") and f.endswith(place) for f in found)
 
 
+def test_a_joint_of_two_pieces_that_is_moved_is_named(region):
+    """Inside an arc, where no vertex is."""
+    arcs = [arc for part in region.found for loop in part.loops for arc in loop]
+    joints = [arc.span[1] - 1 for arc in arcs if arc.form is not None and np.ptp(arc.span) > 2]
+    assert joints
+    for joint in joints:
+        start = arcs[0].laid.start.copy()
+        start[joint] += 1e-5
+        first, *others = region.found[0].loops
+        arc = replace(first[0], laid=replace(first[0].laid, start=start))
+        found = faults(with_component(region, 0, loops=((arc, *first[1:]), *others)))
+        moved = start[joint] if region.base == 0 else start[joint][::-1]
+        place = f"({moved[0]:.9g}, {moved[1]:.9g})"
+        assert any(fault.endswith(place) for fault in found)
+
+
 def test_a_loop_that_is_lost_or_there_twice_is_named(region):
     loops = region.found[0].loops
     n = len(loops)

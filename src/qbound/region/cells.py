@@ -169,6 +169,10 @@ def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
     return _without_idle_lines(Decomposition(plane, lines, fibres.t, *cells, standing))
 
 
+ENDS = NUMBER["lower end"], NUMBER["upper end"]
+"""Events at which a curve leaves the lift's range."""
+
+
 def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:
     """Return for each line the rows that vanish on its whole fibre, where there are such."""
     found: dict[int, set[int]] = {}
@@ -184,6 +188,11 @@ def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int
                 continue
             if not lifts[row] or _is_blank(plane, lines, line, row):
                 found.setdefault(line, set()).add(row)
+        if len(members) > 1:  # a double root has no fold; where it is blank it passes both ends
+            low, high = ({what[k][1] for k in members if what[k][0] == end} for end in ENDS)
+            for row in sorted(low & high):
+                if row < plane.count and _is_blank(plane, lines, line, row):
+                    found.setdefault(line, set()).add(row)
     last = len(lines.t) - 1
     if plane.base_range is None and (0 in found or last in found):
         found[0] = found[last] = found.get(0, set()) | found.get(last, set())
@@ -1030,17 +1039,30 @@ class CellComplex:
         order = np.lexsort([every[1], every[0]])
         sorted_ends = _Ends(*(x[order] for x in every))
         ranks = _Ranks(self.decomposition, sorted_ends, self.circle)
-        rank = ranks.rank
-        first = np.full(rank.max(initial=-1) + 1, -1)
-        first[rank[::-1]] = np.arange(len(rank))[::-1]
-        number = (first >= 0).cumsum() - 1
-        first = first[first >= 0]
+        best = np.lexsort([sorted_ends.error, ranks.rank])  # of those that are one
+        new = np.ones(len(best), dtype=np.bool_)
+        new[1:] = np.diff(ranks.rank[best]) > 0
         place = np.empty(len(order), dtype=np.int64)
-        place[order] = number[rank]
+        place[order[best]] = new.cumsum() - 1
         self._place: Ints = np.full((len(self.slabs), 2, 2), -1)
         self._place[kept] = place[: len(own.line)].reshape(-1, 2, 2)
-        cuts: list[Any] = [x[first] for x in sorted_ends._replace(v=ranks.v)]
-        return _Ends(*cuts)
+        kept_ends: list[Any] = [x[best[new]] for x in sorted_ends._replace(v=ranks.v)]
+        cuts = _Ends(*kept_ends)
+        self._settle(cuts)
+        return cuts
+
+    def _settle(self, cuts: _Ends) -> None:
+        """Give ends that are hardly known the value of those that are one with them.
+
+        Where a form vanishes on its whole line, or has no root there, its own value says nothing.
+        """
+        vague = self._errors > self.touch
+        if not vague.any():
+            return
+        vague &= self._place >= 0
+        cut, own = self._place[vague], self.ends[vague]
+        v = cuts.v[cut] + TURN * whole_turns(own - cuts.v[cut]) * self.circle
+        self.ends[vague] = np.where(cuts.error[cut] < self._errors[vague], v, own)
 
     def _cell_ends(self, kept: Ints) -> _Ends:
         """Return both ends of cells at their left and at their right line."""
@@ -1087,8 +1109,14 @@ class CellComplex:
         values, errors, real = plane.side_roots(number, t, radius)
         branch, k = np.nonzero(np.isfinite(values) & (real >= 0))
         v, (low, high) = values[branch, k], plane.lift_ends
-        inside = np.arange(len(v)) if self.circle else which((v > low) & (v < high))
-        branch, k, v = branch[inside], k[inside], v[inside]
+        if not self.circle:
+            if plane.lift_kind == "revolute":  # the range may be wider than a turn
+                v = first_from(low, v)
+                above = whole_turns(high - v).astype(np.int64) + 1
+                own, turns = ranges(np.zeros_like(above), above)
+                branch, k, v = branch[own], k[own], v[own] + TURN * turns
+            inside = which((v > low) & (v < high))
+            branch, k, v = branch[inside], k[inside], v[inside]
         root = np.stack([first + number[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
         return _Ends(line[k], self._turned(v), errors[branch, k], np.zeros_like(k), root)
 

@@ -538,6 +538,8 @@ class Finder:
     def _settled(self, event: Events, low: float, high: float) -> list[Zero]:
         """Return the zeros of an event within an interval, in balls."""
         what: Any = tuple(event.what.tolist())
+        first, last = self.plane.ends  # of a root of high multiplicity nothing is known at first
+        low, high = max(low, first - self.plane.base_unit), min(high, last + self.plane.base_unit)
         for bits in LEVELS:
             zeros = self.precise.zeros(what, low, high, bits)
             if zeros is not None and (bits == LEVELS[-1] or all(z.order == 0 for z in zeros)):

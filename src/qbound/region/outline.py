@@ -139,6 +139,9 @@ def _next_bounding(edges: HalfEdges) -> Ints:
 FIBRE: Final = -3
 """Stands for the form of a root where a piece follows none."""
 
+LEAST: Final = 64 * UNIT
+"""A base value this near to an end, in units of the joint, is that end."""
+
 NODES: Final = (24, 48, 96, 192, 384, 768)
 """Numbers of Gauss-Legendre nodes that are tried in turn."""
 
@@ -190,22 +193,22 @@ class Pieces:
         start, end = self.start[:, None], self.end[:, None]
         q = np.where(part < 1, start + (end - start) * part, end)
         curved = np.flatnonzero(self.roots[:, 0] != FIBRE)
-        turns = self.turns[curved][:, None]
-        values = (
-            self.plane.follow(self.roots[curved], q[curved][..., 0] - turns[..., 0]) + turns[..., 1]
-        )
+        turns, along = self.turns[curved][:, None], q[curved][..., 0]
+        values = self.plane.follow(self.roots[curved], along - turns[..., 0]) + turns[..., 1]
+        gaps = [np.abs(along - x[curved][..., 0]) for x in (start, end)]
         # At an end an angle may jump by a turn, and the root of a quadratic to its other branch.
         turns_round = self.plane.lift_kind == "revolute"
         reach = (TOUCH if turns_round else SAME_POINT) * self.plane.base_unit
-        for end in (start[curved], self.end[curved][:, None]):
-            off = values - end[..., 1]
+        for gap, x in zip(gaps, (start, end), strict=True):
+            off = values - x[curved][..., 1]
             if turns_round:
                 off = TURN * whole_turns(off)
             else:
                 off[np.abs(off) <= AGREE * self.plane.lift_unit] = 0.0
-            values -= np.where(np.abs(q[curved][..., 0] - end[..., 0]) <= reach, off, 0)
-        inside = np.abs(angle) < math.pi / 2  # the ends are given
-        q[curved, :, 1] = np.where(inside, values, q[curved][..., 1])
+            values -= np.where(gap <= reach, off, 0)
+        # The ends are given: a form that vanishes on the whole fibre there says nothing.
+        least = np.minimum(LEAST * self.plane.base_unit, np.abs(end - start)[curved][..., 0] / 1e3)
+        q[curved, :, 1] = np.where(np.minimum(*gaps) > least, values, q[curved][..., 1])
         return ordered(q, self.base)
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:

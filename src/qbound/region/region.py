@@ -27,7 +27,7 @@ from qbound.region.cells import (
 )
 from qbound.region.events import INSIDE, find_events
 from qbound.region.outline import Component, closures, drawn, numbered, ordered, outlined
-from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
+from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, ranges, which
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import ON_ARC, UNIT
 from qbound.units import limited_joints, margin_text
@@ -844,31 +844,33 @@ def _off(found: Region) -> Iterator[str]:
     column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
     laid = arcs[0].laid  # all arcs are laid behind one another
     first, end = np.array([arc.span for arc in arcs]).T
-    begun = ordered(laid.start[first], laid.base)[:, None]
-    q = np.concatenate([laid[(first + end - 1) // 2].places(np.array(PLACES)), begun], axis=1)
+    inner = laid[(first + end - 1) // 2].places(np.array(PLACES)).reshape(-1, 2)
+    of, piece = ranges(first, end)
+    q = np.concatenate([inner, ordered(laid.start[piece], laid.base)])
+    of = np.concatenate([np.arange(len(arcs)).repeat(len(PLACES)), of])
     starts = {tuple(arc.start.tolist()) for arc in arcs}
     for vertex in (vertex for part in found.found for vertex in part.vertices):
         if tuple(vertex.q.tolist()) not in starts:
             yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
-    limited = np.array([arc.row < 0 for arc in arcs])
-    rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])
+    limited = np.array([arc.row < 0 for arc in arcs])[of]
+    rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])[of]
     evaluator = found.problem.evaluator
     within = ON_ARC * evaluator.sizes
     held, more = (evaluator.at_least(q, least) for least in (-within, np.nextafter(within, np.inf)))
-    off = np.take_along_axis(~held | more, rows[:, None, None], axis=2)[..., 0]
+    off = np.take_along_axis(~held | more, rows[:, None], axis=1)[:, 0]
     if limited.any():
         off[limited] = _to_limits(found, q[limited]) > ON_ARC
-    for k, place in np.argwhere(off).tolist():
-        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+    for k in which(off).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k])
         if limited[k]:
-            by = float(_to_limits(found, q[k, place]))
+            by = float(_to_limits(found, q[k]))
         else:
-            by = abs(float(evaluator.margins(q[k, place])[rows[k]]))
-        yield f"an arc of {arcs[k].boundary} is {by:.2g} off it at ({at})"
-    for k, place, column_number in np.argwhere(~held).tolist():
-        at = ", ".join(f"{x:.9g}" for x in q[k, place])
+            by = abs(float(evaluator.margins(q[k])[rows[k]]))
+        yield f"an arc of {arcs[of[k]].boundary} is {by:.2g} off it at ({at})"
+    for k, column_number in np.argwhere(~held).tolist():
+        at = ", ".join(f"{x:.9g}" for x in q[k])
         name = evaluator.names[column_number]
-        yield f"an arc of {arcs[k].boundary} runs where {name} is violated, at ({at})"
+        yield f"an arc of {arcs[of[k]].boundary} runs where {name} is violated, at ({at})"
 
 
 def _to_limits(found: Region, q: Floats) -> Floats:
