@@ -25,6 +25,7 @@ HARD = Path(__file__).with_name("not_decided")
 COMPONENTS = {
     "acute-10728": 1,
     "bare-segments-in-line": 2,
+    "bare-walls-upright": 2,
     "corner-at-the-base": 1,
     "corner-of-a-square": 1,
     "corridor-1e-14": 1,

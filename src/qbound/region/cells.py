@@ -729,15 +729,12 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     own = roots.swapaxes(0, 1)  # all lower ones, then all upper
     twins = own * np.array([1, -1, 1])  # of the other branch
     values = plane.follow(np.concatenate([own, twins]), t)
-    (lower, upper), height = values[:2], (values[1] - values[0]).min(axis=1)
+    height = (values[1] - values[0]).min(axis=1)
     smooth = np.ptp(values[:2], axis=2).sum(axis=0) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
-    low, high = lower[going, 1], upper[going, 1]
-    going[going] = found.joined(
-        at[going], lambda k, part: float(low[k] + part * (high[k] - low[k]))
-    )
-    return np.asarray(going)
+    # Where bodies touch along a part of the line its ends are still to be found.
+    return np.asarray(going & ~np.isin(at, list(found.standing)))
 
 
 def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
