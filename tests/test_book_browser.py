@@ -311,8 +311,8 @@ def test_a_solution_is_folded_until_a_reader_asks(page):
 
 # --- cards ----------------------------------------------------------------------------------------
 
-# A page that links much and has few formulas: it is soon open.
-LINKING = chapter_page("introduction")
+# A page that links to a formula of another chapter.
+LINKING = chapter_page("boundary_functions")
 TO_EQUATION = "article p > a[href*='#equation-eq-29']"
 CARD = "#hover-card"
 
@@ -390,7 +390,7 @@ def test_a_card_is_not_printed(page):
 @pytest.mark.parametrize("theme", THEMES)
 def test_a_card_breaks_no_rule_of_accessibility(page, theme):
     page.emulate_media(color_scheme=theme)
-    open_page(page, LINKING)
+    open_page(page, chapter_page("theorem_2"))
     page.locator("article p > a[href$='#tab-6']").first.hover()
     page.locator(CARD).wait_for()
     eventually(page, lambda: typeset(page))

@@ -1263,7 +1263,7 @@ def test_the_wheel_from_the_sdist_holds_every_file_of_both_packages(wheel: Path)
     ("words", "said"),
     [
         ("claims E-34", "E-34  eq. (34)"),
-        ("claims E-34 --bibtex", "\\_what\\_holds"),
+        ("claims E-34 --bibtex", "qbound-E-34"),
         ("claims E-5 --recompute", "E-5  eq. (5)"),
         ("results region/vertex.1", "region/vertex.1 = "),
         ("robots show minervabot-v2", 'name = "MinervaBotV2"'),

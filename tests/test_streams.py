@@ -227,7 +227,7 @@ def test_threads_and_any_memory_answer_alike(compile_it, monkeypatch) -> None:
     q[-5, 1] = math.nan
     with pytest.raises(ValueError, match="NaN"):
         two(q)
-    with pytest.raises(ValueError, match="threads 0"):
+    with pytest.raises(ValueError, match="threads: 0"):
         compile_it(robot, threads=0)
 
 

@@ -125,7 +125,7 @@ def _evidence(one: Claim) -> str:
 
 def _citation(one: Claim) -> str:
     text = escape(cite.entry(one))
-    return f'<details><summary>Cite {one.id}</summary><div class="bibtex">{text}</div></details>'
+    return f'<details><summary>Cite {one.id}</summary><pre class="bibtex">{text}</pre></details>'
 
 
 def _erratum(leader: str, entries: Sequence[Claim]) -> str:
