@@ -311,7 +311,7 @@ def test_a_solution_is_folded_until_a_reader_asks(page):
 
 # --- cards ----------------------------------------------------------------------------------------
 
-# A page that links to a formula of another chapter.
+# A page that links to one of its formulas.
 LINKING = chapter_page("boundary_functions")
 TO_EQUATION = "article p > a[href*='#equation-eq-29']"
 CARD = "#hover-card"
