@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """One command for everything: make the book, run the tests, lint, lock, clean.
 
+    python3 run.py quick    a first trial: environment, the claims of Table 6, two chapters
     python3 run.py book     execute the notebooks that changed and build the book
     python3 run.py test     run the tests (further arguments go to pytest)
     python3 run.py serve    show the book in a browser and follow what an author changes
@@ -30,6 +31,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 # Before the first definition, and in words that Python 3.6 can read.
@@ -85,6 +87,8 @@ print(*(name for name in names if has[name]))"""
 # end at about the same time. A new one may be left out; it costs nothing but time.
 LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "proof", "many_robots"]
 LONG += ["obstacles", "every_region", "sampling", "theorem_1", "real_arm", "vector_labelling"]
+TRIED = ["06_theorem_2", "07_region"]  # the chapters of `run.py quick`
+TABLE = "Table 6"  # and the part of the paper whose claims it computes again
 # Of the sources, what every chapter is computed with; a change of it executes all of them.
 SHARED = ("src/", "tools/", "benchmarks/", "pyproject.toml")
 
@@ -519,12 +523,9 @@ def execute(notebooks: list[Path], shared: str) -> None:
         shutil.copy(notebook, executed(notebook))
         mark(notebook).with_suffix(".part").write_text(wanted_of(notebook, shared))
     chapters = sorted(map(executed, notebooks), key=when_executed)
-    nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
-    pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
-    pytest += ["--maxschedchunk=1"]  # none waits behind another while a process is free
     must(
         f"Executing {len(chapters)} notebooks",
-        [*pytest, "-c", ROOT / "pyproject.toml", "-p", "per_chapter", *nbmake, *chapters],
+        executing(chapters),
         base=one_arithmetic(),
         PYTHONPATH=TOOLS / "chapters",
     )
@@ -533,8 +534,20 @@ def execute(notebooks: list[Path], shared: str) -> None:
             remove(chapter.parent)
             raise Failed(f"{chapter.name}: cells did not run.")
         if not is_x86():
-            keep = [in_venv("python"), TOOLS / "keep_results.py", chapter.parent, RESULTS]
-            must(f"Comparing the results of {chapter.name} with the recorded ones", keep)
+            must(f"Comparing the results of {chapter.name} with the recorded ones", keep(chapter))
+
+
+def executing(chapters: list[Path]) -> Command:
+    """Return the command that executes copies of notebooks where they are."""
+    nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
+    pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
+    pytest += ["--maxschedchunk=1"]  # none waits behind another while a process is free
+    return [*pytest, "-c", ROOT / "pyproject.toml", "-p", "per_chapter", *nbmake, *chapters]
+
+
+def keep(chapter: Path) -> Command:
+    """Return the command that keeps the recorded results with which those of a chapter agree."""
+    return [in_venv("python"), TOOLS / "keep_results.py", chapter.parent, RESULTS]
 
 
 def when_executed(chapter: Path) -> tuple[int, str]:
@@ -635,6 +648,77 @@ def stamped(made_from: str, results: Path) -> str:
     """Return what the stamp says of a book: its sources, and the results that belong to it."""
     files = sorted(results.glob("*.json"))
     return digest(made_from, *(f"{file.name} {hash_of(file)}" for file in files))
+
+
+# --- a first trial --------------------------------------------------------------------------------
+
+
+def quick() -> int:
+    """Try the installation in under three minutes: environment, Table 6, two chapters."""
+    prepare()
+    start = time.monotonic()
+    for title, step in trials().items():
+        say(f"-- {title}")
+        began = time.monotonic()
+        found = step()
+        say(f"   SUCCESS in {time.monotonic() - began:.0f} s: {found}")
+    say(f"All {len(trials())} steps succeeded in {time.monotonic() - start:.0f} s.")
+    say("Next: `python3 run.py book` makes the whole book.")
+    return 0
+
+
+def trials() -> dict[str, Callable[[], str]]:
+    """Return the steps of `quick` by their titles; each returns what it found, or fails."""
+    return {
+        "Is the environment whole?": try_environment,
+        f"Are the claims about {TABLE} computed again as recorded?": try_claims,
+        f"Do {len(TRIED)} chapters run, and give the recorded numbers?": try_chapters,
+    }
+
+
+def try_environment() -> str:
+    """Check that the packages fit together, and that NumPy computes in the book's arithmetic."""
+    answer([in_venv("python"), "-m", "pip", "check"])
+    one_arithmetic()
+    return answer([in_venv("qbound"), "--version"]) + ", every package fits the others"
+
+
+def try_claims() -> str:
+    """Compute again what is claimed about a table of the paper."""
+    content = json.loads((RESULTS / "claims.json").read_text(encoding="utf-8"))
+    names = [claim["id"] for claim in content["claims"] if claim["where"].startswith(TABLE)]
+    command = [in_venv("qbound"), "claims", *names, "--recompute"]
+    return answer(command, base=one_arithmetic()).splitlines()[-1]
+
+
+def try_chapters() -> str:
+    """Execute copies of some chapters, and compare their numbers with the recorded ones."""
+    with tempfile.TemporaryDirectory() as scratch:
+        chapters = [Path(scratch, name, f"{name}.ipynb") for name in TRIED]
+        for chapter in chapters:
+            chapter.parent.mkdir()
+            shutil.copy(ROOT / "notebooks" / chapter.name, chapter)
+            chapter.with_name("made-from.part").touch()
+        answer(executing(chapters), base=one_arithmetic(), PYTHONPATH=TOOLS / "chapters")
+        numbers = 0
+        for chapter in chapters:
+            if unrun_cells(chapter):
+                raise Failed(f"{chapter.name}: cells did not run.")
+            said = answer(keep(chapter))
+            for file in sorted(chapter.parent.glob("*.json")):
+                if file.read_bytes() != (RESULTS / file.name).read_bytes():
+                    raise Failed(f"{file.name} differs from the recorded results.\n{said}")
+                numbers += len(json.loads(file.read_text(encoding="utf-8"))["results"])
+    return f"{' and '.join(TRIED)} ran, {numbers} numbers as recorded in {RESULTS.name}/"
+
+
+def answer(command: Command, base: dict[str, str] | None = None, **settings: object) -> str:
+    """Return what a step prints; where it fails, all that it said goes to the reader."""
+    whole = (base or environment()) | {name: str(value) for name, value in settings.items()}
+    done = subprocess.run(command, cwd=ROOT, env=whole, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Failed(f"FAILED: {done.stdout}{done.stderr}", done.returncode)
+    return done.stdout.strip()
 
 
 # --- the author's loop and the PDF ----------------------------------------------------------------
@@ -922,7 +1006,7 @@ def clean() -> int:
     return 0
 
 
-COMMANDS = [book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, bench]
+COMMANDS = [quick, book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, bench]
 COMMANDS += [pack, clean]
 
 
