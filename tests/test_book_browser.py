@@ -300,6 +300,27 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     inside.get_by_text("There. On the way you crossed").wait_for()
 
 
+@pytest.mark.parametrize(
+    ("chapter", "word", "curve"),
+    [
+        ("introduction", ".lights.b7", ".wall.limit[data-boundary=B7]"),
+        ("boundary_functions", ".lights.b4", ".arc[data-boundary=B4]"),
+        ("theorem_2", ".lights[data-light=proof]", ".proof"),
+        ("region", ".lights.b7", ".bound[data-boundary=B7]"),
+    ],
+)
+def test_words_of_a_chapter_light_the_curve_that_they_name(page, chapter, word, curve):
+    page.set_viewport_size({"width": 1280, "height": 900})
+    open_page(page, chapter_page(chapter))
+    curves, lit = page.locator(f".play {curve}"), page.locator(f".play {curve}.lit")
+    assert curves.count() > 0
+    assert lit.count() == 0
+    page.locator(word).first.hover()
+    assert lit.count() == curves.count()
+    page.mouse.move(1, 1)
+    assert lit.count() == 0
+
+
 def test_a_solution_is_folded_until_a_reader_asks(page):
     open_page(page, chapter_page("introduction"))
     solution = page.locator("#exercises .admonition.dropdown").first

@@ -334,13 +334,21 @@ def test_dragging_the_elbow_brings_the_arm_to_contact(open_figure):
     assert values[-1] == min(values)
 
 
-@pytest.mark.parametrize("kind", ["contact", "explorer"])
+@pytest.mark.parametrize("kind", ["contact", "explorer", "switches"])
 def test_a_word_that_names_a_boundary_lights_its_curve(open_play, kind):
-    page = open_play(kind, "clearance")
-    lit = page.locator(".arc.lit")
+    page = open_play(kind, "paper" if kind == "switches" else "clearance")
+    lit = page.locator(":is(.arc, .bound).lit")
     assert lit.count() == 0
     page.locator(".lights").hover()
     assert set(lit.evaluate_all("all => all.map((arc) => arc.dataset.boundary)")) == {"B3"}
     assert page.locator(".arc.violated").count() == 0
     page.mouse.move(1, 1)
     assert lit.count() == 0
+
+
+def test_under_a_finger_the_light_stays_until_it_touches_something_else(open_figure):
+    page = open_figure("contact", has_touch=True)
+    page.locator(".lights").tap()
+    assert page.locator(".arc.lit[data-boundary=B3]").count() == 1
+    page.locator(".status").tap()
+    assert page.locator(".arc.lit").count() == 0

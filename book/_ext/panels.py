@@ -21,8 +21,8 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.typing import ExtensionMetadata
 
-# A picture wider than this has panels side by side, too small to read on a phone; in points.
-WIDEST_PANEL = 6.5 * 72
+# A picture wider than this is too small to read on a phone, or has panels side by side; in points.
+WIDEST_PANEL = 6.3 * 72
 
 SVG = "{http://www.w3.org/2000/svg}"
 PLACED = re.compile(r"translate\(([-\d.]+) ([-\d.]+)\)( rotate\(-90\))?(?: scale\(([\d.]+))?")

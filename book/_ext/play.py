@@ -9,6 +9,9 @@ hook names one, gives place to it and comes back on paper. ``data-robot`` and ``
 packaged robot and a rule of `qbound.find_region`; whatever else begins with ``data-`` is an option
 of the kind.
 
+In a page with a figure of `LIGHTABLE`, a boundary that the prose names, such as ``$B_7$`` or
+``$\\beta_{2,1,2}$``, has the colour of its curve and lights it under a pointer.
+
 What a kind is told beyond its robot is the JSON that ``play_data/KIND.py`` returns, if there is
 such a module: ``def data(region: Region) -> object``. Files that it links, by their addresses below
 ``_static``, are what ``def files() -> dict[str, str]`` of that module returns.
@@ -18,6 +21,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 from collections.abc import Iterator
 from functools import cache
 from html.parser import HTMLParser
@@ -48,12 +52,21 @@ WITHOUT_ROBOT = {"live"}
 WITHOUT_EXPLORER = WITHOUT_ROBOT | {"bodies", "circle", "contact", "scale", "switches"}
 """Kinds that mount no explorer: a page with these alone does without its scripts."""
 
+LIGHTABLE = {"contact", "explorer", "scale", "switches"}
+"""Kinds with a curve for each boundary of the paper's robot."""
+
+NAMED = re.compile(r"(?:B_|\\beta_\{)([1-7])(?:(?:,\d){1,2}\})?")
+"""A formula that is nothing but the name of a boundary, of a component or a bound of it."""
+
 SCRIPTS_BEFORE = {
     "contact": ("regions",),
     "goals": ("regions",),
     "live": ("live_space", "live_scene"),
 }
 """What stands before a kind's own script, in order."""
+
+PAPER = "minervabot-v2"
+"""The robot of a hook that names none."""
 
 LOGGER = logging.getLogger(__name__)
 
@@ -87,7 +100,7 @@ def hooks(page: nodes.document | None) -> list[Options]:
 def robot_key(hook: Options) -> str:
     """Name a robot's region as the loader does: its file, and the rule unless it is the usual."""
     rule = hook.get("rule", "clearance")
-    return hook.get("robot", "minervabot-v2") + ("" if rule == "clearance" else f"-{rule}")
+    return hook.get("robot", PAPER) + ("" if rule == "clearance" else f"-{rule}")
 
 
 @cache
@@ -113,7 +126,7 @@ def scripts_of(hook: Options) -> Iterator[tuple[str, str]]:
     if kind in WITHOUT_ROBOT:
         yield own_script(kind)
         return
-    name = hook.get("robot", "minervabot-v2")
+    name = hook.get("robot", PAPER)
     region = region_of(name, hook.get("rule", "clearance"))
     told = explorer_data(region, paths_of(name))
     yield f"play/robots/{key}.js", table_entry("qboundRobots", key, told)
@@ -175,7 +188,21 @@ def write_static(app: Sphinx, address: str, text: str) -> None:
         write_whole(file, text.encode())
 
 
+def name_curves(app: Sphinx, doctree: nodes.document, docname: str) -> None:
+    """Make the boundaries that the prose of a page names words that light their curves."""
+    kinds = {hook.get("figure") for hook in hooks(doctree) if robot_key(hook).startswith(PAPER)}
+    if app.builder.format != "html" or not kinds & LIGHTABLE:
+        return
+    for formula in list(doctree.findall(nodes.math)):
+        named = NAMED.fullmatch(formula.astext())
+        if named and isinstance(formula.parent, nodes.paragraph | nodes.caption):
+            word = nodes.inline(classes=["lights", f"b{named[1]}"])
+            formula.replace_self(word)
+            word += formula
+
+
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register with Sphinx; pages of other builders than HTML keep their pictures."""
     app.connect("html-page-context", add_scripts)
+    app.connect("doctree-resolved", name_curves)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -114,15 +114,21 @@
       const group = layer(fitted, "circle");
       /** @type {(name: string) => SVGPathElement} */
       const path = (name) => group.appendChild(make("path", { class: name }));
+      /** @type {(name: string, look?: string) => SVGPathElement} */
+      const interval = (name, look = name) => {
+        const made = path(look);
+        made.dataset.boundary = name; // for the words of the page
+        return made;
+      };
       const circle = sweep(0, TURN, () => 1);
       const parts = {
         above: path("home"),
         axes: path("grid"),
         circle: path("circle-line"),
         line: path("wall"),
-        arc: path("arc wide"),
-        proof: path("proof"),
-        theorem: path("printed"),
+        arc: interval("arc", "arc wide"),
+        proof: interval("proof"),
+        theorem: interval("printed"),
         arrow: path("wall"),
         names: ["θ − α", "θ + α", "(a, b)", "a cos q + b sin q = c"].map((text) =>
           group.appendChild(make("text", { class: "line-name", "text-anchor": "middle" }, text)),
@@ -231,6 +237,7 @@
       }
     });
     opening();
+    qboundParts.lightable(root);
     whenWidthChanges(figure, draw);
 
     /** @type {(found: CircleArc, c: number) => string} */

@@ -213,6 +213,16 @@ const qboundParts = (() => {
     return Math.abs(turn(one)) <= Math.abs(turn(other)) ? one : other;
   }
 
+  /** Let the words of a page light what they name: the parts with that `data-boundary`.
+   * @type {(root: HTMLElement) => void} */
+  function lightable(root) {
+    root.addEventListener("qbound-light", (event) => {
+      const name = event instanceof CustomEvent ? event.detail : null;
+      for (const part of root.querySelectorAll("[data-boundary]"))
+        part.classList.toggle("lit", part.getAttribute("data-boundary") === name);
+    });
+  }
+
   /** Whether two poses are one and the same: pictures that are drawn anew move no arm.
    * @type {(one: Pair, other: Pair) => boolean} */
   function isSame(one, other) {
@@ -221,6 +231,7 @@ const qboundParts = (() => {
 
   return {
     isSame,
+    lightable,
     turns,
     regionAt,
     tick,

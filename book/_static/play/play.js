@@ -61,13 +61,24 @@
   for (const hook of document.querySelectorAll("div.play"))
     if (hook instanceof HTMLElement) play(hook);
 
-  // A word that names a boundary, [B7]{.lights .b7} in Markdown, lights it in the figures of its page.
-  for (const word of document.querySelectorAll(".lights")) {
-    const name = [...word.classList].find((one) => /^b\d$/.test(one))?.toUpperCase();
-    for (const [event, detail] of Object.entries({ pointerenter: name, pointerleave: null }))
-      word.addEventListener(event, () => {
-        for (const figure of document.querySelectorAll("div.play"))
-          figure.dispatchEvent(new CustomEvent("qbound-light", { detail }));
-      });
+  // A word that names a curve, <span class="lights b7"> or with data-light, lights it in the figures
+  // of its page. Under a finger the light stays until the finger comes down elsewhere.
+  /** @type {(detail: string | null) => void} */
+  const light = (detail) => {
+    for (const figure of document.querySelectorAll("div.play"))
+      figure.dispatchEvent(new CustomEvent("qbound-light", { detail }));
+  };
+  const words = document.querySelectorAll(".lights");
+  for (const word of words) {
+    const own = [...word.classList].find((one) => /^b\d$/.test(one))?.toUpperCase();
+    const name = word.getAttribute("data-light") ?? own ?? null;
+    word.addEventListener("pointerenter", () => light(name));
+    word.addEventListener("pointerleave", (event) => {
+      if (event instanceof PointerEvent && event.pointerType !== "touch") light(null);
+    });
   }
+  if (words.length > 0)
+    document.addEventListener("pointerdown", ({ target }) => {
+      if (!(target instanceof Element && target.closest(".lights"))) light(null);
+    });
 }

@@ -259,6 +259,7 @@
       status.say(`Scale ${number(state.scale, 3)}: ${text} ${overlap}`.trim(), leaving.length > 0);
     }
 
+    qboundParts.lightable(root);
     qboundParts.whenWidthChanges(joints.figure, draw);
   }
 

@@ -448,6 +448,7 @@
       status.say(`${where} ${left}`, violated.length > 0 || empty);
     }
 
+    qboundParts.lightable(root);
     whenWidthChanges(figure, redraw);
   }
 
