@@ -252,9 +252,9 @@ def test_depth_and_edges_at_a_scale_are_the_librarys(open_figure):
         lit = page.evaluate("""() => [...document.querySelectorAll(".polygons .arc")].map((edge) =>
           edge.classList.contains("lit"))""")
         assert lit == (values < -1e-9).tolist()  # two corners lie on the limit
-    page.get_by_role("button", name=re.compile("largest safe")).click()
+    page.get_by_role("button", name=re.compile("largest allowed")).click()
     assert numbers(words(page))[1] == pytest.approx(0, abs=6e-4)
-    assert "0.964038" in page.get_by_role("button", name=re.compile("largest safe")).inner_text()
+    assert "0.964038" in page.get_by_role("button", name=re.compile("largest allowed")).inner_text()
 
 
 def test_the_scale_has_keys(open_figure):

@@ -120,7 +120,7 @@
       element("div", { className: "safe-mark", ariaHidden: "true" }, mark),
       buttons(
         ["1, the six points", () => set(1)],
-        [`${number(largest, 6)}, the largest safe scale`, () => set(largest)],
+        [`${number(largest, 6)}, the largest allowed scale`, () => set(largest)],
         ["0.95, as in Figure 6", () => set(0.95)],
       ),
       element("div", { className: "panels" }, joints.figure, plane.figure),
