@@ -9,8 +9,8 @@ import numpy as np
 from lizarraga2025.evidence.arms import pairs
 from lizarraga2025.evidence.rounding import degrees, turned_by_rounding
 from qbound.boundary.functions import pair_vector
-from qbound.forms.angles import TURN
 from qbound.forms.circle import circle_arc
+from qbound.forms.factors import TURN
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
