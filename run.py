@@ -52,8 +52,6 @@ FRONT_PAGE = BUILD / "html" / "index.html"
 BOOK_STAMP = BUILD / "made-from"
 PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
-NEXT = ROOT / ".next"  # the book is made here, and takes the place of the old one when it is whole
-WHOLE = "whole"  # a file of NEXT: all is made
 EXECUTED = ROOT / ".executed"  # of each chapter the executed copy, and the results that it wrote
 WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
@@ -289,55 +287,35 @@ def install_pinned(venv: Path, lock: Path) -> None:
 
 
 def install_what_can_be(venv: Path, lock: Path) -> dict[str, str]:
-    """Install the packages of a lock without those that cannot be; return these, each with why.
+    """Install a lock package by package; return those that cannot be installed, each with why.
 
-    Halves that fail are halved again, hashes kept; dependencies are in the lock like all else.
+    Hashes are kept, and dependencies are in the lock like all else.
     """
     blocks = re.split(r"^(?=[A-Za-z0-9])", lock.read_text(encoding="utf-8"), flags=re.MULTILINE)
     pins = dict[str, str]()
     for block in blocks[1:]:
         name = block.partition("==")[0]
         pins[name] = pins.get(name, "") + block  # twice, where Pythons need their own
-    ours = [name for name in NEEDED if name in pins]
-    why = trial(venv, [pins.pop(name) for name in ours])
-    if why is not None:
-        raise Failed(
-            f"{', '.join(ours)}: not installed ({why}). Without these nothing is measured."
-        )
-    missing, left = dict[str, str](), [list(pins)]
-    while left:
-        names = left.pop()
-        say(f"-- Installing {len(names)} packages, {names[0]} to {names[-1]}")
-        why = trial(venv, [pins[name] for name in names])
-        if why is None:
-            continue
-        if len(names) == 1:
-            missing[names[0]] = why
-        else:
-            left += [names[len(names) // 2 :], names[: len(names) // 2]]
+    say(f"-- Installing {len(pins)} packages one by one")
+    tried = {name: trial(venv, pin) for name, pin in pins.items()}
+    missing = {name: why for name, why in tried.items() if why}
+    if not missing.keys().isdisjoint(NEEDED):
+        raise Failed(f"Not installed: {missing}. Without {', '.join(NEEDED)} nothing is measured.")
     return missing
 
 
-def trial(venv: Path, blocks: list[str]) -> str | None:
-    """Install pinned packages as they are, without what they need; return why not, or None."""
+def trial(venv: Path, pin: str) -> str:
+    """Install a pinned package as it is, without what it needs; return why not, or nothing."""
     with tempfile.TemporaryDirectory() as scratch:
         part = Path(scratch, "part.lock")
-        part.write_text("".join(blocks), encoding="utf-8")
+        part.write_text(pin, encoding="utf-8")
         options = ["--no-compile", "--no-deps", "--require-hashes", "--requirement", part]
+        command = [*pip(venv), *options]
         done = subprocess.run(
-            [*pip(venv), *options],
-            cwd=ROOT,
-            env=environment(),
-            stderr=subprocess.PIPE,
-            encoding="utf-8",
-            errors="replace",
-            check=False,
+            command, env=environment(), stderr=subprocess.PIPE, text=True, check=False
         )
-    if done.returncode == 0:
-        return None
-    said = [line.strip() for line in done.stderr.splitlines() if line.strip()] or ["no reason told"]
-    errors = [line for line in said if line.lower().startswith("error:")]
-    return re.sub("^error: *", "", (errors or said)[-1], flags=re.IGNORECASE)
+    errors = re.findall(r"(?im)^ *error: *(.+)", done.stderr) or ["no reason told"]
+    return errors[-1] if done.returncode else ""
 
 
 def install_ourselves(venv: Path) -> None:
@@ -387,81 +365,42 @@ def pip(venv: Path, command: str = "install") -> Command:
 
 
 def make_book(update: bool = False, printed: Path | None = None) -> None:
-    """Execute the chapters that changed, build the pages, and only then replace the old book.
+    """Execute the chapters that changed, then build the pages and replace the old ones.
 
-    All is made in NEXT, from copies of the sources. The pages are built anew; with `update` only
-    those whose own text changed, which is enough for an author who writes. A PDF of an older book
-    goes, unless it is handed on as `printed`.
+    The pages are built anew; with `update` only those whose own text changed, which is enough for
+    an author who writes. A PDF of an older book goes, unless it is handed on as `printed`. The
+    stamp is removed first and written last: a book that is not whole is made again.
     """
-    take_over()
     made_from = fingerprint(ROOT)
-    copy_sources()
-    if update and BUILD.exists() and GENERATED.exists():
-        skipped = shutil.ignore_patterns("pdf", PDF.name)
-        shutil.copytree(BUILD, in_next(BUILD), ignore=skipped)
-        shutil.copytree(GENERATED, in_next(GENERATED))
-    if printed is not None:
-        shutil.copy(printed, in_next(PDF))
-    make_chapters()
-    build_pages()
+    BOOK_STAMP.unlink(missing_ok=True)
+    take(make_chapters())
+    if printed is None:
+        PDF.unlink(missing_ok=True)
+    else:
+        shutil.copy(printed, PDF)
+    build_pages(update)
     if fingerprint(ROOT) != made_from:
         remove(EXECUTED)  # nobody knows what the chapters were made from
         raise Failed("The sources changed while the book was made: make it again.")
-    in_next(BOOK_STAMP).write_text(stamped(made_from, in_next(RESULTS)))
-    (NEXT / WHOLE).touch()
-    take_over()
+    BOOK_STAMP.write_text(stamped(made_from))
 
 
-def in_next(place: Path) -> Path:
-    """Return where a part of the book is made."""
-    return NEXT / place.relative_to(ROOT)
-
-
-def copy_sources() -> None:
-    """Start over in NEXT."""
-    remove(NEXT)
-    for name in source_hashes(ROOT):
-        (NEXT / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, NEXT / name)
-    in_next(RESULTS).mkdir()
-
-
-def take_over() -> None:
-    """Put a book that is whole in the place of the old one.
-
-    A kill between two of these steps leaves the mark, and the next command goes on with them.
-    """
-    if not (NEXT / WHOLE).exists():
-        return
-    made = {file.name for file in in_next(RESULTS).iterdir()}
-    RESULTS.mkdir(exist_ok=True)
-    for name in sorted(made):
-        draft = RESULTS / f".{name}.part"
-        shutil.copy(in_next(RESULTS) / name, draft)
-        draft.replace(RESULTS / name)
-    for file in RESULTS.glob("*.json"):
-        if file.name not in made:
-            file.unlink()
-    for place in [CHAPTERS, GENERATED, BUILD]:
-        if in_next(place).exists():
-            old = NEXT / f"old-{place.name}"
-            remove(old)
-            if place.exists():
-                place.rename(old)
-            in_next(place).rename(place)
-    (NEXT / WHOLE).unlink()
-    remove(NEXT)
-
-
-def build_pages() -> None:
-    """Build the pages in NEXT."""
-    must(
-        "Building the pages",
-        sphinx("html", in_next(ROOT / "book"), in_next(BUILD)),
-        quiet=True,
-        base=one_arithmetic(),
-        QBOUND_RESULTS=in_next(RESULTS),
-    )
+def build_pages(update: bool) -> None:
+    """Build the pages beside the old ones, which stay until the new ones are whole."""
+    target = BUILD / "next"
+    remove(target)
+    parts = [FRONT_PAGE.parent, BUILD / "doctrees-html"]
+    if update and all(part.exists() for part in [*parts, GENERATED]):
+        for part in parts:
+            shutil.copytree(part, target / part.name)
+    else:
+        remove(GENERATED)
+    command = sphinx("html", ROOT / "book", target)
+    must("Building the pages", command, quiet=True, base=one_arithmetic(), QBOUND_RESULTS=RESULTS)
+    for part in parts:
+        remove(part)
+        (target / part.name).rename(part)
+    remove(target)
 
 
 def sphinx(builder: str, source: Path, target: Path) -> Command:
@@ -473,8 +412,8 @@ def sphinx(builder: str, source: Path, target: Path) -> Command:
 # --- the chapters ---------------------------------------------------------------------------------
 
 
-def make_chapters() -> None:
-    """Execute the chapters that changed, and take the others as they are, with their results."""
+def make_chapters() -> list[Path]:
+    """Execute the chapters that changed; return all executed ones."""
     notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
     if not notebooks:
         raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
@@ -490,9 +429,7 @@ def make_chapters() -> None:
         say(f"-- {said}, and what they are computed with, are unchanged")
     if changed:
         execute(changed, shared)
-    in_next(CHAPTERS).mkdir()
-    for notebook in notebooks:
-        take(notebook)
+    return [executed(notebook) for notebook in notebooks]
 
 
 def is_apart(text: Path) -> bool:
@@ -583,13 +520,23 @@ def is_current(notebook: Path, shared: str) -> bool:
     return made.is_file() and made.read_text() == wanted_of(notebook, shared)
 
 
-def take(notebook: Path) -> None:
-    """Take an executed chapter and its results into the next book."""
-    shutil.copy2(executed(notebook), in_next(CHAPTERS))
-    for file in sorted(executed(notebook).parent.glob("*.json")):
-        if (in_next(RESULTS) / file.name).exists():
-            raise Failed(f"{notebook.name} writes {file.name}, as another chapter does.")
-        shutil.copy(file, in_next(RESULTS))
+def take(chapters: list[Path]) -> None:
+    """Take executed chapters and their results into the book."""
+    results = dict[str, Path]()
+    for chapter in chapters:
+        for file in sorted(chapter.parent.glob("*.json")):
+            if results.setdefault(file.name, file) != file:
+                raise Failed(f"{chapter.name} writes {file.name}, as another chapter does.")
+    remove(CHAPTERS)
+    CHAPTERS.mkdir()
+    for chapter in chapters:
+        shutil.copy2(chapter, CHAPTERS)
+    RESULTS.mkdir(exist_ok=True)
+    for old in RESULTS.glob("*.json"):
+        if old.name not in results:
+            old.unlink()
+    for name, file in results.items():
+        shutil.copy(file, RESULTS / name)
 
 
 def hash_of(file: Path) -> str | None:
@@ -639,14 +586,13 @@ def is_product(name: Path) -> bool:
 
 
 def book_is_fresh() -> bool:
-    take_over()
     made = FRONT_PAGE.exists() and BOOK_STAMP.exists()
-    return made and BOOK_STAMP.read_text() == stamped(fingerprint(ROOT), RESULTS)
+    return made and BOOK_STAMP.read_text() == stamped(fingerprint(ROOT))
 
 
-def stamped(made_from: str, results: Path) -> str:
+def stamped(made_from: str) -> str:
     """Return what the stamp says of a book: its sources, and the results that belong to it."""
-    files = sorted(results.glob("*.json"))
+    files = sorted(RESULTS.glob("*.json"))
     return digest(made_from, *(f"{file.name} {hash_of(file)}" for file in files))
 
 
@@ -828,6 +774,7 @@ def print_book(browser: str) -> None:
     if not draft.exists():  # a browser may fail and say that all is well
         raise Failed("The browser has printed nothing.")
     make_book(update=True, printed=draft)
+    remove(scratch)
 
 
 def lab() -> int:
@@ -1000,7 +947,7 @@ def prepare_bench() -> Path:
 def clean() -> int:
     """Remove the environments, the book and the caches; results/ stays."""
     made = [ROOT / name for name in [BENCH, *CACHES, *BUILT]]
-    for path in [VENV, NEXT, EXECUTED, CHAPTERS, BUILD, GENERATED, *made]:
+    for path in [VENV, EXECUTED, CHAPTERS, BUILD, GENERATED, *made]:
         remove(path)
     say("Removed the environments, the book and the caches.")
     return 0

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from qbound.forms.angles import (
+from qbound.forms.factors import (
     first_from,
     nearest_turn,
     turns_up_to,

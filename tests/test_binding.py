@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from qbound import load_robot
-from qbound.boundary.binding import BELOW, CERTAIN, _covered, binding
 from qbound.boundary.evaluator import Evaluator, compiled, evaluator
-from qbound.boundary.screen import screen
+from qbound.boundary.screen import BELOW, CERTAIN, _covered, binding, screen
 from qbound.forms.harmonic import HarmonicForm
 
 FULL_TURN = np.linspace(-np.pi, np.pi, 20_001)[:, None]

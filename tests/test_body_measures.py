@@ -10,10 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from qbound import find_region
-from qbound.boundary.nearest import nearest_features
+from qbound.boundary.separation import nearest_features
 from qbound.export.configuration import configuration_document
 from qbound.export.document import region_document
-from qbound.forms.angles import nearest_turn
+from qbound.forms.factors import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
 from qbound.measures.nearest import moments, nearest_boundary

@@ -19,7 +19,7 @@ from qbound.proofs.certificates.certify import Subject, certify
 from qbound.proofs.certificates.inequality import Arm, Seen, Step
 from qbound.proofs.subdivide import Boxes, Forest, Simplices
 from qbound.urdf.arm import import_urdf
-from qbound.urdf.robot_text import robot_text as urdf_text
+from qbound.urdf.arm import robot_text as urdf_text
 from support import arms_in_planes, brute_force
 from support.robot_files import box_of, robot_file
 from support.six_joints import around_home, six_joint_arm

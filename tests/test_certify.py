@@ -645,8 +645,8 @@ def test_long_work_says_how_far_it_is_on_a_terminal_only(name, capsys, monkeypat
     words, shown = LONG[name]
     assert cli.main(words) == 0
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr("qbound.cli.progress.is_terminal", lambda: True)
-    monkeypatch.setattr("qbound.cli.progress.EVERY", 0)
+    monkeypatch.setattr("qbound.cli.terminal.is_terminal", lambda: True)
+    monkeypatch.setattr("qbound.cli.terminal.EVERY", 0)
     assert cli.main(words) == 0
     error = capsys.readouterr().err
     assert f"{shown}99 %" in error or len(error.split(shown)) > 3

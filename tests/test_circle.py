@@ -9,8 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from qbound.forms.angles import nearest_turn
 from qbound.forms.circle import ALL, circle_arc, circle_roots
+from qbound.forms.factors import nearest_turn
 from support.oracles import angle_gap, circle_zeros
 
 NUMBERS = st.integers(-3000, 3000).map(lambda k: k / 100)

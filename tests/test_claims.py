@@ -22,17 +22,19 @@ from lizarraga2025.evidence import arms, proofs
 from lizarraga2025.evidence.rounding import slips_of_table_4
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import (
+    KINDS,
     Claim,
     Count,
     claim,
     counts,
+    entries,
     findings,
     from_content,
     identifiers,
     join,
+    read,
     save,
 )
-from lizarraga2025.ledger.entries import KINDS, entries, read
 from lizarraga2025.verdicts import FAVOUR, VERDICTS, Outcome, judge, strongest, undetermined
 from qbound.cli import main
 

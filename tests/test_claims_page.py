@@ -13,8 +13,7 @@ import pytest
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import counts, from_content
-from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.ledger.claims import KINDS, counts, from_content
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
 from support.browser import chapter_page, open_page

@@ -28,8 +28,8 @@ from shapely.geometry import Polygon, shape
 
 import qbound
 from qbound import find_region, load_robot
-from qbound.cli import COMMANDS, command_parsers, main, progress
-from qbound.cli.files import write_all
+from qbound.cli import COMMANDS, command_parsers, main, terminal
+from qbound.cli.terminal import write_all
 from qbound.files import write_whole
 from qbound.model.robotfile import robot_text
 from support.oracles import packaged_table, point_seen_from
@@ -360,7 +360,7 @@ def test_batches_draw_what_one_call_draws(capsys, monkeypatch) -> None:
 
 def test_progress_goes_to_a_terminal_only(capsys, monkeypatch) -> None:
     monkeypatch.setattr("qbound.sampling.BATCH", 10)
-    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.0)
+    monkeypatch.setattr("qbound.cli.terminal.EVERY", 0.0)
     line = "sample minervabot-v2 -n 100 --seed 5"
     assert run(capsys, line)[2] == ""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
@@ -809,21 +809,21 @@ def test_what_would_take_all_memory_says_what_it_costs(capsys, line, words) -> N
 
 
 def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypatch) -> None:
-    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.001)
+    monkeypatch.setattr("qbound.cli.terminal.EVERY", 0.001)
     ticked = threading.Event()
-    show = progress._show
+    show = terminal._show
 
     def shown(text: str) -> None:
         show(text)
         if text:
             ticked.set()
 
-    monkeypatch.setattr(progress, "_show", shown)
-    with progress.working("a search"):
+    monkeypatch.setattr(terminal, "_show", shown)
+    with terminal.working("a search"):
         pass
     assert capsys.readouterr().err == ""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with progress.working("a search"):
+    with terminal.working("a search"):
         assert ticked.wait(60)
     err = capsys.readouterr().err
     assert "a search: " in err
@@ -832,7 +832,7 @@ def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypa
 
 def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatch) -> None:
     """None of `draw`, `workspace` or `contains` did: of an imported arm they take many seconds."""
-    monkeypatch.setattr("qbound.cli.progress.EVERY", 0.0005)
+    monkeypatch.setattr("qbound.cli.terminal.EVERY", 0.0005)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     status, _, err = run(capsys, "workspace two-links-on-a-table")
     assert status == 0

@@ -7,9 +7,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from qbound.geometry.covering import few, fewer, uncovered, within
-from qbound.geometry.mesh_covers import mesh_cover
 from qbound.geometry.mesh_solids import as_box, convex_solid, winding_numbers
-from qbound.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover
+from qbound.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover, mesh_cover
 
 RNG = np.random.default_rng(520)
 COUNT = 4000

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from qbound.geometry.polylines import deviations, flatten
+from qbound.geometry.polygon import deviations, flatten
 
 
 def circle(radius):

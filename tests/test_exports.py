@@ -16,10 +16,10 @@ from numpy.testing import assert_allclose
 from shapely.geometry import shape
 
 from qbound import find_region, load_robot
+from qbound.export.document import workspace_document, workspace_lines
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from qbound.export.samples import sample_csv, sample_document, sample_npz
-from qbound.export.workspaces import workspace_document, workspace_lines
-from qbound.geometry.bisection import last_before
+from qbound.geometry.arcs import last_before
 from qbound.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.paving import pave, paving_document, paving_lines

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from qbound.geometry import mesh_covers, surface_distance
+from qbound.geometry import mesh_solids, solid_covers
 from qbound.geometry.covering import PER_CORNER, Work, few, uncovered, within
-from qbound.geometry.mesh_covers import mesh_cover
-from qbound.geometry.mesh_solids import convex_solid
-from qbound.geometry.surface_distance import SurfaceDistance, one_a_cell
+from qbound.geometry.mesh_solids import SurfaceDistance, convex_solid, one_a_cell
+from qbound.geometry.solid_covers import mesh_cover
 
 RNG = np.random.default_rng(620)
 TURN = 2 * np.pi
@@ -75,7 +74,7 @@ COVERED = {
 def _coarse(monkeypatch) -> None:
     """Take fewer samples and places, for speed: what is said of a cover does not depend on it."""
     for name, number in {"SAMPLES": 50_000, "DEMANDS": 1500, "PLACES": 800, "STEPS": 20}.items():
-        monkeypatch.setattr(mesh_covers, f"MOST_{name}", number)
+        monkeypatch.setattr(solid_covers, f"MOST_{name}", number)
 
 
 @pytest.mark.usefixtures("_coarse")
@@ -138,7 +137,7 @@ def test_work_is_counted_and_a_cover_that_takes_more_is_refused(monkeypatch) -> 
         uncovered(
             ring, centre, np.array([1.1]), Work(3 * len(ring) * (1 + PER_CORNER) - 1, "too much")
         )
-    monkeypatch.setattr(mesh_covers, "MOST_WORK", 1000)
+    monkeypatch.setattr(solid_covers, "MOST_WORK", 1000)
     with pytest.raises(ValueError, match="too long for an excess of 0"):
         mesh_cover(shell(0.1, 0.9999), True, 0.03)
 
@@ -165,8 +164,8 @@ def test_one_place_of_each_cell_stands_for_its_own() -> None:
 
 @pytest.mark.parametrize("visits", [0, 20_000, 10**9])
 def test_depths_are_lower_bounds_whatever_may_be_looked_at(visits, monkeypatch) -> None:
-    monkeypatch.setattr(surface_distance, "MOST_VISITS", visits)
-    monkeypatch.setattr(surface_distance, "MOST_GROUPS", 60)
+    monkeypatch.setattr(mesh_solids, "MOST_VISITS", visits)
+    monkeypatch.setattr(mesh_solids, "MOST_GROUPS", 60)
     samples = sphere(1.0, 40).mean(axis=1)
     places = np.concatenate([RNG.normal(0, 0.01, (40, 3)), RNG.uniform(-1, 1, (200, 3))])
     known = SurfaceDistance(samples, 0.1)

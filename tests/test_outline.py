@@ -11,7 +11,7 @@ from shapely.geometry import Point, Polygon
 
 from lizarraga2025 import closed_form
 from qbound import find_region, load_robot
-from qbound.export.polygons import area, polygons
+from qbound.export.outlines import area, polygons
 from qbound.model.robotfile import parse_robot
 from qbound.region import paper_rule, solve
 

@@ -28,9 +28,8 @@ from lizarraga2025 import recorded
 from lizarraga2025.evidence.joint_region import scaled
 from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
+from lizarraga2025.ledger.cite import State, escaped, state
 from lizarraga2025.ledger.claims import from_content
-from lizarraga2025.ledger.latex import escaped
-from lizarraga2025.ledger.state import State, state
 from lizarraga2025.results import grid_error
 from qbound import figures, load_robot
 from qbound.cli import main

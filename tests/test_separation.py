@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound.boundary.evaluator import evaluator
-from qbound.boundary.nearest import nearest_features
-from qbound.boundary.separation import CACHED, Separation
+from qbound.boundary.separation import CACHED, Separation, nearest_features
 from qbound.geometry.distance import closest, edges, signed_distance
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot

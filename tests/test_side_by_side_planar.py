@@ -11,7 +11,7 @@ import pytest
 
 from qbound import find_region
 from qbound.boundary.evaluator import evaluator
-from qbound.forms.angles import TURN
+from qbound.forms.factors import TURN
 from support.scripts import importable
 
 SIDE_BY_SIDE = Path(__file__).parents[1] / "benchmarks" / "side_by_side"

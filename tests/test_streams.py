@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from qbound import load_robot
-from qbound.boundary import machine
+from qbound.boundary import compiled as machine
 from qbound.boundary.evaluator import COUNT_SCREENED, Evaluator, compiled, evaluator
 from qbound.boundary.screen import SINES, TURNS, WIDTH
 from qbound.forms.harmonic import HarmonicForm

@@ -25,10 +25,10 @@ from qbound.cli import main
 from qbound.design import varied, workspace_area
 from qbound.figures.sweeps import sweep_picture
 from qbound.model.schema import SENTENCES
-from qbound.sweeps import grid, measures
-from qbound.sweeps.cells import OtherVersionError, measure_job, versions
-from qbound.sweeps.cluster import connected, run_jobs
-from qbound.sweeps.run import execute
+from qbound.sweeps import measures
+from qbound.sweeps import specification as grid
+from qbound.sweeps.measures import OtherVersionError, measure_job, versions
+from qbound.sweeps.run import connected, execute, run_jobs
 from qbound.sweeps.specification import (
     MeasureName,
     SpecificationError,
@@ -452,7 +452,7 @@ def test_a_robot_is_looked_for_beside_the_specification(tmp_path):
 
 
 def test_options_that_cannot_be_are_refused(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr("qbound.sweeps.cluster.PATIENCE", 0.2)
+    monkeypatch.setattr("qbound.sweeps.run.PATIENCE", 0.2)
     spec, out = str(written(tmp_path / "s.toml", GOOD)), str(tmp_path / "out")
     for words, says in (
         (["--workers", "0"], "--workers 0: one or more"),

@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from lizarraga2025.closed_form import vertices
 from qbound import load_robot
-from qbound.geometry.polygon import centroid, scaled
-from qbound.geometry.polylines import self_crossings
+from qbound.geometry.polygon import centroid, scaled, self_crossings
 from qbound.model.robotfile import parse_robot
 from qbound.paths.asymmetry import asymmetry
 from qbound.paths.traversal import simple_orders, traverse

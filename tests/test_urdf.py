@@ -14,8 +14,7 @@ from qbound import RobotFileError, check, load_robot, save_robot
 from qbound.arms.links import links
 from qbound.cli import main
 from qbound.region import violated
-from qbound.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path
-from qbound.urdf.robot_text import robot_text
+from qbound.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path, robot_text
 from support.urdf import BALL, joint, link, rotation, three_links, transform, written
 
 OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}

@@ -24,7 +24,7 @@ from shapely import MultiPolygon, Polygon, STRtree
 from shapely.affinity import translate
 
 from qbound import Region, find_region
-from qbound.export.polygons import polygons
+from qbound.export.outlines import polygons
 
 Floats = NDArray[np.float64]
 Rings = Sequence[Sequence[Any]]

@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.boundary.functions import clearance
-from qbound.forms.angles import TURN, first_from, nearest_turn, turns_within
 from qbound.forms.circle import CircleRoots, circle_roots
+from qbound.forms.factors import TURN, first_from, nearest_turn, turns_within
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
-from qbound.geometry.polylines import tangent_corners
+from qbound.geometry.polygon import tangent_corners
 from qbound.model.robot import HalfSpace, Robot
 from qbound.region.outline import legendre
 from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows

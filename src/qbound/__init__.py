@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from qbound.arms.fibres import fibres
     from qbound.arms.reach import reach
     from qbound.arms.why import why
+    from qbound.boundary.evaluator import is_feasible, margins, violated
     from qbound.boundary.functions import clearance
-    from qbound.boundary.margins import is_feasible, margins, violated
     from qbound.forms.harmonic import HarmonicForm
     from qbound.model.robot import Robot
     from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
@@ -55,7 +55,7 @@ _PLACES = {
     "arms.reach": ("reach",),
     "arms.why": ("why",),
     "boundary.functions": ("clearance",),
-    "boundary.margins": ("is_feasible", "margins", "violated"),
+    "boundary.evaluator": ("is_feasible", "margins", "violated"),
     "forms.harmonic": ("HarmonicForm",),
     "model.robot": ("Robot",),
     "model.robotfile": ("RobotFileError", "load_robot", "packaged_robots", "save_robot"),

@@ -9,8 +9,7 @@ from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import SCHEMA, Claim, claim, counts, findings, from_content
-from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.ledger.claims import KINDS, SCHEMA, Claim, claim, counts, findings, from_content
 from lizarraga2025.verdicts import VERDICTS
 
 

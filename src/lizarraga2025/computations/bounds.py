@@ -17,8 +17,8 @@ from lizarraga2025.verdicts import Outcome, judge
 from qbound import HarmonicForm
 from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, components, pair_vector
-from qbound.forms.angles import TURN, nearest_turn
 from qbound.forms.circle import circle_roots
+from qbound.forms.factors import TURN, nearest_turn
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.symbols import joint_symbols, with_symbols
 

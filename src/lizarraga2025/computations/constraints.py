@@ -10,7 +10,7 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence import third_components
+from lizarraga2025.evidence import rounding as third_components
 from lizarraga2025.evidence.arms import corrected, half_spaces, pairs, robot, tool_form
 from lizarraga2025.evidence.joint_region import square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees

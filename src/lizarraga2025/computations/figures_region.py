@@ -28,7 +28,7 @@ from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
 from qbound.arrays import Floats
 from qbound.boundary.functions import pair_vector
-from qbound.forms.angles import TURN
+from qbound.forms.factors import TURN
 from qbound.geometry import polygon
 from qbound.measures import scaling
 from qbound.model.robot import Pair

@@ -44,7 +44,7 @@ from lizarraga2025.evidence.tool_paths import (
 from lizarraga2025.verdicts import Outcome, judge, undetermined
 from qbound.arrays import Bools, Floats
 from qbound.boundary.functions import position
-from qbound.forms.angles import TURN
+from qbound.forms.factors import TURN
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import paper_rule

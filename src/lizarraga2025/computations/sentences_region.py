@@ -44,7 +44,7 @@ from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, pair_vector
 from qbound.forms.circle import circle_roots
 from qbound.geometry import polygon
-from qbound.geometry.polylines import self_crossings
+from qbound.geometry.polygon import self_crossings
 from qbound.measures import bodies, scaling
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.region import Region, paper_rule, solve

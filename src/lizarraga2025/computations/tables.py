@@ -51,8 +51,8 @@ from lizarraga2025.verdicts import (
 from qbound import HarmonicForm, clearance
 from qbound.arrays import Floats
 from qbound.boundary.functions import closest_approach, components, pair_vector, position
-from qbound.forms.angles import TURN, first_from
 from qbound.forms.circle import circle_roots
+from qbound.forms.factors import TURN, first_from
 from qbound.model.robot import Robot
 from qbound.region import paper_rule
 from qbound.symbols import joint_symbols

@@ -14,7 +14,7 @@ from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, verti
 from lizarraga2025.evidence.rounding import SMALL
 from qbound.arrays import Floats
 from qbound.geometry import polygon
-from qbound.geometry.polylines import self_crossings
+from qbound.geometry.polygon import self_crossings
 from qbound.measures import scaling
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal, simple_orders, traverse

@@ -1,15 +1,23 @@
-"""How to cite the paper, this package, and one entry of the ledger, in BibTeX."""
+"""How to cite the paper, this package, and one entry of the ledger, in BibTeX.
+
+A citation names the state of the sources: a commit, and what Software Heritage calls its tree.
+Between releases the version alone does not tell one state from the next. Committed files cannot
+hold the commit that they are part of, so it is asked of git when a page or a citation is made.
+"""
 
 from __future__ import annotations
 
 import json
 import re
+import subprocess
+import unicodedata
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any, Final
 
 from lizarraga2025.ledger.claims import Claim
-from lizarraga2025.ledger.latex import escaped
-from lizarraga2025.ledger.state import state
 from lizarraga2025.recorded import robots_of, sentence
 from qbound import __version__
 
@@ -98,3 +106,118 @@ def anchor(name: str) -> str:
 def value_text(value: Any) -> str:
     """Return a value as it is printed: numbers with the digits recorded, lists in brackets."""
     return json.dumps(value, ensure_ascii=False) if not isinstance(value, str) else value
+
+
+# --- text for BibTeX ------------------------------------------------------------------------------
+
+
+SIGNS: Final = {
+    **{c: f"\\{c}" for c in "_#%&$"},
+    "\\": r"\textbackslash{}",
+    "{": r"\textbraceleft{}",
+    "}": r"\textbraceright{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    '"': "''",
+    "°": r"\textdegree{}",
+    "−": "$-$",
+    "–": "--",
+    "’": "'",
+    "²": "$^2$",
+    "³": "$^3$",
+    "·": r"$\cdot$",
+    "±": r"$\pm$",
+    "×": r"$\times$",
+    "≤": r"$\leq$",
+    "≥": r"$\geq$",
+    "≠": r"$\neq$",
+    "≈": r"$\approx$",
+    "√": r"$\surd$",
+    "∞": r"$\infty$",
+}
+"""Signs that LaTeX would take for its own, or that no plain BibTeX file holds."""
+
+ACCENTS: Final = {"ACUTE ACCENT": "'", "GRAVE ACCENT": "`", "DIAERESIS": '"', "TILDE": "~"}
+
+
+def escaped(text: str) -> str:
+    """Return a text as LaTeX source in ASCII.
+
+    Raises
+    ------
+    ValueError
+        If it holds a character that is not known here: nothing is dropped in silence.
+    """
+    return "".join(SIGNS.get(c, c) if c in SIGNS or c.isascii() else _letter(c) for c in text)
+
+
+def _letter(c: str) -> str:
+    """Return a Greek letter as a symbol, an accented one as its letter under the accent."""
+    name = unicodedata.name(c, "")
+    if name.startswith("GREEK"):
+        letter = name.rpartition("LETTER ")[2].lower()
+        letter = {"lamda": "lambda"}.get(letter, letter)
+        return f"$\\{letter if 'SMALL' in name else letter.capitalize()}$"
+    parts = unicodedata.normalize("NFD", c)
+    base, mark = parts[0], unicodedata.name(parts[-1]).removeprefix("COMBINING ")
+    if base.isascii() and mark in ACCENTS:
+        return f"{{\\{ACCENTS[mark]}{base}}}"
+    raise ValueError(f"no LaTeX known for {c!r} ({name})")
+
+
+# --- the state of the sources ---------------------------------------------------------------------
+
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of the repository.
+
+    Attributes
+    ----------
+    commit : str
+        Its hash, 40 digits.
+    swhid : str
+        The tree's identifier at softwareheritage.org, the same wherever the tree lies; empty if
+        files were changed since that commit.
+    """
+
+    commit: str
+    swhid: str
+
+    @property
+    def text(self) -> str:
+        """Words for a citation.
+
+        Examples
+        --------
+        >>> State("0" * 40, "").text
+        'commit 000000000000 with changes'
+        """
+        return f"commit {self.commit[:12]}" + ("" if self.swhid else " with changes")
+
+
+@cache
+def state(root: Path = ROOT) -> State | None:
+    """Return the state of the repository around this package.
+
+    None where there is none: an installed package, a copy without git.
+    """
+    if not (root / ".git").exists():
+        return None
+    try:
+        commit, tree = _git(root, "rev-parse", "HEAD", "HEAD^{tree}").split()
+        changed = _git(root, "status", "--porcelain", "--untracked-files=no")
+    except (OSError, ValueError, subprocess.CalledProcessError):
+        return None
+    return State(commit, "" if changed else f"swh:1:dir:{tree}")
+
+
+def _git(root: Path, *words: str) -> str:
+    command = ["git", *words]
+    done = subprocess.run(command, cwd=root, check=True, capture_output=True, encoding="utf-8")
+    return done.stdout

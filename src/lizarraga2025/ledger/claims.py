@@ -1,18 +1,154 @@
-"""The verdict on each statement: what an entry says, and what its computation finds."""
+"""The verdict on each statement: what an entry says, and what its computation finds.
+
+A file in ``statements`` is a list of tables ``[[entry]]``, in the order of the ledger; their keys
+are the fields of `Entry`. What an entry comes to is computed (`lizarraga2025.computations`).
+"""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import MISSING, asdict, dataclass, fields
 from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal, get_args
 
 from lizarraga2025.computations import registry
 from lizarraga2025.computations.registry import Computation
-from lizarraga2025.ledger.entries import Entry, Evidence, entries
 from lizarraga2025.results import write_json
 from lizarraga2025.verdicts import VERDICTS, Verdict
+
+Kind = Literal["equation", "bound", "table", "figure", "sentence", "given"]
+
+KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
+FILES: Final = ("equations", "bounds", "tables", "figures", "sentences")
+"""Names of the files, in the order of the ledger."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Where a claim is tested, file and function, and shown, page and anchor of the book."""
+
+    test: str
+    chapter: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """One statement of the paper, before it is judged.
+
+    Attributes
+    ----------
+    id : str
+        ``E-34``, ``B-2.1.2`` (the bound ``beta_{2,1,2}``), ``T-4.2`` (a row), ``F-4``, ``S-12``.
+    kind : str
+        One of `KINDS`. What is ``given``, a definition or a number of the robot, is no finding:
+        only broken mathematics could violate it.
+    where : str
+        Its place in the paper, such as "eq. (34), proof of Theorem 2".
+    says : str
+        A short paraphrase; formulas in plain text.
+    reading : str
+        How it is taken before it is judged: the strongest reading that the text allows.
+    evidence : Evidence
+    finding : str
+        The id of the entry that carries the finding; its own where none is given.
+    corrected : str
+        What would hold in its place; empty where nothing is to be corrected.
+    """
+
+    id: str
+    kind: Kind
+    where: str
+    says: str
+    reading: str
+    evidence: Evidence
+    finding: str = ""
+    corrected: str = ""
+
+    def __post_init__(self) -> None:
+        """Let an entry that names no other carry its finding itself."""
+        if not self.finding:
+            object.__setattr__(self, "finding", self.id)
+
+
+@cache
+def entries() -> Mapping[str, Entry]:
+    """Return every entry by its id, in the order of the ledger."""
+    folder = resources.files("lizarraga2025") / "ledger" / "statements"
+    return read(folder / f"{name}.toml" for name in FILES)
+
+
+def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
+    """Read the entries of some files.
+
+    Raises
+    ------
+    ValueError
+        If a key is unknown, missing or no text, a kind is none of `KINDS`, an id stands twice, or
+        a finding is no entry that carries its own.
+    """
+    found: dict[str, Entry] = {}
+    for file in files:
+        for number, table in enumerate(_tables(file), start=1):
+            entry = _entry(table, f"{file.name}, entry {table.get('id', f'number {number}')}")
+            if entry.id in found:
+                raise ValueError(f"{file.name}: the id {entry.id} stands twice in the ledger")
+            found[entry.id] = entry
+    _check_findings(found)
+    return found
+
+
+def _check_findings(found: Mapping[str, Entry]) -> None:
+    for entry in found.values():
+        carrier = found.get(entry.finding)
+        if carrier is None or carrier.finding != carrier.id:
+            raise ValueError(
+                f"{entry.id}: the finding {entry.finding!r} is no entry that carries its own"
+            )
+
+
+def _tables(file: Traversable) -> list[dict[str, Any]]:
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{file.name}: {error}") from None
+    tables = content.pop("entry", None)
+    if content or not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
+        raise ValueError(f"{file.name}: wanted a list of tables [[entry]] and nothing else")
+    return tables
+
+
+def _entry(table: dict[str, Any], place: str) -> Entry:
+    _check_keys(table, Entry, place)
+    evidence = table["evidence"]
+    if not isinstance(evidence, dict):
+        raise ValueError(f"{place}: evidence is {evidence!r}, not a table")
+    _check_keys(evidence, Evidence, f"{place}, evidence")
+    texts = {key: value for key, value in table.items() if key != "evidence"}
+    for key, value in (texts | evidence).items():
+        if not isinstance(value, str):
+            raise ValueError(f"{place}: {key} is {value!r}, not a text")
+    if table["kind"] not in KINDS:
+        raise ValueError(f"{place}: the kind {table['kind']!r} is none of {', '.join(KINDS)}")
+    return Entry(**texts, evidence=Evidence(**evidence))
+
+
+def _check_keys(table: Mapping[str, Any], wanted: type[Entry | Evidence], place: str) -> None:
+    """Refuse a key that is no field of the class, and the lack of one without a default."""
+    needed = {field.name: field.default is MISSING for field in fields(wanted)}
+    for key in table:
+        if key not in needed:
+            raise ValueError(f"{place}: the key {key!r} is none of {', '.join(needed)}")
+    for key, is_needed in needed.items():
+        if is_needed and key not in table:
+            raise ValueError(f"{place}: the key {key!r} is missing")
+
+
+# --- the verdicts ---------------------------------------------------------------------------------
+
 
 SCHEMA: Final = "qbound/claims/3"
 KEYS: Final = (

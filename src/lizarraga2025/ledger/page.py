@@ -8,8 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from lizarraga2025.ledger import cite, errata
-from lizarraga2025.ledger.claims import Claim, findings
-from lizarraga2025.ledger.entries import KINDS
+from lizarraga2025.ledger.claims import KINDS, Claim, findings
 from lizarraga2025.recorded import called, file_stem
 from lizarraga2025.verdicts import VERDICTS
 

@@ -37,8 +37,7 @@ from qbound.arms.links import Link, links
 from qbound.arrays import Bools, Floats
 from qbound.boundary.evaluator import stacked
 from qbound.export.formats import heading
-from qbound.forms.angles import TURN
-from qbound.forms.factors import basis
+from qbound.forms.factors import TURN, basis
 from qbound.forms.harmonic import HarmonicForm, Kind, add_constant
 from qbound.model.robot import Joint, Pair, Robot
 from qbound.model.robotfile import load_robot

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import evaluator
-from qbound.forms.angles import nearest_turn
+from qbound.forms.factors import nearest_turn
 from qbound.model.robot import Robot
 
 TRIES = 4000

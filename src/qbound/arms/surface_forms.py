@@ -19,10 +19,9 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names, stacked
-from qbound.boundary.parts import bounds_bodies
-from qbound.forms.angles import TURN
+from qbound.boundary.poses import bounds_bodies
 from qbound.forms.bending import bending
-from qbound.forms.factors import basis
+from qbound.forms.factors import TURN, basis
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Robot
 from qbound.printable import printable

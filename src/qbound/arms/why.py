@@ -26,7 +26,7 @@ from qbound.arms.search import TRIES, find_path
 from qbound.arms.separations import Block, JointTravel, Separation, separation, separations
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import evaluator, limit_names
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.poses import bounds_bodies
 from qbound.export.formats import heading
 from qbound.model.robot import Joint, Robot
 from qbound.model.robotfile import is_urdf, load_robot, parse_robot, robot_text

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.chain import Chain, Pose
-from qbound.boundary.lengths import denominators, lengths
+from qbound.boundary.evaluator import denominators, lengths
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot, refuse_no_robot
 from qbound.printable import printable
 from qbound.tolerances import ROUNDING

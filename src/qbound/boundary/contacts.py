@@ -23,9 +23,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Bools, Floats, Ints
-from qbound.boundary.errors import Sizes, coefficient_errors
-from qbound.boundary.parts import bounded_bodies, bounds_bodies, flat_parts, refuse_off_plane
-from qbound.boundary.poses import Axes, Move, Pose, Vector, flat_steps
+from qbound.boundary.functions import Sizes, coefficient_errors
+from qbound.boundary.poses import (
+    Axes,
+    Move,
+    Pose,
+    Vector,
+    bounded_bodies,
+    bounds_bodies,
+    flat_parts,
+    flat_steps,
+    refuse_off_plane,
+)
 from qbound.forms.harmonic import add_constant
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.tolerances import ROUNDING

@@ -16,8 +16,7 @@ import numpy as np
 
 from qbound.arrays import Array
 from qbound.boundary.contacts import Contacts, anticlockwise, edge_and_corner, two_corners
-from qbound.boundary.parts import bounded_bodies
-from qbound.boundary.poses import Axes, Move, Pose, Vector
+from qbound.boundary.poses import Axes, Move, Pose, Vector, bounded_bodies
 from qbound.forms.harmonic import add_constant
 from qbound.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
 from qbound.model.frames import cross

@@ -4,8 +4,8 @@
   `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
 - `chosen`: robot, rule and slice, which several commands share; `values`: joint values as people
-  type them; `files`: files written whole or not at all; `terminal`: everything that is printed,
-  made safe; `progress`: a line while work is long.
+  type them; `terminal`: everything that is printed, made safe; a line while work is long; files
+  written whole or not at all.
 """
 
 from __future__ import annotations
@@ -21,9 +21,7 @@ from importlib import import_module
 from itertools import chain, pairwise
 from typing import Any, NoReturn
 
-from qbound.cli.files import check_targets
-from qbound.cli.progress import waiting
-from qbound.cli.terminal import complain, finish_output, plain_terminal, say
+from qbound.cli.terminal import check_targets, complain, finish_output, plain_terminal, say, waiting
 from qbound.printable import printable
 
 COMMANDS = {

@@ -14,8 +14,7 @@ from qbound.arms.allowed import (
     srdf_text,
 )
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import deliver
-from qbound.cli.progress import progress
+from qbound.cli.terminal import deliver, progress
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from qbound import check
-from qbound.boundary.margins import violated
+from qbound.boundary.evaluator import violated
 from qbound.cli.chosen import (
     FEWER,
     add_memory,
@@ -20,9 +20,7 @@ from qbound.cli.chosen import (
     refuse_memory,
     region_bytes,
 )
-from qbound.cli.files import write_all
-from qbound.cli.progress import progress, working
-from qbound.cli.terminal import say
+from qbound.cli.terminal import progress, say, working, write_all
 from qbound.cli.values import box, held
 from qbound.geometry import polygon
 from qbound.model.robot import Robot

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from qbound.boundary.evaluator import forms_bytes, limit_names
-from qbound.boundary.parts import bounded_bodies, bounds_bodies
-from qbound.cli.progress import working
+from qbound.boundary.poses import bounded_bodies, bounds_bodies
+from qbound.cli.terminal import working
 from qbound.model.robot import Robot
 from qbound.model.robotfile import as_written, is_urdf, load_robot, robot_text
 from qbound.region import Region, Rule, find_region

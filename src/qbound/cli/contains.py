@@ -8,7 +8,7 @@ from typing import Any
 
 from qbound.boundary.evaluator import evaluator
 from qbound.cli.chosen import add_memory, add_robot, sized_robot
-from qbound.cli.files import deliver
+from qbound.cli.terminal import deliver
 from qbound.cli.values import configuration
 from qbound.export.configuration import configuration_facts, with_version
 from qbound.export.formats import json_text

@@ -17,8 +17,7 @@ from qbound.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from qbound.cli.files import check_targets, write_all
-from qbound.cli.terminal import say
+from qbound.cli.terminal import check_targets, say, write_all
 from qbound.cli.values import configuration, held
 from qbound.model.robot import Robot
 from qbound.paths.encounters import plane_of_motion

@@ -14,9 +14,7 @@ from qbound.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from qbound.cli.files import deliver
-from qbound.cli.progress import progress
-from qbound.cli.terminal import complain
+from qbound.cli.terminal import complain, deliver, progress
 from qbound.cli.values import held, strip
 from qbound.explorer.page import explorer_page
 from qbound.model.robot import Robot

@@ -7,7 +7,7 @@ from typing import Any
 
 from qbound.arms.fibres import fibre_document, fibre_lines, fibres
 from qbound.cli.chosen import add_robot
-from qbound.cli.files import deliver
+from qbound.cli.terminal import deliver
 from qbound.cli.values import configuration, joint
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot

@@ -8,14 +8,12 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from qbound.arms.fibres import by_links
-from qbound.boundary.margins import violated
-from qbound.cli.files import deliver
-from qbound.cli.progress import working
+from qbound.boundary.evaluator import violated
+from qbound.cli.terminal import deliver, working
 from qbound.cli.values import span
 from qbound.model.robotfile import RobotFileError, refuse_replacing
 from qbound.units import parse_length
-from qbound.urdf.arm import EXCESS, Imported, import_urdf
-from qbound.urdf.robot_text import robot_text
+from qbound.urdf.arm import EXCESS, Imported, import_urdf, robot_text
 
 
 def add_to(commands: Any) -> None:

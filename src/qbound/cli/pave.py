@@ -6,8 +6,7 @@ import argparse
 from typing import Any
 
 from qbound.cli.chosen import add_memory, add_robot, add_slice, refuse_memory
-from qbound.cli.files import deliver
-from qbound.cli.progress import progress
+from qbound.cli.terminal import deliver, progress
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot

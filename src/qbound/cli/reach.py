@@ -8,8 +8,7 @@ from typing import Any
 
 from qbound.arms.reach import Reach, map_bytes, reach, reach_document, reach_lines, reach_npz
 from qbound.cli.chosen import add_memory, add_robot, refuse_memory
-from qbound.cli.files import Output, check_targets, deliver
-from qbound.cli.progress import working
+from qbound.cli.terminal import Output, check_targets, deliver, working
 from qbound.export.formats import json_text
 from qbound.model.robotfile import load_robot
 from qbound.units import parse_length

@@ -20,8 +20,7 @@ from qbound.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from qbound.cli.files import Output, deliver
-from qbound.cli.progress import progress
+from qbound.cli.terminal import Output, deliver, progress
 from qbound.cli.values import held, strip
 from qbound.export.document import slices_document
 from qbound.export.formats import json_text

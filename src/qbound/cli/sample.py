@@ -8,8 +8,7 @@ from typing import Any
 from qbound import sampling
 from qbound.boundary.evaluator import forms_bytes
 from qbound.cli.chosen import add_memory, add_robot, add_rule, refuse_memory, sized_robot
-from qbound.cli.files import Output, deliver
-from qbound.cli.progress import progress
+from qbound.cli.terminal import Output, deliver, progress
 from qbound.export.formats import json_text
 from qbound.export.samples import sample_bytes, sample_csv, sample_document, sample_npz
 from qbound.region import paper_rule

@@ -11,9 +11,7 @@ import numpy as np
 
 from qbound.arms.surfaces import RESOLUTION, Surface, find_surface, glb_bytes, ply_bytes
 from qbound.cli.chosen import add_memory, add_robot, add_slice, sized_robot
-from qbound.cli.files import Content, check_targets, deliver
-from qbound.cli.progress import working
-from qbound.cli.terminal import complain
+from qbound.cli.terminal import Content, check_targets, complain, deliver, working
 from qbound.cli.values import held, joint
 from qbound.printable import printable
 from qbound.units import counted

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from qbound.cli.chosen import add_memory, refuse_memory
-from qbound.cli.files import check_targets, deliver
-from qbound.cli.progress import progress
+from qbound.cli.terminal import check_targets, deliver, progress
 from qbound.printable import printable
 from qbound.sweeps import Swept, sweep
 from qbound.sweeps.run import with_unit

@@ -1,7 +1,13 @@
 """What reaches a terminal: answers on standard output, complaints and warnings on the other.
 
-Only this module and `progress` print. Every line is made `printable` here, whatever a file, a
+Only this module prints. Every line is made `printable` here, whatever a file, a
 name or an option brought into it; content that goes to ``-`` is made so by what writes it.
+
+A line that tells how far long work is: on a terminal, to standard error, and nowhere else.
+
+Every command has one after two seconds (`waiting`); work that can tell more shows its own.
+
+Files of commands: every one whole, several together or none; ``-`` is standard output.
 """
 
 from __future__ import annotations
@@ -9,12 +15,17 @@ from __future__ import annotations
 import io
 import os
 import sys
+import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from qbound.files import target, write_together
 from qbound.printable import printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 HALF = 1000
 """Letters that a long complaint keeps of either end."""
@@ -82,3 +93,170 @@ def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
 def is_terminal() -> bool:
     """Tell whether somebody watches standard error."""
     return sys.stderr is not None and sys.stderr.isatty()
+
+
+# --- progress -------------------------------------------------------------------------------------
+
+
+EVERY = 0.2  # seconds
+
+PATIENCE = 10
+"""Times `EVERY` after which a command that has shown nothing shows how long it has taken."""
+
+_shown = {"when": 0.0}
+"""When a line was shown last."""
+
+
+def progress(what: str, total: int) -> Callable[[int], None]:
+    """Return a function to be told how much is done."""
+    start = last = time.monotonic()
+
+    def tell(done: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if not is_terminal() or (now - last < EVERY and done < total) or now - start < EVERY:
+            return
+        last = now
+        _show("" if done >= total else f"{what}: {100 * done // total} %")
+
+    return tell
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Show how long work has taken that cannot tell how far it is; Ctrl-C ends it as ever."""
+    with _ticking(what, lambda now, start: True):
+        yield
+
+
+@contextmanager
+def waiting(what: str) -> Iterator[None]:
+    """Show how long a command has taken, while nothing else is shown."""
+
+    def silent(now: float, start: float) -> bool:
+        return now - max(start, _shown["when"]) > PATIENCE * EVERY
+
+    with _ticking(what, silent):
+        yield
+
+
+@contextmanager
+def _ticking(what: str, shows: Callable[[float, float], bool]) -> Iterator[None]:
+    if not is_terminal():
+        yield
+        return
+    import threading
+
+    over, start = threading.Event(), time.monotonic()
+
+    def tick() -> None:
+        while not over.wait(5 * EVERY):
+            now = time.monotonic()
+            if shows(now, start):
+                _show(f"{what}: {now - start:.0f} s")
+
+    ticker = threading.Thread(target=tick, daemon=True)
+    ticker.start()
+    try:
+        yield
+    finally:
+        over.set()
+        ticker.join()
+        if _shown["when"] > start:
+            _show("")
+
+
+def _show(text: str) -> None:
+    _shown["when"] = time.monotonic()
+    print(f"{BLANK_LINE}{printable(text)}", end="", file=sys.stderr, flush=True)
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+Content = str | bytes
+Output = tuple[str | None, Callable[[], Content]]
+"""A file, or None where none was asked for, and what makes its content."""
+
+
+def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
+    """Make and write what was asked for; print the lines unless standard output is taken by it.
+
+    The last line names the files.
+    """
+    write_all([(file, make()) for file, make in outputs if file is not None])
+    files = [file for file, _ in outputs if file is not None]
+    if "-" not in files:
+        say(*lines, *([f"written: {', '.join(files)}"] if files else []))
+
+
+def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
+    """Write several files, every one whole, or none at all; ``-`` is standard output, the last."""
+    check_targets([file for file, _ in outputs])
+    contents = [(file, _bytes(content)) for file, content in outputs]
+    write_together([(file, content) for file, content in contents if file != "-"])
+    for content in (content for file, content in contents if file == "-"):
+        _put_out(content)
+
+
+def write_text(file: str, text: str) -> None:
+    """Write a text whole or not at all; ``-`` is standard output."""
+    write_all([(file, text)])
+
+
+def check_targets(
+    files: Sequence[str | None], kinds: Sequence[str] = (), sources: Sequence[str | None] = ()
+) -> None:
+    """Refuse, before any work, files that could not be written; None is no file.
+
+    Parameters
+    ----------
+    kinds : sequence of str, optional
+        Endings that are allowed, such as ``svg``.
+    sources : sequence of (str or None), optional
+        Files that are read, and are not to be written over.
+
+    Raises
+    ------
+    ValueError
+        If two are the same, one is a source, or an ending is unknown.
+    OSError
+        If a folder is missing, or a target is no regular file or may not be written.
+    """
+    written = [file for file in files if file is not None]
+    if not written:
+        return
+    from pathlib import Path  # slow to import, and most commands write nothing
+
+    read = {Path(file).resolve() for file in sources if file is not None and Path(file).is_file()}
+    seen = set()
+    for file in written:
+        path = _open_output() if file == "-" else target(file)
+        if path in seen:
+            raise ValueError(f"{file}: two outputs go to this one place")
+        if path in read:
+            raise ValueError(f"{file}: is read here, and would be written over")
+        seen.add(path)
+        if kinds and path.suffix.removeprefix(".").lower() not in kinds:
+            wanted = f"wanted: .{', .'.join(kinds)}"
+            raise ValueError(f"{file}: unknown ending {path.suffix!r}; {wanted}")
+
+
+def _open_output() -> Path:
+    if sys.stdout is None:
+        raise ValueError("-: standard output is closed")
+    from pathlib import Path
+
+    return Path("-")
+
+
+def _put_out(content: bytes) -> None:
+    """Write to standard output as to a file, in UTF-8; a terminal takes texts only."""
+    if b"\0" in content and sys.stdout.isatty():
+        raise ValueError("-: these are no letters for a terminal; name a file")
+    sys.stdout.flush()
+    sys.stdout.buffer.write(content)
+
+
+def _bytes(content: Content) -> bytes:
+    return content if isinstance(content, bytes) else content.encode()

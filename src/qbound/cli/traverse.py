@@ -14,8 +14,7 @@ from qbound.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from qbound.cli.files import Output, deliver
-from qbound.cli.terminal import complain
+from qbound.cli.terminal import Output, complain, deliver
 from qbound.cli.values import held
 from qbound.export.formats import json_text
 from qbound.export.routes import infeasible_line, route_csv, route_document, route_lines

@@ -8,8 +8,7 @@ from typing import Any
 
 from qbound.arms.why import Why, why, why_bytes, why_document, why_lines
 from qbound.cli.chosen import add_memory, add_robot, sized_robot
-from qbound.cli.files import Output, check_targets, deliver
-from qbound.cli.progress import working
+from qbound.cli.terminal import Output, check_targets, deliver, working
 from qbound.cli.values import configuration
 from qbound.export.formats import json_text
 from qbound.figures.why import why_picture

@@ -14,11 +14,10 @@ from qbound.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from qbound.cli.files import Output, deliver
-from qbound.cli.terminal import complain
+from qbound.cli.terminal import Output, complain, deliver
 from qbound.cli.values import held, place, pose
+from qbound.export.document import workspace_document, workspace_lines
 from qbound.export.formats import json_text
-from qbound.export.workspaces import workspace_document, workspace_lines
 from qbound.region import NoHomeError
 from qbound.workspace.areas import WorkspaceReport, workspace_report
 

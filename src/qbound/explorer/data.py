@@ -14,11 +14,11 @@ import numpy as np
 
 from qbound.arrays import Floats
 from qbound.boundary.functions import clearance, position
-from qbound.boundary.parts import bounded_bodies, bounds_bodies
+from qbound.boundary.poses import bounded_bodies, bounds_bodies
 from qbound.export.document import vertex_content, workspace_content
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry import polygon
-from qbound.geometry.polylines import flatten
+from qbound.geometry.polygon import flatten
 from qbound.measures.bodies import outline_in_frame, overlap_pairs
 from qbound.measures.scaling import largest_safe_scale
 from qbound.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot, Step

@@ -1,7 +1,7 @@
 """Results for other programs and for people: JSON, tables, polygons and sentences.
 
-- `formats`: texts and bytes of files; `document`: regions as JSON; `configuration`: one
-  configuration as JSON;
-- `polygons`: rings through the arcs of a region; `outlines`: these as CSV, GeoJSON, NumPy arrays;
-- `routes`, `samples`, `workspaces`: each of these as JSON, as a table or in words.
+- `formats`: texts and bytes of files; `document`: regions and workspaces as JSON;
+  `configuration`: one configuration as JSON;
+- `outlines`: rings through the arcs of a region; these as CSV, GeoJSON, NumPy arrays;
+- `routes`, `samples`: each of these as JSON, as a table or in words.
 """

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.poses import bounds_bodies
 from qbound.measures.nearest import nearest_boundary
 from qbound.model.robot import Robot
 from qbound.region import Region, find_region, margins
@@ -67,7 +67,7 @@ def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) 
     boundary = next((each for each in robot.used if each.name == name), None)
     if boundary is None or not bounds_bodies(boundary):
         return content
-    from qbound.boundary.nearest import nearest_features  # for robots with bodies alone
+    from qbound.boundary.separation import nearest_features  # for robots with bodies alone
 
     near = nearest_features(robot, boundary, q)
     return content | {

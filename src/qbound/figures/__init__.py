@@ -6,7 +6,7 @@ and Ito) apart, and no meaning rests on colour alone: lines differ in dash, poin
 This module has the style and the parts of pictures.
 
 - `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images; `cells`: pavings; `reach`: sections of maps of reach;
+- `workspace`: aspects and their images, sections of maps of reach, pavings;
   `surfaces`: those of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 
@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats
-from qbound.export.polygons import polygons
+from qbound.export.outlines import polygons
 from qbound.extras import require
-from qbound.forms.angles import TURN, whole_turns
+from qbound.forms.factors import TURN, whole_turns
 from qbound.measures.bodies import outline_in_frame, overlaps
 from qbound.model.frames import Frames
 from qbound.model.plane import COORDINATES

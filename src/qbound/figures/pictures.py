@@ -18,9 +18,8 @@ from qbound.arms.reach import Reach
 from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.figures import INK
-from qbound.figures.reach import draw_section
-from qbound.figures.workspace import draw_images, draw_patches, legend
-from qbound.forms.angles import nearest_turn
+from qbound.figures.workspace import draw_images, draw_patches, draw_section, legend
+from qbound.forms.factors import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import Component, Region, Slices

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats
-from qbound.forms.harmonic import HarmonicForm
-from qbound.forms.waves import Waves
+from qbound.forms.harmonic import HarmonicForm, Waves
 from qbound.geometry.simplices import edges
 
 

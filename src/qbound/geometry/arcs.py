@@ -6,10 +6,12 @@ intervals that touch does not count as a gap.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import ceil, tau
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats, Indices
 
@@ -144,3 +146,34 @@ def _sorted(gaps: Gaps) -> Gaps:
 def _chosen(gaps: Gaps, which: Indices) -> Gaps:
     row, low, high, below, above = gaps
     return Gaps(row[which], low[which], high[which], below[which], above[which])
+
+
+# --- bisection ------------------------------------------------------------------------------------
+
+
+HALVINGS = 52
+"""So many halvings leave an interval no wider than the rounding of its length."""
+
+
+def last_before(
+    holds: Callable[[Floats], NDArray[np.bool_]], low: ArrayLike, high: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Halve intervals at whose low end something holds and at whose high end it does not.
+
+    Parameters
+    ----------
+    holds : callable
+        Places, shape (k,), to bool, shape (k,).
+    low, high : array_like, shape (k,)
+
+    Returns
+    -------
+    low, high : ndarray, shape (k,)
+        Neighbouring places, before and behind a change.
+    """
+    low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    for _ in range(HALVINGS if len(low) else 0):
+        middle = (low + high) / 2
+        before = holds(middle)
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return low, high

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Bools, Floats
-from qbound.geometry.polylines import cross
+from qbound.geometry.polygon import cross
 from qbound.tolerances import ZERO_AMPLITUDE
 
 

@@ -2,6 +2,22 @@
 
 A mesh that is nearly convex, or nearly a box, is treated as such. The distance by which it differs
 is subtracted from every depth, so bounds of depths hold for the mesh itself.
+
+Lower bounds of the distance to a surface, from samples of it, with a bounded amount of work.
+
+Samples are put into groups. One sample and the radius of a group bound the distance of the whole
+group from a place. So the number of samples that a search has to look at is known in advance. That
+matters near the middle of a sphere, where a search has to look at all of them: a tree takes a
+hundred times as long there as elsewhere. Where the number is too large, the bound from the groups
+is the answer.
+
+Largest balls that lie in a solid, but for a given excess: the candidates for a cover.
+
+A ball about a place at depth d may have the radius d plus the allowed excess. Let x be the place
+of the surface nearest to the centre. If the centre moves away from x while x stays nearest, the new
+ball contains the old one. So only centres with two or more nearest places matter: these form the
+medial axis. The search starts at a place of the surface, goes inward along the normal, and shrinks
+the ball until the surface does not enter it.
 """
 
 from __future__ import annotations
@@ -12,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arrays import Floats
+from qbound.arrays import Bools, Floats, Indices
 from qbound.geometry.covering import AT_ONCE, IN_CACHE
 from qbound.tolerances import OUTWARD
 
@@ -202,3 +218,282 @@ def unit_normals(triangles: Floats) -> tuple[Floats, Floats]:
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     twice = np.linalg.norm(normals, axis=1)
     return normals / np.where(twice > 0, twice, 1.0)[:, None], twice / 2
+
+
+# --- distance to a surface ------------------------------------------------------------------------
+
+
+MOST_GROUPS = 1_000
+"""Groups of samples, about."""
+
+MOST_ENTRIES = 4_000_000
+"""Entries of a table."""
+
+MOST_VISITS = 200_000_000
+"""Distances from samples in all searches together, some 4 ns each."""
+
+MOST_ROUGH = 30_000
+"""Samples, about, that are enough to find where balls lie: the surface bends little between."""
+
+SHARE = 0.25
+"""Part of those left that one search may take which is not the last."""
+
+
+def one_a_cell(places: Floats, most: int, size: float) -> tuple[Indices, Indices]:
+    """Put places into the cells of a grid, of size or, where that makes too many, coarser.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 3)
+    most : int
+        Cells at most.
+    size : float
+        Above 0; length.
+
+    Returns
+    -------
+    ndarray of int, shape (cells,)
+        A place of each cell.
+    ndarray of int, shape (n,)
+        The cell of each place.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> places = np.array([[0.0, 0, 0], [0.1, 0, 0], [1.0, 0, 0], [9.0, 0, 0]])
+    >>> [found.tolist() for found in one_a_cell(places, 10, 0.5)]
+    [[0, 2, 3], [0, 0, 1, 2]]
+    >>> one_a_cell(places, 2, 0.5)[0].tolist()
+    [0, 3]
+    """
+    chosen, cell = np.arange(len(places)), np.arange(len(places))
+    if not len(places):
+        return chosen, cell
+    low, high = places.min(axis=0), places.max(axis=0)
+    size = max(size, float((high - low).max()) / 2**20)  # numbers of 63 bits
+    while True:
+        cells = np.floor((places[chosen] - low) / size).astype(np.int64)
+        first, rank = _first_of_each(cells)
+        chosen, cell = chosen[first], rank[cell]
+        if len(chosen) <= most:
+            return chosen, cell
+        size *= max(1.05, (len(chosen) / most) ** 0.5)
+
+
+def _first_of_each(cells: NDArray[np.int64]) -> tuple[Indices, Indices]:
+    """Return the first row of each kind of rows of small whole numbers, and the kind of each."""
+    shape = cells.max(axis=0) + 1
+    number = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
+    if shape.prod() > MOST_ENTRIES:
+        number = np.unique(number, return_inverse=True)[1].ravel()
+    rows = np.arange(len(cells))
+    first = np.full(int(number.max()) + 1, -1)
+    first[number[::-1]] = rows[::-1]  # of several the last that is written stays
+    first = np.sort(first[first >= 0])
+    rank = np.empty(int(number.max()) + 1, dtype=np.intp)
+    rank[number[first]] = np.arange(len(first))
+    return first, rank[number]
+
+
+class SurfaceDistance:
+    """Distances from a surface that is known from samples of it.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n, 3)
+        Places of the surface, n > 0.
+    spread : float
+        Every place of the surface is within it of a sample.
+    """
+
+    def __init__(self, samples: Floats, spread: float) -> None:
+        self.spread = spread
+        self.visits_left = MOST_VISITS
+        first, group = one_a_cell(samples, MOST_GROUPS, spread)
+        order = np.argsort(group, kind="stable")  # the samples of a group one after the other
+        self.samples = samples[order]
+        self._ends = np.append(0, np.cumsum(np.bincount(group)))
+        self._heads = self._ends[:-1]
+        away = np.linalg.norm(samples - samples[first][group], axis=1)
+        self._radii = np.zeros(len(first))
+        np.maximum.at(self._radii, group, away)
+        self._radii *= 1 + OUTWARD
+
+    def rough(self) -> SurfaceDistance:
+        """Return the same of fewer samples, by which to search: its depths would be too large."""
+        few, _ = one_a_cell(self.samples, MOST_ROUGH, self.spread)
+        return SurfaceDistance(self.samples[few], self.spread)
+
+    def within(self, places: Floats, radii: Floats) -> Indices:
+        """Find a sample that lies in each ball by more than the spread.
+
+        Parameters
+        ----------
+        places : ndarray, shape (m, 3)
+        radii : ndarray, shape (m,)
+
+        Returns
+        -------
+        ndarray of int, shape (m,)
+            Rows of `samples`; -1 where none was found.
+        """
+        apart = self._from_groups(places)
+        limits = radii - self.spread
+        best = apart.argmin(axis=0)
+        found = np.where(apart[best, np.arange(len(places))] < limits, self._heads[best], -1)
+        rest = np.flatnonzero(found < 0)
+        _, found[rest], _ = self._searched(places[rest], apart[:, rest], limits[rest], SHARE)
+        return found
+
+    def depths(self, places: Floats) -> Floats:
+        """Return lengths that the surface is no nearer than, shape (m,); of no meaning below 0."""
+        apart = self._from_groups(places)
+        near, _, least = self._searched(places, apart, np.full(len(places), np.inf), 1.0)
+        return np.asarray(np.minimum(near, least) * (1 - OUTWARD) - self.spread)
+
+    def _from_groups(self, places: Floats) -> Floats:
+        """Return the distances of places from one sample of each group, shape (groups, m)."""
+        from scipy.spatial.distance import cdist
+
+        return np.asarray(cdist(self.samples[self._heads], places))
+
+    def _searched(
+        self, places: Floats, apart: Floats, limits: Floats, share: float
+    ) -> tuple[Floats, Indices, Floats]:
+        """Look for the nearest sample, in those groups alone that may have one within a limit.
+
+        Returns the least distance found, or the limit; the sample that has it, or -1; and what the
+        samples are no nearer than that were not looked at.
+        """
+        near, index = limits.copy(), np.full(len(places), -1)
+        low = apart - self._radii[:, None]
+        open_ones = np.zeros(apart.shape, dtype=bool)
+        open_ones[apart.argmin(axis=0), np.arange(len(places))] = True
+        self._look(places, open_ones, near, index)
+        low[open_ones] = np.inf
+        open_ones = low < near
+        counts = np.diff(self._ends) @ open_ones
+        order = np.argsort(counts, kind="stable")
+        total = np.cumsum(counts[order])
+        most = np.searchsorted(total, share * self.visits_left, side="right")
+        open_ones[:, order[most:]] = False
+        if most:
+            self.visits_left -= int(total[most - 1])
+            self._look(places, open_ones, near, index)
+        low[open_ones] = np.inf
+        return near, index, low.min(axis=0, initial=np.inf)
+
+    def _look(self, places: Floats, open_ones: Bools, near: Floats, index: Indices) -> None:
+        """Compare places with all samples of the groups that are open to them."""
+        from scipy.spatial.distance import cdist
+
+        for group in np.flatnonzero(open_ones.any(axis=1)):
+            rows = np.flatnonzero(open_ones[group])
+            start, end = self._ends[group : group + 2]
+            apart = cdist(places[rows], self.samples[start:end])
+            best = apart.argmin(axis=1)
+            least = apart[np.arange(len(rows)), best]
+            better = least < near[rows]
+            near[rows[better]] = least[better]
+            index[rows[better]] = start + best[better]
+
+
+# --- inner balls ----------------------------------------------------------------------------------
+
+
+SHRINKINGS = 12
+"""Times that a ball is shrunk at most."""
+
+MOST_SOLID_ANGLES = 5_000_000
+"""Triangles times places at most of which it is asked whether the surface goes round them."""
+
+
+def convex_balls(solid: Convex, starts: Floats, normals: Floats) -> tuple[Floats, Floats]:
+    r"""Return centres and depths of balls in a convex solid that touch it at places given.
+
+    The ball of radius r about :math:`p - r n` is behind the plane (m, o) while
+    :math:`r (1 - m \cdot n) \le -(m \cdot p + o)`.
+    """
+    radii = np.full(len(starts), np.inf)
+    step = max(1, IN_CACHE // max(1, len(starts)))
+    for k in range(0, len(solid.planes), step):
+        planes = solid.planes[k : k + step]
+        room = np.maximum(-heights(starts, planes), 0.0)
+        turned = -heights(normals, planes * [1, 1, 1, 0] - [0, 0, 0, 1])
+        room = np.where(turned > 1e-9, room / np.where(turned > 1e-9, turned, 1.0), np.inf)
+        radii = np.minimum(radii, room.min(axis=1))
+    kept = np.isfinite(radii)
+    centres = starts[kept] - radii[kept, None] * normals[kept]
+    depths = solid.depths(centres)
+    return centres[depths > 0], depths[depths > 0]
+
+
+def solid_balls(
+    triangles: Floats, surface: SurfaceDistance, starts: Floats, normals: Floats, apart: float
+) -> tuple[Floats, Floats]:
+    """Return centres and depths, lower bounds, of balls in the solid that a mesh encloses.
+
+    Parameters
+    ----------
+    starts, normals : ndarray, shape (m, 3)
+        Where balls touch the surface, and its outward normals there.
+    apart : float
+        Of centres within about that of each other one is kept; length.
+    """
+    centres = starts - _shrunk(surface.rough(), starts, normals)[:, None] * normals
+    centres = centres[one_a_cell(centres, len(centres), apart)[0]]
+    depths = surface.depths(centres)
+    kept = depths > 0
+    centres, depths = centres[kept], depths[kept]
+    inside = _inside(triangles, centres, depths)
+    return centres[inside], depths[inside]
+
+
+def _shrunk(surface: SurfaceDistance, starts: Floats, normals: Floats) -> Floats:
+    """Return radii of balls that touch the surface at places given and that it hardly enters."""
+    radii = np.full(len(starts), float(np.ptp(surface.samples, axis=0).max()))
+    open_ones = np.arange(len(starts))
+    for _ in range(SHRINKINGS):
+        centres = starts[open_ones] - radii[open_ones, None] * normals[open_ones]
+        index = surface.within(centres, radii[open_ones])
+        open_ones, index = open_ones[index >= 0], index[index >= 0]
+        if not len(open_ones):
+            break
+        apart = starts[open_ones] - surface.samples[index]
+        along = 2 * np.einsum("ni,ni->n", apart, normals[open_ones])
+        smaller = np.einsum("ni,ni->n", apart, apart) / np.where(along > 0, along, np.inf)
+        radii[open_ones] = np.minimum(smaller, 0.999 * radii[open_ones])
+    return radii
+
+
+def _inside(triangles: Floats, centres: Floats, depths: Floats) -> NDArray[np.bool_]:
+    """Tell which places a closed surface goes round, each of which is so far from it at least.
+
+    Places whose balls meet are on one side of the surface: one of them tells for all. Of more such
+    groups than may be asked the shallowest count as outside.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    if not len(centres):
+        return np.zeros(0, dtype=bool)
+    many = min(9, len(centres))
+    apart, other = cKDTree(centres).query(centres, k=many)
+    apart, other = apart.reshape(len(centres), -1), other.reshape(len(centres), -1)
+    meet = apart < depths[:, None] + depths[other] - OUTWARD * np.abs(centres).max()
+    one = np.broadcast_to(np.arange(len(centres))[:, None], other.shape)[meet]
+    joined = coo_matrix((np.ones(len(one)), (one, other[meet])), shape=(len(centres),) * 2)
+    count, group = connected_components(joined, directed=False)
+    best = np.array([depths.argmax()]) if count == 1 else _deepest(group, depths, count)
+    asked = np.argsort(-depths[best])[: max(1, MOST_SOLID_ANGLES // len(triangles))]
+    inside = np.zeros(count, dtype=bool)
+    inside[asked] = winding_numbers(triangles, centres[best[asked]]) != 0
+    return np.asarray(inside[group])
+
+
+def _deepest(group: NDArray[np.int32], depths: Floats, count: int) -> NDArray[np.int64]:
+    """Return the deepest place of each group."""
+    order = np.lexsort((depths, group))
+    last = np.searchsorted(group[order], np.arange(count), side="right") - 1
+    return np.asarray(order[last])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
-from qbound.boundary.parts import flat_parts
+from qbound.boundary.poses import flat_parts
 from qbound.boundary.separation import Separation
 from qbound.model.robot import Body, BodyPair, Robot
 from qbound.tolerances import CONTACT

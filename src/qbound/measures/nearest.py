@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
-from qbound.forms.angles import TURN, nearest_turn
-from qbound.forms.factors import basis_and_slope
+from qbound.forms.factors import TURN, basis_and_slope, nearest_turn
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.values import real_numbers
+from qbound.model.robot import real_numbers
 from qbound.region import Component, Problem, Region
 from qbound.region.outline import Arc, integrate
 

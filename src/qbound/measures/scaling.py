@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts, body_contacts
 from qbound.boundary.functions import clearance, margin_of
-from qbound.boundary.parts import bounded_bodies, bounds_bodies
+from qbound.boundary.poses import bounded_bodies, bounds_bodies
 from qbound.boundary.separation import Separation, largest_speeds
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm

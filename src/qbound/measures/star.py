@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats
 from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.bisection import last_before
-from qbound.geometry.polylines import tangent_corners
+from qbound.geometry.arcs import last_before
+from qbound.geometry.polygon import tangent_corners
 from qbound.measures.scaling import conditions, first_exit, violation
 from qbound.region import Component, Problem
 from qbound.region.outline import Arc

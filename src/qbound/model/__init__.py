@@ -4,7 +4,7 @@
 - `source`: what a robot was read from, parsed once;
 - `exact`: the numbers of a robot as its file writes them, as rationals and balls;
 - `plane`: the plane in which a planar arm moves;
-- `frames`: vector labelling (eqs. 1-8); `values`: joint values that a caller gives;
+- `frames`: vector labelling (eqs. 1-8);
 - `robotfile`: files read and written; `robotcheck`, `bodycheck`, `rows`, `schema`: the rules for
   files, and the sentence that names a fault.
 """

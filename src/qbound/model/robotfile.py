@@ -21,7 +21,13 @@ from qbound.extras import require
 from qbound.files import write_whole
 from qbound.model.bodycheck import check_bodies
 from qbound.model.robot import Body, Robot, refuse_no_robot
-from qbound.model.robotcheck import ANGLE, RobotFile, RobotFileError, Table, read_table
+from qbound.model.robotcheck import (
+    ANGLE,
+    RobotFile,
+    RobotFileError,
+    Table,
+    read_table,
+)
 from qbound.model.rows import quotient
 from qbound.model.schema import place
 from qbound.model.shapes import BodyRow, ObstacleRow, default_names, row_shape

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import Evaluator, evaluator
 from qbound.boundary.functions import position
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.poses import bounds_bodies
 from qbound.boundary.separation import largest_speeds
-from qbound.geometry.bisection import last_before
-from qbound.geometry.polylines import crossing_pieces
+from qbound.geometry.arcs import last_before
+from qbound.geometry.polygon import crossing_pieces
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Leg, Route, Traversal, reach
 from qbound.region import Region

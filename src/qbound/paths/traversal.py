@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Floats
 from qbound.boundary.functions import position
 from qbound.geometry import polygon
-from qbound.geometry.polylines import Curve, flatten, self_crossings, too_fine
+from qbound.geometry.polygon import Curve, flatten, self_crossings, too_fine
 from qbound.model.robot import Robot
 from qbound.region import Component, Region
 from qbound.region.outline import Arc

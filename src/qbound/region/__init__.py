@@ -11,7 +11,7 @@
 - `slices`: a row of such answers.
 """
 
-from qbound.boundary.margins import margins, violated
+from qbound.boundary.evaluator import margins, violated
 from qbound.region.outline import Component, Vertex
 from qbound.region.problem import Problem, Rule, clearance_problem, state
 from qbound.region.region import NoHomeError, Region, UnresolvedError, find_region, solve

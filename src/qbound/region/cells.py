@@ -25,7 +25,7 @@ import numpy as np
 
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import SIDES
-from qbound.forms.angles import TURN, first_from, turns_up_to, whole_turns
+from qbound.forms.factors import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.events import (
     END,
     INSIDE,

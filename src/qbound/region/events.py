@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Bools, Complexes, Floats, Ints
 from qbound.boundary.contacts import SIDES
-from qbound.forms.angles import TURN, turns_within, whole_turns
-from qbound.forms.factors import FACTORS, Kind, basis
+from qbound.forms.factors import FACTORS, TURN, Kind, basis, turns_within, whole_turns
 from qbound.region.plane import (
     KINDS,
     LEVELS,

@@ -24,10 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Bools, Floats, Ints
-from qbound.forms.angles import TURN, first_from, nearest_turn, whole_turns
-from qbound.forms.factors import basis, basis_and_slope
+from qbound.forms.factors import TURN, basis, basis_and_slope, first_from, nearest_turn, whole_turns
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.values import real_numbers
+from qbound.model.robot import real_numbers
 from qbound.printable import printable
 from qbound.region.cells import CellComplex, Placed, apart
 from qbound.region.plane import Plane, UndecidedError, ranges, runs, which

@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names
 from qbound.boundary.functions import clearance, pair_vector
-from qbound.forms.angles import TURN, first_from
 from qbound.forms.circle import circle_roots
+from qbound.forms.factors import TURN, first_from
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, HalfSpace, Pair, Robot
 from qbound.printable import printable

@@ -24,8 +24,7 @@ from qbound.arrays import Array, Bools, Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from qbound.boundary.exact_contacts import ExactContacts, Feature
 from qbound.boundary.functions import clearance
-from qbound.forms.angles import TURN
-from qbound.forms.factors import FACTORS
+from qbound.forms.factors import FACTORS, TURN
 from qbound.forms.harmonic import HarmonicForm, Kind, basis
 from qbound.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
 from qbound.model.robot import Robot

@@ -26,7 +26,6 @@ import numpy as np
 from qbound.arguments import refuse_type
 from qbound.arrays import Bools, Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, Contacts, body_contacts
-from qbound.boundary.errors import clearance_error
 from qbound.boundary.evaluator import (
     Evaluator,
     Range,
@@ -36,11 +35,11 @@ from qbound.boundary.evaluator import (
     stacked,
     with_bodies,
 )
-from qbound.boundary.functions import term_size
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.functions import clearance_error, term_size
+from qbound.boundary.poses import bounds_bodies
 from qbound.boundary.separation import Separation
-from qbound.forms.angles import TURN
 from qbound.forms.bending import bending
+from qbound.forms.factors import TURN
 from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.robot import Boundary, Held, Robot
 from qbound.printable import printable

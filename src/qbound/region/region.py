@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arguments import refuse_type, whole_number
 from qbound.arrays import Bools, Floats, Ints
-from qbound.forms.angles import TURN
-from qbound.model.robot import Held, Joint, Robot, refuse_no_robot
-from qbound.model.values import real_numbers
+from qbound.forms.factors import TURN
+from qbound.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from qbound.printable import printable
 from qbound.region.cells import (
     CellComplex,

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
-from qbound.model.robot import Held, Robot, refuse_no_robot
-from qbound.model.values import real_numbers
+from qbound.model.robot import Held, Robot, real_numbers, refuse_no_robot
 from qbound.region.region import Region, find_region
 from qbound.tolerances import SAME_POINT
 

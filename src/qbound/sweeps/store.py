@@ -27,9 +27,8 @@ from qbound.files import write_whole
 from qbound.model.robotfile import robot_table
 from qbound.model.schema import one_line
 from qbound.printable import printable
-from qbound.sweeps import grid
-from qbound.sweeps.cells import HELD, Measured, versions
-from qbound.sweeps.measures import MEASURES, unit_of
+from qbound.sweeps import specification as grid
+from qbound.sweeps.measures import HELD, MEASURES, Measured, unit_of, versions
 from qbound.sweeps.specification import Study, held_names
 from qbound.units import file_units
 

@@ -1,30 +1,35 @@
-"""From a URDF to a robot: one chain, its joints, and balls that cover its links."""
+"""From a URDF to a robot: one chain, its joints, and balls that cover its links.
+
+The text of an imported robot's file: one row on one line, and its origin in a comment on top.
+
+Five hundred pairs of balls would fill thousands of lines if each were a table of its own.
+"""
 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, count
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from qbound.arguments import refuse_type
 from qbound.arrays import Floats
+from qbound.extras import require
 from qbound.model.joints import JOINT_TYPES, Joint
 from qbound.model.robot import Pair, Point, Robot
 from qbound.model.robotcheck import RobotFileError
-from qbound.model.robotfile import parse_robot, robot_table
+from qbound.model.robotfile import MADE, parse_robot, robot_table
 from qbound.model.rows import unit_vector
 from qbound.model.schema import shown
+from qbound.printable import printable
 from qbound.tolerances import ROUNDING
-from qbound.urdf.covers import link_cover
-from qbound.urdf.document import Urdf, read_urdf
-from qbound.urdf.meshes import read_mesh
-from qbound.urdf.shapes import Collision, Mesh, Triangles
-from qbound.urdf.srdf import Srdf, read_srdf
+from qbound.urdf.covers import link_cover, read_mesh
+from qbound.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
 from qbound.urdf.tree import Chain, find_chain, listed
 from qbound.urdf.xml import PACKAGED, Source, called
 
@@ -378,3 +383,73 @@ def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
 
 def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
     return "; ".join(" and ".join(pair) for pair in pairs)
+
+
+# --- the text of the robot file -------------------------------------------------------------------
+
+
+WIDTH = 100
+"""Columns of a comment at most."""
+
+
+def robot_text(imported: Imported) -> str:
+    """Return the robot file of an imported robot.
+
+    Its first lines are comments: the sources with their digests, the chain, the excess that is
+    proved, and what was left out.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no tomlkit; it comes with ``qbound[files]``.
+    """
+    require("tomlkit", "writing a robot file")
+    lines = [*_header(imported)]
+    for key, value in robot_table(imported.robot).items():
+        if isinstance(value, list) and value and isinstance(value[0], Mapping):
+            rows = [f"    {_inline(row)}," for row in value]
+            lines += ["", f"{key} = [", *rows, "]"]
+        else:
+            lines.append(f"{key} = {_inline(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _header(imported: Imported) -> list[str]:
+    chain = imported.chain
+    texts = [
+        f"{MADE.removeprefix('# ')} import, lengths in metres, from",
+        *(f"  {source.name}, SHA-256 {source.sha256}" for source in imported.sources),
+        f"Chain: from {chain.frames[0]} to {chain.tip}.",
+        *(f"{note[0].upper()}{note[1:]}." for note in imported.notes),
+    ]
+    return [line for text in texts for line in _comment(text)]
+
+
+def _comment(text: str) -> list[str]:
+    return textwrap.wrap(
+        printable(text),
+        WIDTH,
+        initial_indent="# ",
+        subsequent_indent="#   ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _inline(value: Any) -> str:
+    """Write a value on one line."""
+    import tomlkit
+
+    if isinstance(value, Mapping):
+        pairs = (f"{_key(key)} = {_inline(item)}" for key, item in value.items())
+        return f"{{ {', '.join(pairs)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    return str(tomlkit.item(value).as_string())
+
+
+def _key(key: str) -> str:
+    """Write a key, in quotes where it needs them."""
+    import tomlkit
+
+    return tomlkit.key(key).as_string()

@@ -1,19 +1,48 @@
-"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame."""
+"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame.
+
+Triangles of a mesh file that lies below the folder of its URDF or package.
+
+A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
+name means a file below the URDF's own folder. Links are followed before the place of the file is
+checked, so a link cannot lead elsewhere.
+"""
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from functools import singledispatch
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from qbound.arrays import Floats
+from qbound.extras import require
 from qbound.geometry.covering import Cover, joined
-from qbound.geometry.mesh_covers import mesh_cover
-from qbound.geometry.solid_covers import ball_cover, box_cover, capsule_cover, cylinder_cover
+from qbound.geometry.solid_covers import (
+    ball_cover,
+    box_cover,
+    capsule_cover,
+    cylinder_cover,
+    mesh_cover,
+)
+from qbound.model.schema import one_line, shown
 from qbound.tolerances import OUTWARD
-from qbound.urdf.poses import Pose
-from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Solid, Sphere, Triangles
+from qbound.urdf.document import (
+    Box,
+    Capsule,
+    Collision,
+    Cylinder,
+    Mesh,
+    Pose,
+    Solid,
+    Sphere,
+    Triangles,
+)
+from qbound.urdf.xml import Element, Source
 
 
 def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
@@ -79,3 +108,118 @@ def _(solid: Box, excess: float) -> Cover:
 @solid_cover.register
 def _(solid: Triangles, excess: float) -> Cover:
     return mesh_cover(solid.corners, solid.closed, excess)
+
+
+# --- meshes ---------------------------------------------------------------------------------------
+
+
+KINDS = ("stl", "obj")
+"""Endings of meshes that are read: others have parts, units or axes that could be missed."""
+
+LARGEST_MESH = 200_000_000
+"""Bytes of a mesh at most."""
+
+MOST_TRIANGLES = 500_000
+"""Triangles of a mesh at most."""
+
+STL_HEADER, STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL: before the triangles, and of each."""
+
+
+def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
+    """Read the mesh of an element.
+
+    Parameters
+    ----------
+    roots : sequence of Path
+        Folders below which it may lie: that of the URDF, then those of packages.
+
+    Raises
+    ------
+    qbound.model.robotcheck.RobotFileError
+        If there is none, it lies elsewhere, is none that is read, or has numbers that are not
+        finite.
+    ModuleNotFoundError
+        If there is no trimesh; it comes with ``qbound[arms]``.
+    """
+    require("trimesh")
+    path = find_mesh(mesh.filename, element, roots)
+    kind = path.suffix.removeprefix(".").lower()
+    if kind not in KINDS:
+        known = ", ".join(f".{each}" for each in KINDS)
+        element.fault(f"{shown(mesh.filename)}: unknown ending; wanted: one of {known}")
+    if path.stat().st_size > LARGEST_MESH:
+        element.fault(f"{shown(mesh.filename)}: more than {LARGEST_MESH // 10**6} MB")
+    content = path.read_bytes()
+    try:
+        corners, closed = _loaded(content, kind, mesh.scale)
+    except Exception as error:  # what a parser of strangers' files makes of them
+        element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
+    if not len(corners):
+        element.fault(f"{shown(mesh.filename)}: 0 triangles: damaged, or not {kind.upper()}")
+    if len(corners) > MOST_TRIANGLES:
+        text = f"{len(corners)} triangles; wanted: {MOST_TRIANGLES} at most"
+        element.fault(f"{shown(mesh.filename)}: {text}")
+    if not np.isfinite(corners).all():
+        element.fault(f"{shown(mesh.filename)}: a corner is not a finite number")
+    return Triangles(corners, closed, Source.of(path, content))
+
+
+def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
+    """Return the file that a name of a mesh leads to; raises as `read_mesh`."""
+    scheme, _, rest = name.rpartition("://")
+    if scheme not in ("", "file", "package"):
+        element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
+    if scheme == "package":
+        package, _, inner = rest.partition("/")
+        tried = [root / rest for root in roots]
+        tried += [root / inner for root in roots if root.resolve().name == package]
+    else:
+        tried = [roots[0] / rest]
+    allowed = [root.resolve() for root in roots]
+    for path in _resolved(tried, element):
+        if not any(path.is_relative_to(root) for root in allowed):
+            text = "leads outside of the URDF's folder and of the packages' folders"
+            element.fault(f"filename: {shown(name)} {text}")
+        if path.is_file():
+            return path
+    cure = "; say where its package is" if scheme == "package" else ""
+    return element.fault(f"filename: no file {shown(name)}{cure}")
+
+
+def _resolved(tried: Sequence[Path], element: Element) -> Iterator[Path]:
+    """Yield places with their links followed."""
+    for path in tried:
+        try:
+            yield path.resolve()
+        except (OSError, RuntimeError):  # the latter of old Pythons, for links in a circle
+            element.fault(f"filename: {shown(path.name)}: no place that can be reached")
+
+
+def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
+    """Return the triangles, and whether they close up; nothing but this file is opened."""
+    import trimesh
+
+    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = trimesh.load_mesh(
+            io.BytesIO(_in_utf8(content, kind)), file_type=kind, process=False, **options
+        )
+    vertices = np.asarray(found.vertices, dtype=float) * scale
+    faces = np.asarray(found.faces, dtype=int)
+    merged = trimesh.Trimesh(vertices, faces, process=False)
+    if np.isfinite(vertices).all():
+        merged.merge_vertices(merge_tex=True, merge_norm=True)
+    closed = bool(merged.is_watertight and merged.is_winding_consistent)
+    return np.asarray(vertices[faces]), closed
+
+
+def _in_utf8(content: bytes, kind: str) -> bytes:
+    """Return a mesh in text as UTF-8: names may be in other letters, numbers and keywords are not.
+
+    Of other letters the parser has a library guess, which a plain install of it lacks.
+    """
+    count = int.from_bytes(content[80:84], "little")
+    is_binary = kind == "stl" and len(content) == STL_HEADER + STL_TRIANGLE * count
+    return content if is_binary else content.decode(errors="replace").encode()

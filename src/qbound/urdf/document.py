@@ -1,7 +1,8 @@
-"""A URDF as data: links and joints, lengths in metres and angles in radians.
+"""URDF and SRDF as data: links, joints, collision shapes; lengths in metres, angles in radians.
 
 https://docs.ros.org/en/rolling/p/urdfdom defines the format; `capsule` is part of version 1.2.
-Visual shapes, inertias, transmissions and extensions of simulators are not read.
+Visual shapes, inertias, transmissions and extensions of simulators are not read. Of an SRDF
+the pairs of links that are not checked and the named poses are read.
 """
 
 from __future__ import annotations
@@ -9,16 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from qbound.arrays import Floats
 from qbound.model.frames import roll_pitch_yaw
+from qbound.model.robotcheck import RobotFileError
 from qbound.model.schema import shown
-from qbound.urdf.poses import Pose
-from qbound.urdf.shapes import Box, Capsule, Collision, Cylinder, Mesh, Solid, Sphere
-from qbound.urdf.xml import Element, Source, read_xml
+from qbound.urdf.xml import Element, Source, called, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
 """Types of joints that an arm of ours may have; "fixed" ones are folded in."""
@@ -209,3 +209,184 @@ SOLIDS: dict[str, Callable[[Element], Solid]] = {
     "mesh": _mesh,
 }
 """From an element of <geometry> to its shape."""
+
+
+# --- poses ----------------------------------------------------------------------------------------
+
+
+class Pose(NamedTuple):
+    """A frame seen from another: its rotation, shape (3, 3), and its origin, shape (3,)."""
+
+    rotation: Floats
+    origin: Floats
+
+    @classmethod
+    def still(cls) -> Pose:
+        """Return that of a frame in itself."""
+        return cls(np.eye(3), np.zeros(3))
+
+    def then(self, other: Pose) -> Pose:
+        """Return the pose, seen from here, of what `other` says seen from this frame."""
+        return Pose(self.rotation @ other.rotation, self.places(other.origin))
+
+    def inverse(self) -> Pose:
+        """Return the observer's frame, seen from this one."""
+        return Pose(self.rotation.T, -(self.rotation.T @ self.origin))
+
+    def places(self, x: Floats) -> Floats:
+        """Return places of this frame, shape (..., 3), as the observer sees them."""
+        return np.asarray(self.origin + x @ self.rotation.T)
+
+
+# --- shapes ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A ball about the origin."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """All places within the radius of a segment on the z axis, about the origin."""
+
+    radius: float
+    length: float
+    """Of the segment: between the centres of both caps."""
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A solid cylinder along z with flat ends, about the origin."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A solid box about the origin, its edges along the axes."""
+
+    size: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of a file."""
+
+    filename: str
+    scale: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """A mesh, read: corners, shape (N, 3, 3), seen from its own frame."""
+
+    corners: Floats
+    closed: bool
+    """Whether it is the whole surface of a solid: every edge has two triangles, of one sense."""
+    source: Source
+
+
+Solid = Sphere | Capsule | Cylinder | Box | Mesh | Triangles
+
+
+@dataclass(frozen=True, eq=False)
+class Collision:
+    """A shape of a link, where it stands, and what of the file it was read from."""
+
+    pose: Pose
+    solid: Solid
+    element: Element
+
+
+# --- SRDF -----------------------------------------------------------------------------------------
+
+
+HOMES = ("home", "ready")
+"""States that are taken for the home pose where nothing else is asked for, in this order."""
+
+OWN = (
+    "group", "group_state", "disable_collisions", "disable_default_collisions", "enable_collisions",
+    "virtual_joint", "end_effector", "passive_joint",
+)  # fmt: skip
+"""Elements of which an SRDF has some; a URDF has none of them."""
+
+
+@dataclass(frozen=True)
+class Srdf:
+    """An SRDF, read.
+
+    Attributes
+    ----------
+    disabled : frozenset of frozenset of str
+        Pairs of links.
+    silent : frozenset of str
+        Links that are checked only where a pair is enabled.
+    enabled : frozenset of frozenset of str
+    states : dict of str to dict of str to float
+        Joint values of each named state, rad or m.
+    source : Source, optional
+    """
+
+    disabled: frozenset[frozenset[str]] = frozenset()
+    silent: frozenset[str] = frozenset()
+    enabled: frozenset[frozenset[str]] = frozenset()
+    states: dict[str, dict[str, float]] | None = None
+    source: Source | None = None
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Links of all its pairs."""
+        return self.silent.union(*self.disabled, *self.enabled)
+
+    def checks(self, one: str, other: str) -> bool:
+        """Tell whether a pair of links is to be kept apart."""
+        pair = frozenset((one, other))
+        if pair in self.enabled:
+            return True
+        return pair not in self.disabled and not pair & self.silent
+
+    def home(self, wanted: str | None) -> dict[str, float]:
+        """Return the joint values of a state, by default of one that is called home; or none."""
+        states = self.states or {}
+        if wanted is not None and wanted not in states:
+            known = ", ".join(states) or "none"
+            raise ValueError(f"no state {wanted!r}; there are {known}")
+        names = HOMES if wanted is None else (wanted,)
+        return next((states[name] for name in names if name in states), {})
+
+
+def read_srdf(path: Path) -> Srdf:
+    """Read an SRDF.
+
+    Raises
+    ------
+    qbound.model.robotcheck.RobotFileError
+        With the first fault and its line.
+    """
+    root, source = read_xml(path, "robot")
+    if not any(root.children(tag) for tag in OWN):
+        raise RobotFileError(
+            f"{called(path)}: no group, no state, no pair of links left out; is it an SRDF?"
+        )
+    states: dict[str, dict[str, float]] = {}
+    for state in root.children("group_state"):
+        values = states.setdefault(state.text("name"), {})
+        for joint in state.children("joint"):
+            if len(joint.text("value").split()) == 1:  # joints of more freedom have more
+                values[joint.text("name")] = joint.number("value")
+    return Srdf(
+        disabled=_pairs(root, "disable_collisions"),
+        silent=frozenset(each.text("link") for each in root.children("disable_default_collisions")),
+        enabled=_pairs(root, "enable_collisions"),
+        states=states,
+        source=source,
+    )
+
+
+def _pairs(root: Element, tag: str) -> frozenset[frozenset[str]]:
+    found = root.children(tag)
+    return frozenset(frozenset((each.text("link1"), each.text("link2"))) for each in found)

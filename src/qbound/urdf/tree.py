@@ -20,8 +20,7 @@ from qbound.model.robotcheck import RobotFileError
 from qbound.model.rows import unit_vector
 from qbound.model.schema import one_line, shown
 from qbound.tolerances import PARALLEL
-from qbound.urdf.document import OTHERS, Mimic, Urdf, UrdfJoint
-from qbound.urdf.poses import Pose
+from qbound.urdf.document import OTHERS, Mimic, Pose, Urdf, UrdfJoint
 from qbound.urdf.xml import called
 
 MOST_JOINTS = 9

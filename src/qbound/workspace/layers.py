@@ -21,7 +21,7 @@ from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Bools, Complexes, Floats
-from qbound.forms.angles import TURN, nearest_turn
+from qbound.forms.factors import TURN, nearest_turn
 from qbound.forms.harmonic import HarmonicForm, basis
 from qbound.region import Problem, Region, UnresolvedError, solve
 from qbound.region.outline import NODES, converged, legendre

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats
 from qbound.geometry import polygon
-from qbound.geometry.bisection import last_before
+from qbound.geometry.arcs import last_before
 from qbound.region import Component
 from qbound.region.outline import Arc
 from qbound.workspace.layers import Fibres

@@ -19,12 +19,10 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Complexes, Floats
 from qbound.boundary.functions import position
-from qbound.forms import angles
-from qbound.forms.angles import TURN, nearest_turn
-from qbound.forms.factors import FACTORS, Kind, basis
+from qbound.forms import factors
+from qbound.forms.factors import FACTORS, TURN, Kind, basis, nearest_turn
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Robot
-from qbound.model.values import real_numbers
+from qbound.model.robot import Robot, real_numbers
 from qbound.printable import printable
 from qbound.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
 
@@ -299,7 +297,7 @@ def turns_within(kind: Kind, q: float, limits: Range) -> list[float]:
         return [q] if limits is None or limits[0] <= q <= limits[1] else []
     if limits is None:
         return [float(nearest_turn(q, 0))]
-    return [q + TURN * k for k in angles.turns_within(*limits, q)]
+    return [q + TURN * k for k in factors.turns_within(*limits, q)]
 
 
 def _plane(r: HarmonicForm) -> Floats:

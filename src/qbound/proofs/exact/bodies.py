@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Array
 from qbound.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_corners
-from qbound.boundary.parts import bounded_bodies, bounds_bodies
-from qbound.boundary.poses import Axes, Move, Pose, Vector
+from qbound.boundary.poses import Axes, Move, Pose, Vector, bounded_bodies, bounds_bodies
 from qbound.forms.factors import cos_sin
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.model.exact import rational, rationals

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qbound.arrays import Floats, Ints
-from qbound.forms.angles import TURN, whole_turns
+from qbound.forms.factors import TURN, whole_turns
 from qbound.proofs import Unproved
 from qbound.proofs.exact.problem import ExactProblem
 from qbound.proofs.exact.stars import WHOLE, Stars, Undecided

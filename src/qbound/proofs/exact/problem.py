@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from qbound.boundary.evaluator import limit_names, stacked
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.poses import bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, Kind
 from qbound.model.exact import ExactNumbers, frozen
 from qbound.model.robot import Boundary, Robot

@@ -22,7 +22,7 @@ from itertools import groupby
 import numpy as np
 
 from qbound.arrays import Floats
-from qbound.forms.angles import TURN, whole_turns
+from qbound.forms.factors import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs import Unproved, Verdict
 from qbound.proofs.exact.components import prove_structure

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from qbound.arrays import Array
-from qbound.forms.angles import whole_turns
-from qbound.forms.factors import FACTORS
+from qbound.forms.factors import FACTORS, whole_turns
 from qbound.proofs.exact.crossings import Balls, line_roots, placed_at, sides
 from qbound.proofs.exact.numbers import arb, ball, balls, turns
 from qbound.proofs.exact.problem import ExactProblem

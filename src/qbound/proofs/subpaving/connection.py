@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats, Ints
 from qbound.extras import require
-from qbound.forms.angles import nearest_turn
+from qbound.forms.factors import nearest_turn
 from qbound.proofs import Verdict
 from qbound.proofs.exact.bounds import DEEPEST, Cells
 from qbound.proofs.exact.problem import ExactProblem

@@ -23,7 +23,7 @@ import numpy as np
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
-from qbound.boundary.parts import bounds_bodies
+from qbound.boundary.poses import bounds_bodies
 from qbound.forms.circle import circle_arc
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from qbound.arrays import Bools, Floats
-from qbound.forms.angles import TURN
+from qbound.forms.factors import TURN
 from qbound.proofs.exact.numbers import ERROR, cosine_sine
 
 Interval = tuple[Floats, Floats]
