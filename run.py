@@ -2,7 +2,8 @@
 """One command for everything: make the book, run the tests, lint, lock, clean.
 
     python3 run.py quick    a first trial: environment, the claims of Table 6, two chapters
-    python3 run.py book     execute the notebooks that changed and build the book
+    python3 run.py book     execute the notebooks that changed and build the book (--live: see live)
+    python3 run.py live     put Python beside the book: its chapters then run inside their pages
     python3 run.py test     run the tests (further arguments go to pytest)
     python3 run.py serve    show the book in a browser and follow what an author changes
     python3 run.py lab      open the notebooks in JupyterLab, as copies of your own
@@ -53,6 +54,7 @@ BOOK_STAMP = BUILD / "made-from"
 PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
 EXECUTED = ROOT / ".executed"  # of each chapter the executed copy, and the results that it wrote
+LIVE = ROOT / ".live"  # what lets a page run Python, each file by the hash of a lock of its own
 WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = VENV / "javascript" / "node_modules"
@@ -696,12 +698,32 @@ def find_browser() -> str:
 # --- the commands ---------------------------------------------------------------------------------
 
 
-def book() -> int:
-    """Execute the notebooks and build the book."""
+def book(*options: str) -> int:
+    """Execute the notebooks and build the book; with --live its chapters run inside their pages."""
     prepare()
     make_book()
+    if options:
+        add_python(LIVE)
     say(f"The book: {FRONT_PAGE.as_uri()}")
     return 0
+
+
+def live(*folders: str) -> int:
+    """Put Python beside the book, for pages that run (arguments: folders that have its files)."""
+    prepare()
+    if not book_is_fresh():
+        make_book()
+    add_python(LIVE, *folders)
+    say(f"The book: {FRONT_PAGE.as_uri()}")
+    return 0
+
+
+def add_python(files: Path, *folders: str) -> None:
+    """Fetch Pyodide and its packages, by hash, and pack them beside the built pages."""
+    fetching = "Fetching what runs in a page (once; it takes 55 MB, and its carrier 106)"
+    must(fetching, [in_venv("python"), TOOLS / "live" / "fetch.py", files, *folders])
+    packing = [in_venv("python"), TOOLS / "live" / "pack.py", files, FRONT_PAGE.parent]
+    must("Packing it beside the book", packing)
 
 
 def test(*arguments: str) -> int:
@@ -947,14 +969,14 @@ def prepare_bench() -> Path:
 def clean() -> int:
     """Remove the environments, the book and the caches; results/ stays."""
     made = [ROOT / name for name in [BENCH, *CACHES, *BUILT]]
-    for path in [VENV, EXECUTED, CHAPTERS, BUILD, GENERATED, *made]:
+    for path in [VENV, EXECUTED, LIVE, CHAPTERS, BUILD, GENERATED, *made]:
         remove(path)
     say("Removed the environments, the book and the caches.")
     return 0
 
 
-COMMANDS = [quick, book, test, serve, lab, pdf, lint, lock, renumber, metadata, licences, bench]
-COMMANDS += [pack, clean]
+COMMANDS = [quick, book, live, test, serve, lab, pdf, lint, lock, renumber, metadata, licences]
+COMMANDS += [bench, pack, clean]
 
 
 def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
@@ -966,9 +988,11 @@ def read_command_line(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
             function.__name__, help=text, description=text, allow_abbrev=False
         ).set_defaults(function=function)
     chosen, rest = parser.parse_known_args(words)
-    known = chosen.function is test or (chosen.function is bench and rest == ["--quick"])
+    options = {bench: "--quick", book: "--live"}
+    option = options.get(chosen.function)
+    known = chosen.function in (test, live) or rest == [option]
     if rest and not known:
-        taken = "--quick and nothing else" if chosen.function is bench else "no arguments"
+        taken = f"{option} and nothing else" if option else "no arguments"
         parser.error(f"{chosen.command} takes {taken}, found: {' '.join(rest)}")
     return chosen, rest
 

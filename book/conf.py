@@ -55,6 +55,7 @@ extensions = [
     "front_page",
     "play",
     "recorded_numbers",
+    "rerun",
     "result_pages",
 ]
 # Several processes read the pages: what this domain keeps, its extension merges, not the domain.

@@ -476,7 +476,7 @@ def which(found: Any) -> Ints:
 
 def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
     """Return index and value of every integer in range(start, end), for each entry in turn."""
-    count = np.maximum(end - start, 0)
+    count = np.maximum(end - start, 0).astype(np.intp)  # `repeat` takes no wider one: 32 bits
     pick = np.arange(len(count)).repeat(count)
     return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]
 

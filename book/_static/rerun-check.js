@@ -1,0 +1,146 @@
+"use strict";
+// Check a certificate in the page: `check.py` itself runs, and what it says is shown as text.
+
+(() => {
+  const { Engine, known, bytesOf, read } = rerunEngine;
+  const VERDICTS = /** @type {Record<number, [string, string]>} */ ({
+    0: ["Proved", "good"],
+    3: ["Refuted", "good"],
+    2: ["Not proved", "bad"],
+  });
+  const LARGEST = 8_000_000; // bytes; the checker itself takes 4,000,000 and says so
+  const PARTS = ["engine"];
+  const MAKE = `import sys
+sys.path.insert(0, "/home/pyodide")
+import os
+os.chdir("/home/pyodide")
+import check_desk
+check_desk.Desk()`;
+
+  const files = known();
+  /** @param {string} id @returns {any} */
+  const by = (id) => document.getElementById(id);
+  by(files ? "desk" : "none").hidden = false;
+  if (!files) return;
+
+  let engine = /** @type {InstanceType<typeof Engine> | null} */ (null);
+  let busy = false;
+
+  /** @param {string} text @param {boolean} isBusy */
+  function say(text, isBusy = false) {
+    by("said").textContent = text;
+    for (const id of ["stop", "progress"]) by(id).hidden = !isBusy;
+  }
+  const invite = () =>
+    say(
+      `Nothing leaves this page. Python (${Math.ceil(bytesOf(PARTS) / 1e6)} MB) is read when the first file comes.`,
+    );
+
+  /** @param {string} name */
+  const textOf = async (name) =>
+    new TextDecoder().decode(
+      await read(/** @type {any} */ (files?.files.find((file) => file.name === name)), "../"),
+    );
+
+  /** Start Python with the checker, once. */
+  async function ready() {
+    if (engine) return engine;
+    const made = new Engine("../");
+    engine = made;
+    await made.load(PARTS, (done, whole) => {
+      const size = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(1);
+      Object.assign(by("progress"), { max: whole, value: done });
+      say(
+        done < whole ? `Reading ${size(done)} of ${size(whole)} MB …` : "Starting Python …",
+        true,
+      );
+    });
+    const modules = {
+      "check.py": await textOf("check.py"),
+      "check_desk.py": await textOf("check_desk.py"),
+    };
+    await made.ask({ action: "open", modules, make: MAKE });
+    const about = await made.call("about");
+    by("hash").textContent = about.sha256;
+    by("text").textContent = about.text;
+    by("text").hidden = false;
+    by("read").hidden = true;
+    return made;
+  }
+
+  /** @param {() => Promise<void>} action */
+  async function guarded(action) {
+    if (busy) return;
+    busy = true;
+    try {
+      await action();
+    } catch (error) {
+      const what = /** @type {Error} */ (error).message;
+      engine?.end();
+      engine = null;
+      say(what === "stopped" ? "Stopped." : `This page cannot check: ${what}`);
+    } finally {
+      busy = false;
+    }
+  }
+
+  /** @param {File} certificate */
+  async function check(certificate) {
+    by("answer").hidden = true;
+    const robot = by("robot").files[0];
+    for (const file of [certificate, ...(robot ? [robot] : [])]) {
+      if (file.size > LARGEST)
+        throw new Error(`${file.name} is larger than any certificate or robot file`);
+    }
+    const python = await ready();
+    say("Checking …", true);
+    by("progress").removeAttribute("value");
+    const modules = {
+      certificate: new Uint8Array(await certificate.arrayBuffer()),
+      robot: new Uint8Array(),
+    };
+    if (robot) modules.robot = new Uint8Array(await robot.arrayBuffer());
+    await python.ask({ action: "open", modules });
+    show(certificate, await python.call("check", "certificate", robot ? "robot" : ""));
+  }
+
+  /** @param {File} file @param {{status: number, said: string, seconds: number}} answer */
+  function show(file, { status, said, seconds }) {
+    const [verdict, kind] = VERDICTS[status] ?? ["No answer", "bad"];
+    by("verdict").textContent = verdict;
+    by("answer").dataset.kind = kind;
+    by("answer").dataset.seconds = String(seconds);
+    by("about").textContent =
+      `${file.name}, ${file.size.toLocaleString("en")} bytes, checked in ${seconds} s`;
+    by("words").textContent = said;
+    by("answer").hidden = false;
+    say("Drop another file to check it.");
+  }
+
+  const drop = by("drop");
+  for (const name of ["dragover", "drop"]) {
+    document.addEventListener(name, (event) => event.preventDefault());
+  }
+  document.addEventListener("dragover", () => drop.classList.add("over"));
+  document.addEventListener("dragleave", () => drop.classList.remove("over"));
+  document.addEventListener("drop", (event) => {
+    drop.classList.remove("over");
+    const file = event.dataTransfer?.files[0];
+    if (file) void guarded(() => check(file));
+  });
+  by("certificate").addEventListener("change", () => {
+    const file = by("certificate").files[0];
+    if (file) void guarded(() => check(file));
+    by("certificate").value = "";
+  });
+  by("stop").addEventListener("click", () => engine?.end());
+  by("read").addEventListener(
+    "click",
+    () =>
+      void guarded(async () => {
+        await ready();
+        invite();
+      }),
+  );
+  invite();
+})();

@@ -1,0 +1,393 @@
+"use strict";
+// Run a chapter in its own page: a button, editable cells, outputs in their places, and a comparison
+// of the numbers with the printed ones. Python starts only by a click.
+
+(() => {
+  const { Engine, known, bytesOf, read } = rerunEngine;
+  const { make, one, failure, drawFormulas } = rerunOutput;
+
+  /** By the name that is imported: the part of the files that brings it. */
+  const PARTS_OF = /** @type {Record<string, string>} */ ({
+    flint: "base",
+    lxml: "lxml",
+    matplotlib: "matplotlib",
+    scipy: "scipy",
+    sympy: "sympy",
+    mpmath: "sympy",
+    tomlkit: "tomlkit",
+    trimesh: "trimesh",
+  });
+  const ALWAYS = ["engine", "base", "library"];
+
+  /**
+   * A code cell of the chapter; `index` is its number in the notebook.
+   * @typedef {{index: number, source: string}} Cell
+   * @typedef {{chapter: string, needs: string[], recorded: number, cells: Cell[]}} Chapter
+   */
+
+  const root = document.documentElement.dataset.content_root ?? "./";
+  const page =
+    location.pathname
+      .split("/")
+      .pop()
+      ?.replace(/\.html$/, "") ?? "";
+  const files = known();
+  const entry = files?.files.find((file) => file.name === page);
+  const title = document.querySelector(".bd-article h1");
+  if (!title) return;
+  if (!files || !entry) {
+    const foot = document.querySelector(".notebook-line");
+    const how = make("code", ["python3 run.py live"]);
+    if (foot && !files)
+      foot.append(
+        " With ",
+        how,
+        " a copy of this book runs its chapters inside their pages, without a network.",
+      );
+    return;
+  }
+
+  /** @param {number} bytes */
+  const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 1 : 0)} MB`;
+
+  /** @param {string} text @param {() => void} action @param {string} name */
+  function button(text, action, name = "") {
+    const node = /** @type {HTMLButtonElement} */ (make("button", [text], `rerun-button ${name}`));
+    node.type = "button";
+    node.addEventListener("click", action);
+    return node;
+  }
+
+  // --- the bar at the top -----------------------------------------------------------------------
+
+  const start = button("Run this page", () => void runAll(), "rerun-start");
+  const stop = button("Stop", () => end("Stopped. The next run begins anew."), "rerun-stop");
+  const reset = button("Reset the page", resetAll, "rerun-reset");
+  const progress = document.createElement("progress");
+  progress.setAttribute("aria-label", "Progress");
+  const said = make("p", [], "rerun-said");
+  said.setAttribute("role", "status");
+  const details = make("ul", [], "rerun-differences");
+  const bar = make(
+    "div",
+    [make("div", [start, stop, reset, progress], "rerun-row"), said, details],
+    "rerun-bar",
+  );
+  title.after(bar);
+
+  let engine = /** @type {InstanceType<typeof Engine> | null} */ (null);
+  let chapter = /** @type {Chapter | null} */ (null);
+  let busy = false;
+  let results = /** @type {Map<string, any>} */ (new Map());
+  let lost = /** @type {string} */ (""); // a library that a cell lacked
+
+  /** @param {string} text @param {"" | "busy" | "good" | "bad"} state */
+  function say(text, state = "") {
+    said.textContent = text;
+    bar.dataset.state = state;
+    stop.hidden = state !== "busy";
+    progress.hidden = state !== "busy";
+    start.disabled = state === "busy";
+    reset.hidden = state === "busy" || !chapter;
+    for (const cell of cells.values()) cell.idle(state !== "busy");
+  }
+
+  // --- cells ------------------------------------------------------------------------------------
+
+  /** A cell of the page: its code, an editor once the code is changed, and its output. */
+  class Place {
+    /** @param {Cell} cell */
+    constructor({ index, source }) {
+      this.index = index;
+      this.printed = source;
+      this.code = /** @type {HTMLElement | null} */ (
+        document.querySelector(`.rerun-code-${index}`)
+      );
+      this.output = /** @type {HTMLElement | null} */ (
+        document.querySelector(`.rerun-output-${index}`)
+      );
+      this.made = /** @type {HTMLElement | null} */ (null);
+      this.editor = /** @type {HTMLTextAreaElement | null} */ (null);
+      this.buttons = /** @type {HTMLButtonElement[]} */ ([]);
+      this.mark = make("span", [], "rerun-mark");
+      if (this.code) this.tools(this.code);
+    }
+
+    get source() {
+      return this.editor?.value ?? this.printed;
+    }
+
+    /** @param {HTMLElement} code */
+    tools(code) {
+      const edit = button("Edit", () => this.edit());
+      const onward = button("Run from here", () => void runFrom(this.index));
+      const alone = button("Run this cell", () => void runFrom(this.index, true));
+      const back = button("Reset", () => this.reset());
+      back.hidden = true;
+      this.buttons = [edit, onward, alone, back];
+      this.row = make("div", [edit, alone, onward, back, this.mark], "rerun-tools");
+      code.after(this.row);
+    }
+
+    /** @param {boolean} idle */
+    idle(idle) {
+      for (const each of this.buttons) each.disabled = !idle;
+      if (this.editor) this.editor.readOnly = !idle;
+    }
+
+    edit() {
+      if (!this.code || this.editor) return this.editor?.focus();
+      this.editor = document.createElement("textarea");
+      Object.assign(this.editor, {
+        className: "rerun-editor",
+        value: this.printed,
+        spellcheck: false,
+      });
+      this.editor.setAttribute("aria-label", `Code of cell ${this.index + 1}`);
+      this.editor.setAttribute("autocapitalize", "off");
+      this.editor.addEventListener("input", () => this.changed());
+      this.editor.addEventListener("keydown", (event) => this.key(event));
+      this.code.hidden = true;
+      this.code.after(this.editor);
+      this.fit();
+      this.editor.focus();
+      this.buttons[3].hidden = false;
+    }
+
+    /** @param {KeyboardEvent} event */
+    key(event) {
+      if (event.key === "Enter" && (event.shiftKey || event.ctrlKey)) {
+        event.preventDefault();
+        if (!busy) void runFrom(this.index, event.ctrlKey);
+      }
+    }
+
+    fit() {
+      if (!this.editor) return;
+      this.editor.rows = Math.min(40, this.editor.value.split("\n").length + 1);
+    }
+
+    changed() {
+      this.fit();
+      const isChanged = this.source !== this.printed;
+      this.mark.textContent = isChanged ? "changed" : "";
+      this.row?.classList.toggle("rerun-changed", isChanged);
+    }
+
+    reset() {
+      this.editor?.remove();
+      this.editor = null;
+      if (this.code) this.code.hidden = false;
+      this.buttons[3].hidden = true;
+      this.changed();
+      this.clear();
+    }
+
+    /** Show the printed output again. */
+    clear() {
+      for (const image of this.made?.querySelectorAll("img") ?? []) URL.revokeObjectURL(image.src);
+      this.made?.remove();
+      this.made = null;
+      this.output?.classList.remove("rerun-replaced");
+      this.output?.removeAttribute("inert");
+    }
+
+    /** Put nodes in the place of the printed output. @param {Node[]} nodes @param {boolean} keep the printed output too */
+    show(nodes, keep = false) {
+      this.clear();
+      if (!nodes.length && !this.output) return;
+      const caption = this.output?.querySelector("figcaption")?.cloneNode(true);
+      if (caption instanceof Element && !keep) {
+        for (const each of caption.querySelectorAll("[id], .headerlink")) each.remove();
+        nodes = [...nodes, caption];
+      }
+      this.made = make("div", nodes, "cell_output docutils container rerun-output");
+      this.made.dataset.cell = String(this.index);
+      const before = this.output ?? this.row ?? this.code;
+      if (!before) return;
+      before.after(this.made);
+      if (!keep) this.output?.classList.add("rerun-replaced");
+      if (!keep) this.output?.setAttribute("inert", "");
+      void drawFormulas(this.made);
+    }
+  }
+
+  const cells = /** @type {Map<number, Place>} */ (new Map());
+
+  // --- running ----------------------------------------------------------------------------------
+
+  /** Read what the page needs and start Python, unless it runs. */
+  async function ready() {
+    if (!chapter) throw new Error("the chapter's cells are missing");
+    if (engine) return;
+    engine = new Engine(root);
+    await engine.load([...ALWAYS, ...chapter.needs], (done, whole) => {
+      progress.max = whole;
+      progress.value = done;
+      say(
+        done < whole ? `Reading ${megabytes(done)} of ${megabytes(whole)} …` : "Starting Python …",
+        "busy",
+      );
+    });
+    const kernel = new TextDecoder().decode(
+      await read(/** @type {any} */ (files?.files.find(({ name }) => name === "kernel.py")), root),
+    );
+    const make = `import sys; sys.path.insert(0, "/home/pyodide")
+import kernel
+cells = kernel.Cells(${JSON.stringify(chapter.chapter)})
+cells.watch()
+cells`;
+    await engine.ask({ action: "open", modules: { "kernel.py": kernel }, make });
+  }
+
+  /** Read the cells, once: their buttons come with them. */
+  async function open() {
+    if (chapter) return;
+    const text = new TextDecoder().decode(await read(/** @type {any} */ (entry), root));
+    chapter = /** @type {Chapter} */ (JSON.parse(text));
+    for (const cell of chapter.cells) cells.set(cell.index, new Place(cell));
+  }
+
+  async function runAll() {
+    if (engine) end("");
+    await guarded(async () => {
+      await open();
+      results = new Map();
+      lost = "";
+      await ready();
+      await run([...cells.values()]);
+    });
+  }
+
+  /** @param {number} index @param {boolean} alone */
+  async function runFrom(index, alone = false) {
+    await guarded(async () => {
+      const isNew = !engine;
+      await ready();
+      const chosen = [...cells.values()].filter(
+        (cell) => isNew || (alone ? cell.index === index : cell.index >= index),
+      );
+      await run(alone && isNew ? chosen.filter((cell) => cell.index <= index) : chosen);
+    });
+  }
+
+  /** @param {() => Promise<void>} action */
+  async function guarded(action) {
+    if (busy) return;
+    busy = true;
+    const from = performance.now();
+    try {
+      say("Starting …", "busy");
+      await action();
+      bar.dataset.seconds = ((performance.now() - from) / 1000).toFixed(1);
+    } catch (error) {
+      const what = /** @type {Error} */ (error).message;
+      if (what !== "stopped") end(`This page cannot run: ${what}`);
+    } finally {
+      busy = false;
+      for (const cell of cells.values()) cell.idle(true);
+    }
+  }
+
+  /** @param {Place[]} chosen */
+  async function run(chosen) {
+    progress.max = chosen.length;
+    let failed = /** @type {Place | null} */ (null);
+    for (const [k, cell] of chosen.entries()) {
+      progress.value = k;
+      say(`Running cell ${k + 1} of ${chosen.length} …`, "busy");
+      const answer = await runCell(cell);
+      if (answer.error && !answer.kept) {
+        failed = cell;
+        break;
+      }
+    }
+    conclude(failed);
+  }
+
+  /** @param {Place} cell */
+  async function runCell(cell) {
+    let answer = await engine?.call("run", cell.index, cell.source);
+    const part = PARTS_OF[answer.error?.missing];
+    if (part && engine && !engine.had.has(part)) {
+      engine.had.add(part); // once: what is still missing then is an error
+      await engine.load([part], (done, whole) =>
+        say(`Reading ${megabytes(done)} of ${megabytes(whole)} …`, "busy"),
+      );
+      answer = await engine.call("run", cell.index, cell.source);
+    }
+    for (const each of answer.compared) results.set(each.id, each);
+    const absent = answer.error?.absent;
+    lost ||= absent ?? "";
+    if (absent || (lost && answer.error?.what.startsWith("NameError"))) {
+      const why = absent
+        ? `This cell needs ${absent}, which cannot be had inside a page. Its output is the printed one.`
+        : `This cell needs what a cell above could not compute without ${lost}. Its output is the printed one.`;
+      cell.show([make("p", [why], "rerun-note")], true);
+      return { ...answer, kept: true };
+    }
+    const words = [...(cell.output?.querySelectorAll("img") ?? [])].map((image) => image.alt);
+    let pictures = 0;
+    const nodes = answer.outputs.map((/** @type {Record<string, string>} */ bundle) =>
+      one(bundle, words["image/svg+xml" in bundle ? pictures++ : 0] ?? "A picture of this cell"),
+    );
+    if (answer.error) nodes.push(failure(answer.error));
+    cell.show(nodes);
+    return answer;
+  }
+
+  /** @param {Place | null} failed */
+  function conclude(failed) {
+    const compared = [...results.values()];
+    const agree = compared.filter((each) => each.agrees).length;
+    const whole = Math.max(chapter?.recorded ?? 0, compared.length);
+    const changed = [...cells.values()].some((cell) => cell.source !== cell.printed);
+    details.replaceChildren();
+    if (failed) {
+      say("A cell raised an error: what follows it did not run.", "bad");
+      failed.made?.scrollIntoView({ block: "center" });
+      return;
+    }
+    const numbers = whole
+      ? `${agree} of ${whole} numbers agree with the printed ones, within their stated errors.`
+      : "All cells have run.";
+    const notes = [
+      changed ? "You have changed a cell, so other numbers are to be expected." : "",
+      lost ? `Cells that need ${lost} keep their printed output.` : "",
+    ].filter(Boolean);
+    say([numbers, ...notes].join(" "), agree === whole ? "good" : changed || lost ? "" : "bad");
+    for (const { id, now, then } of compared.filter((each) => !each.agrees)) {
+      details.append(
+        make("li", [
+          make("code", [id]),
+          `: ${JSON.stringify(now)}, printed ${JSON.stringify(then)}`,
+        ]),
+      );
+    }
+  }
+
+  /** @param {string} why */
+  function end(why) {
+    engine?.end();
+    engine = null;
+    busy = false;
+    say(why);
+  }
+
+  function resetAll() {
+    end("");
+    details.replaceChildren();
+    for (const cell of cells.values()) {
+      if (cell.code) cell.reset();
+      else cell.clear();
+    }
+    say(invitation());
+  }
+
+  const invitation = () => {
+    const whole = bytesOf(["engine", "base", "library", "matplotlib"]);
+    const way = location.protocol === "file:" ? "It reads" : "It downloads";
+    return `Python runs inside this page, and its code becomes editable. ${way} about ${megabytes(whole)} once; the memory it takes is about ten times that.`;
+  };
+  say(invitation());
+})();
