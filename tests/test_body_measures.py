@@ -264,6 +264,41 @@ def test_a_rectangle_with_a_post_in_it_is_not_safe(tmp_path) -> None:
     assert problem.contacts.boundaries[found.form] == "hand, post"
 
 
+BOX_FILE = """
+schema = 1
+name = "A box at an elbow"
+length_unit = "m"
+angle_unit = "rad"
+home = { q1 = 0, q2 = 0 }
+tool = "tip"
+collisions = "all"
+joint = [
+  { name = "q1", type = "revolute", parent = "0", frame = "1", origin = [3, 0, 0], axis = [0, 0, -1] },
+  { name = "q2", type = "revolute", parent = "1", frame = "2", origin = [3, 0, 0], axis = [0, 0, 1], rpy = [0, 0, 0.7853981633974483] },
+]
+point = [{ name = "tip", frame = "2", at = [1, 0, 0] }]
+body = [{ name = "fore", frame = "2", polygon = [[0, -0.5], [2, -0.5], [2, 0.5], [0, 0.5]] }]
+obstacle = [
+  { name = "disc", disc = { at = [0, -1], radius = 1 } },
+  { name = "bar", capsule = { from = [1, 1], to = [0, 1], radius = 0.25 } },
+]
+"""  # noqa: E501
+
+
+def test_triangles_that_are_cut_again_and_again_get_smaller(tmp_path) -> None:
+    """A form that falls and rises along the longest side changes more along the others."""
+    (tmp_path / "box.toml").write_text(BOX_FILE, encoding="utf-8")
+    problem = clearance_problem(load_robot(tmp_path / "box.toml"))
+    centre = np.array([5.195877124490555, -1.9500802669594774])
+    corners = 1.2712039550176283 * np.array([[-1, -1], [1, -1], [1.2, 0.1], [1, 1], [-1, 1]])
+    found = largest_safe_scale(centre + corners, centre, problem.forms, contacts=problem.contacts)
+    assert found.form == -1
+    u, v = np.random.default_rng(0).uniform(size=(2, 2000, 1))
+    start = np.arange(2000) % 5
+    edge = (1 - u) * corners[start] + u * corners[(start + 1) % 5]
+    assert problem.evaluator.feasible(centre + v * edge).all()
+
+
 def test_forms_that_are_no_stack_are_refused(region) -> None:
     """One form, or a list of none, does not say of what joints the contacts are."""
     problem = region.problem

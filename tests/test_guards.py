@@ -273,6 +273,14 @@ BLANK = {
         {"20": -1, "21": 1},
         {"00": 2, "10": -2},
     ),
+    # 2 q1 (1 + 2 q1) (1 + q2), and the same less 1e-12: this leaves the range 1e-13 beside a fibre
+    # on which both all but vanish
+    "all but blank": (
+        PP,
+        ((-1.0, 3.0), (-1.0, 3.0)),
+        {"10": 2, "11": 2, "20": 4, "21": 4},
+        {"00": -1e-12, "10": 2, "11": 2, "20": 4, "21": 4},
+    ),
 }
 
 

@@ -13,6 +13,7 @@ from lizarraga2025.closed_form import vertices
 from qbound import clearance, load_robot
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.polygon import along_edges, centroid, scaled
+from qbound.measures import scaling
 from qbound.measures.scaling import (
     first_exit,
     largest_safe_scale,
@@ -146,6 +147,20 @@ def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
 def test_a_centre_that_is_not_safe_is_refused(centre) -> None:
     with pytest.raises(ValueError, match="violated at the centre"):
         largest_safe_scale(SQUARE, centre, stack(DISC))
+
+
+def test_a_form_that_only_touches_zero_inside_ends_with_an_error() -> None:
+    """(x - 0.5)^2 + (y + 0.3)^2 is zero at one place: no triangle about it is shown to be safe."""
+    touching = slides(xx=1, yy=1, one=0.34, x=-1, y=0.6)
+    with pytest.raises(ArithmeticError, match="touches zero inside"):
+        largest_safe_scale(SQUARE, [0.1, 0.05], stack(touching, below(3)))
+
+
+def test_a_search_that_finds_ever_smaller_scales_says_so(monkeypatch) -> None:
+    """Here the witness stays, whatever the scale: a bound that is not sound."""
+    monkeypatch.setattr(scaling, "violation", lambda asked, cells: np.array([0.2, 0.1]))
+    with pytest.raises(ArithmeticError, match="smaller ones still do"):
+        largest_safe_scale(SQUARE, [0.0, 0.0], stack(DISC))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

@@ -219,8 +219,16 @@ ROUNDS, PLACES = 14, 33
 MOST_TRIANGLES = 2_000_000
 """Triangles looked at before a proof gives up; the paper's polygon takes about a thousand."""
 
-MOST_VALUES = 2**22
-"""Values of forms that are held at once: some 32 MB."""
+ROUNDED = 2.0**-50
+"""Rounding of a form's value, as a part of its size."""
+
+MOST_TOUCHES = 100
+"""Scales that touch, each below the one before, before a search gives up; most find one or two."""
+
+MOST_VALUES, AT_ONCE = 2**22, 2**10
+"""Values of forms that are held at once, some 32 MB, and simplices that are looked at together.
+
+The parts of these are looked at next: where there is no end the smallest ones are soon there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,7 +288,8 @@ def largest_safe_scale(
     ValueError
         If a form is not positive at the centre, a number is not finite, or the forms are no stack.
     ArithmeticError
-        If subdivision comes to no end: a form touches zero along a line inside the polygon.
+        If subdivision comes to no end: somewhere inside the polygon a form touches zero, or bodies
+        touch and do not overlap; or if ever smaller scales are found that touch.
 
     Notes
     -----
@@ -311,7 +320,7 @@ def largest_safe_scale(
     if not (asked.together(asked.forms(g)) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
     best = _coarse(asked, p, g, highest)
-    while True:
+    for _ in range(MOST_TOUCHES):
         best = _touch(asked, p, g, best, highest)
         proved = best.scale * (1 - PROVED_SCALE)
         witness = violation(asked, _fan(g + proved * (p - g), g))
@@ -321,6 +330,7 @@ def largest_safe_scale(
             q = _contact(asked.forms[best.row], p, best)
             return SafeScale(best.scale, proved, q, best.edge, best.form)
         best = _ray_through(p, g, witness)
+    raise ArithmeticError(f"after {MOST_TOUCHES} scales that touch, smaller ones still do")
 
 
 def first_exit(
@@ -455,23 +465,25 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
     Raises
     ------
     ArithmeticError
-        If subdivision comes to no end: a form touches zero along a line.
+        If subdivision comes to no end: somewhere a condition is zero but for rounding.
     """
-    looked_at, step = 0, max(1, MOST_VALUES // (4 * max(1, *asked.forms.shape)))
+    looked_at, step = 0, min(AT_ONCE, max(1, MOST_VALUES // (4 * max(1, *asked.forms.shape))))
+    noise = ROUNDED * asked.forms.size(np.abs(cells).max(axis=(0, 1), initial=0.0))
     while len(cells):
         now, cells = cells[:step], cells[step:]
         looked_at += len(now)
-        if looked_at > MOST_TRIANGLES:
-            raise ArithmeticError("subdivision comes to no end: a form is zero along a line")
         values = asked.forms(now)
-        least = asked.together(values).min(axis=-1, initial=np.inf)
+        least = asked.together(values + noise).min(axis=-1, initial=np.inf)
         if least.min() < 0:
             return np.asarray(now[np.unravel_index(least.argmin(), least.shape)])
         bounds = second_order(asked.forms, now)
         doubtful = ~(asked.together(bounds) > 0).all(axis=1)
         if doubtful.any():
-            now = now[doubtful]
-            chosen = _cuts(asked, now, values[doubtful], bounds[doubtful])
+            now, values = now[doubtful], values[doubtful]
+            at_zero = (asked.together(values - noise).max(axis=1) <= 0).any()
+            if at_zero or looked_at > MOST_TRIANGLES:
+                raise ArithmeticError("subdivision comes to no end: a form touches zero inside")
+            chosen = _cuts(asked, now, values, bounds[doubtful])
             cells = np.concatenate([halved(now, chosen), cells])
     return None
 
@@ -481,7 +493,8 @@ def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> N
 
     Where a clause holds at all corners its bound fails for bending: the edge along which its form
     bends most. Where none does, clauses take turns, and cutting along what bends would come to no
-    end: the edge along which a form of the condition changes most.
+    end: the edge along which a form of the condition may change most. By how much it does change
+    would be no measure: it may fall and rise again, and the longest edge would never be cut.
     """
     lowest = values.min(axis=1)
     holds = np.minimum.reduceat(lowest, asked.clauses, axis=1)[:, asked.clause_of] > 0
@@ -489,8 +502,8 @@ def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> N
     chosen = worst_edges(asked.forms, cells, row)
     own = asked.condition_of == condition[:, None]
     turns = ~(own & holds).any(axis=1)
-    i, j = np.triu_indices(cells.shape[1], 1)
-    changes = np.abs(values[turns][:, i] - values[turns][:, j])
+    slopes = asked.forms.derivatives.size(np.abs(cells).max(axis=(0, 1)))
+    changes = np.abs(edges(cells[turns])) @ slopes.T
     chosen[turns] = np.where(own[turns, None], changes, 0).max(axis=2, initial=0).argmax(axis=1)
     return chosen
 
@@ -508,7 +521,7 @@ def _exits(
     forms = asked.forms
     legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
     bend = np.maximum(bending(forms, legs, rays[:, None])[:, 0], 1e-300)
-    noise = 2.0**-50 * forms.size(np.abs(legs).max(axis=(0, 1)))
+    noise = ROUNDED * forms.size(np.abs(legs).max(axis=(0, 1)))
     s, steps = np.zeros(len(rays)), np.zeros((len(rays), *forms.shape))
     if not len(asked):
         none = np.full(len(rays), -1)
@@ -579,7 +592,7 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
 def _on_edge(
     asked: Conditions, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
 ) -> _Touch:
-    t = np.linspace(low, high, PLACES)
+    t = np.clip(np.linspace(low, high, PLACES), 0.0, 1.0)  # the middle is a place, always
     start, end = p[edge], p[(edge + 1) % len(p)]
     rays = start + t[:, None] * (end - start) - g
     scales, stopped, rows = _exits(asked, g, rays, highest)
@@ -599,4 +612,4 @@ def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:
     )[..., 0]
     edge = int(share.min(axis=1).argmax())
     t = float(share[edge, 1] / share[edge].sum())
-    return _Touch(np.inf, witness, edge, -1, -1, max(t - 0.02, 0.0), min(t + 0.02, 1.0))
+    return _Touch(np.inf, witness, edge, -1, -1, t - 0.02, t + 0.02)

@@ -955,12 +955,13 @@ class CellComplex:
         if len(self.plane.eps):
             _, errors, _ = self.plane.roots_and_errors(form, c[..., ::4], 2 * radius)
             error = np.where(roots[..., 1, None] < 0, errors[0], errors[1])
-            error = np.where(blank, 1.0, error)
+            error = np.where(blank, np.inf, error)  # what stays, its limit, may be anywhere
         else:
             error = np.zeros_like(at)
         error = np.where(roots[..., 0, None] < 0, 2 * UNIT * np.abs(at), error)
         ends = np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
-        return ends, np.minimum(error, self.plane.lift_unit).transpose(1, 2, 0)
+        low, high = self.plane.lift_ends
+        return ends, np.minimum(error, high - low).transpose(1, 2, 0)
 
     # --- lines ----------------------------------------------------------------------------------
 
