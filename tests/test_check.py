@@ -9,7 +9,6 @@ import resource
 import shlex
 import subprocess
 import sys
-from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -165,17 +164,17 @@ def all_around(loop, triangles):
 
 
 JSON = {
-    "not JSON": ("box", lambda _: "hello", "the file is not JSON: line 1, column"),
-    "an empty file": ("box", lambda _: " ", "the file is not JSON: line 1, column"),
+    "not JSON": ("box", lambda _: "hello", "the file is not JSON: "),
+    "an empty file": ("box", lambda _: " ", "the file is not JSON: "),
     "a list": ("box", lambda _: "[]", "schema: qbound/certificate/6 is wanted; older formats are not read any"),
     "a text": ("box", lambda _: '"proved"', "schema: qbound/certificate/6 is wanted; older formats are not read any"),
-    "zeros": ("box", lambda _: "\x00" * 1000, "the file is not JSON: line 1, column"),
-    "a byte order mark": ("box", text_of(lambda t: "\ufeff" + t), "the file is not JSON: line 1, column"),
+    "zeros": ("box", lambda _: "\x00" * 1000, "the file is not JSON: "),
+    "a byte order mark": ("box", text_of(lambda t: "\ufeff" + t), "the file is not JSON: "),
     "UTF-16": ("box", text_of(lambda t: t.encode("utf-16")), "the file is not UTF-8 text"),
     "half a character": ("box", text_of(lambda t: t.encode() + b"\xed\xa0\x80"), "the file is not UTF-8 text"),
     "half a character in a name": ("box", put("parts", {"\ud800": []}), "parts: unknown key '\\ud800'"),
-    "half a character in the robot": ("box", put("robot", lambda t: t + "#\ud800"), "the file.robot: half a character"),
-    "something after the end": ("box", text_of(lambda t: t + "{}"), "the file is not JSON: line 1, column"),
+    "half a character in the robot": ("box", put("robot", lambda t: t + "#\ud800"), "the file.robot: a text of 1 to 500000 characters is wanted"),
+    "something after the end": ("box", text_of(lambda t: t + "{}"), "the file is not JSON: "),
     "a key twice": ("box", text_of(lambda t: t[:-1] + ', "parts": {}}'), "the file has a key twice in one object"),
     "a key twice within": ("box", text_of(lambda t: t.replace('"set"', '"margin": "0", "set"')), "the file has a key twice in one object"),
     "NaN": ("box", text_of(lambda t: t.replace('"margin": "0"', '"margin": NaN')), "the file has the number 'NaN': decimals are written as strings"),
@@ -184,7 +183,7 @@ JSON = {
     "a float as an integer": ("polygon", text_of(lambda t: t.replace("[[0, 1, 2]", "[[0, 1e0, 2]")), "the file has the number '1e0': decimals are written as strings"),
     "an integer of ten digits": ("polygon", text_of(lambda t: t.replace("[[0, 1, 2]", "[[0, 1, 1000000000]")), "the file has the number '1000000000': decimals are written as strings"),
     "an integer of 100,000 digits": ("polygon", text_of(lambda t: t.replace("[[0, 1, 2]", f"[[0, 1, {'9' * 100_000}]")), "the file has the number"),
-    "a decimal of 100,000 digits": ("box", text_of(lambda t: t.replace('"8"', f'"8.{"1" * 100_000}"')), "claim.points[0][1][0]: a decimal number in quotes is wanted, such as"),
+    "a decimal of 100,000 digits": ("box", text_of(lambda t: t.replace('"8"', f'"8.{"1" * 100_000}"')), "claim.points[0][1][0]: a number of more than 40 digits"),
     "lists in lists": ("box", lambda _: "[" * 1_000_000, "the file is nested too deeply"),
     "tables in tables": ("box", lambda _: '{"a":' * 300_000, "the file is nested too deeply"),
     "lists in a configuration": ("box", text_of(lambda t: t.replace('"8"', "[" * 500 + "]" * 500)), "claim.points[0][1][0]: a decimal number in quotes is wanted, such as"),
@@ -204,8 +203,8 @@ HEAD = {
     "another hash": ("box", put("sha256", "0" * 64), "sha256: the hash of the normal form is "),
     "a hash in capitals": ("box", put("sha256", str.upper), "sha256: the hash of the normal form is "),
     "the hash of the robot's text": ("box", lambda d: d.update(sha256=check.digest(d["robot"])), "sha256: the hash of the normal form is "),
-    "a longer hash": ("box", put("sha256", lambda x: x + "0"), "the file.sha256: a text of 1 to 64 characters is wanted"),
-    "a hash that is a list": ("box", put("sha256", lambda x: [x]), "the file.sha256: a text of 1 to 64 characters is wanted"),
+    "a longer hash": ("box", put("sha256", lambda x: x + "0"), "sha256: the hash of the normal form is "),
+    "a hash that is a list": ("box", put("sha256", lambda x: [x]), "sha256: the hash of the normal form is "),
     "another robot": ("box", put("robot", lambda t: t.replace("[3, 0, 0]", "[3.5, 0, 0]")), "sha256: the hash of the normal form is "),
     "parts that are a list": ("box", put("parts", []), "parts: a table is wanted"),
     "a proof that is a list": ("box", put("proof", []), "proof: a table is wanted"),
@@ -237,7 +236,7 @@ CLAIM = {
     "a box of three corners": ("box", put(*POINTS, 0, lambda p: [*p, ["60", "0"]]), "claim.points[0]: a list of 2 is wanted"),
     "a box with its high corner first": ("box", put(*POINTS, 0, lambda p: p[::-1]), "claim.points: the first corner is the low one in every joint"),
     "a larger box": ("box", put(*POINTS, 0, 1, 0, "60"), "proof.trees[0][0]: the bound of 'floor' fails on a leaf"),
-    "a path that goes on": ("path", put(*POINTS, 0, lambda p: [*p, ["60", "0"]]), "proof.trees[0]: 4 trees are wanted"),
+    "a path that goes on": ("path", put(*POINTS, 0, lambda p: [*p, ["60", "0"]]), "proof.trees[0]: a list of 4 is wanted"),
     "a path that goes elsewhere": ("path", put(*POINTS, 0, 1, 0, "60"), "proof.trees[0][0]: the bound of 'floor' fails on a leaf"),
     "beyond a limit by little": ("up to a limit", put(*POINTS, 0, 1, 1, "170." + "0" * 36 + "1"), "claim: beyond the limit 'q2.upper'"),
     "beyond a limit on one end": ("path", put(*POINTS, 0, 2, 1, "-171"), "claim: beyond the limit 'q2.lower'"),
@@ -306,9 +305,9 @@ SETS = {
     "a tree with a blank": ("box", put(*TREES, 0, 0, ". "), "proof.trees[0][0]: no tree of letters and leaves"),
     "a tree with a line end": ("box", put(*TREES, 0, 0, ".\n"), "proof.trees[0][0]: no tree of letters and leaves"),
     "a capital letter": ("box", put(*TREES, 0, 0, "A.."), "proof.trees[0][0]: no tree of letters and leaves"),
-    "a joint that is not there": ("box", put(*TREES, 0, 0, "c.."), "proof: a tree cuts a joint that the box does not have, or that is held"),
+    "a joint that is not there": ("box", put(*TREES, 0, 0, "c.."), "proof: a tree cuts a joint that the box does not have, or that has no range"),
     "a letter that there never is": ("box", put(*TREES, 0, 0, "h.."), "proof.trees[0][0]: no tree of letters and leaves"),
-    "a joint that is held": ("box of one joint", put(*TREES, 0, 0, "b.."), "proof: a tree cuts a joint that the box does not have, or that is held"),
+    "a joint that is held": ("box of one joint", put(*TREES, 0, 0, "b.."), "proof: a tree cuts a joint that the box does not have, or that has no range"),
     "a second edge of a segment": ("path", put(*TREES, 0, 0, "b.."), "proof: a tree cuts an edge that its cell does not have"),
     "a fourth edge of a triangle": ("polygon", put(*TREES, 0, 0, "d.."), "proof: a tree cuts an edge that its cell does not have"),
     "121 cuts on top of each other": ("box", put(*TREES, 0, 0, "a" * 121 + "." * 122), "proof.trees[0][0]: more than 120 cuts in a tree"),
@@ -320,13 +319,13 @@ SETS = {
     "a direction of ten digits": ("box", put(*TREES, 1, 0, "1000000000."), "proof.trees[1][0]: no tree of letters and leaves"),
     "a direction in other digits": ("box", put(*TREES, 1, 0, "\u0660."), "proof.trees[1][0]: no tree of letters and leaves"),
     "a leaf of a half-space with a number": ("box", put(*TREES, 0, 0, "0."), "proof.trees[0][0]: a leaf of a half-space names a direction"),
-    "trees as one text": ("path", put(*TREES, 0, "..."), "proof.trees[0]: a list of 0 to 3 is wanted"),
-    "a tree left out": ("path", put(*TREES, 0, [".", "."]), "proof.trees[0]: 3 trees are wanted"),
-    "a tree too many": ("path", put(*TREES, 0, ["."] * 4), "proof.trees[0]: a list of 0 to 3 is wanted"),
+    "trees as one text": ("path", put(*TREES, 0, "..."), "proof.trees[0]: a list of 3 is wanted"),
+    "a tree left out": ("path", put(*TREES, 0, [".", "."]), "proof.trees[0]: a list of 3 is wanted"),
+    "a tree too many": ("path", put(*TREES, 0, ["."] * 4), "proof.trees[0]: a list of 3 is wanted"),
     "a thing to keep left out": ("box", drop(*TREES, 1), "proof.trees: a list of 2 is wanted"),
     "trees for a thing that is not there": ("box", put(*TREES, lambda rows: [*rows, ["."]]), "proof.trees: a list of 2 is wanted"),
     "trees for a thing that is not used": ("no thing to keep", put(*TREES, [["."]]), "proof.trees: a list of 0 is wanted"),
-    "no trees for a thing to keep": ("box", put(*TREES, 0, []), "proof.trees[0]: 1 trees are wanted"),
+    "no trees for a thing to keep": ("box", put(*TREES, 0, []), "proof.trees[0]: a list of 1 is wanted"),
     "trees of two things exchanged": ("bodies", put(*TREES, lambda rows: [*rows[:1], *rows[:0:-1]]), "proof.trees[2][0]: the bound of 'upper arm, pillar' fails on a leaf"),
     "trees of two cells exchanged": ("bodies, path", put(*TREES, each(lambda row: row[::-1])), "proof.trees[8][0]: the bound of 'hand, crate' fails on a leaf"),
 }  # fmt: skip
@@ -347,8 +346,8 @@ SEPARATION = {
     "a held joint that moves": ("no path, one held", put("claim", "joints", 1, "moves"), "proof.tree: 'south' is not violated all over a leaf"),
     "a held joint with another value": ("no path, one held", put(*POINTS, 0, each(lambda q: [q[0], "-0.44"])), "proof.tree: 'south' is not violated all over a leaf"),
     "a held joint that takes any value": ("no path, one held", put("claim", "joints", 1, "any"), "proof.tree: 'south' is not violated all over a leaf"),
-    "a cut of a held joint": ("no path, one held", put(*ROOT, lambda t: f"b{t}{t}"), "proof: a tree cuts a joint that the box does not have, or that is held"),
-    "a cut of a joint of any value": ("no path, any turn", put(*ROOT, lambda t: f"b{t}{t}"), "proof: a tree cuts a joint that the box does not have, or that is held"),
+    "a cut of a held joint": ("no path, one held", put(*ROOT, lambda t: f"b{t}{t}"), "proof: a tree cuts a joint that the box does not have, or that has no range"),
+    "a cut of a joint of any value": ("no path, any turn", put(*ROOT, lambda t: f"b{t}{t}"), "proof: a tree cuts a joint that the box does not have, or that has no range"),
     "three configurations": ("no path", put(*POINTS, 0, lambda p: [*p, ["0"]]), "claim.points[0]: a list of 2 is wanted"),
     "two pairs of start and goal": ("no path", put(*POINTS, lambda p: [*p, *p]), "claim.points: a list of 1 is wanted"),
     "a start beyond a limit": ("no path, sliding", put(*POINTS, 0, 0, 1, "0.3"), "claim.points: the start is beyond a limit"),
@@ -415,7 +414,7 @@ WITNESS = {
     "a limit that there is not": ("limit", put("witness", "limit", "q1.upper"), "witness.limit: no limit of that name is violated"),
     "a boundary as a limit": ("limit", put("witness", "limit", "floor"), "witness.limit: no limit of that name is violated"),
     "a limit that is a list": ("limit", put("witness", "limit", ["q2.upper"]), "witness.limit: no limit of that name is violated"),
-    "near weights of a half-space": ("witness", put(*PLACE, "near", ["1"]), "witness.place.near: an empty list is wanted"),
+    "near weights of a half-space": ("witness", put(*PLACE, "near", ["1"]), "witness.place.near: a list of 0 is wanted"),
     "far weights of one corner too many": ("witness", put(*PLACE, "far", ["1", "0"]), "witness.place.far: a list of 1 is wanted"),
     "a place outside its part": ("witness in the crate", put(*PLACE, "near", ["2", "-1", "0", "0"]), "witness.place.near[1]: a number of 0 or more is wanted"),
     "a place with a sum of 2": ("witness in the crate", put(*PLACE, "near", ["1", "1", "0", "0"]), "witness.place.near: weights whose sum is 1 are wanted"),
@@ -443,13 +442,13 @@ ROBOT = {
     "an unknown key of a joint": (R(JOINT, JOINT + 'colour = "red", '), "robot.joint[0]: unknown key 'colour'"),
     "an unknown key of a boundary": (R("clearance", "radius = 1, clearance"), "robot.boundary[1]: unknown key 'radius'"),
     "an unknown table": (R("joint = [", "extra = { x = 1 }\njoint = ["), "robot: unknown key 'extra'"),
-    "a dotted key": (R("tool =", "home.q3 = 0\ntool ="), "robot: line 6: a key with a dot"),
-    "a quoted dotted key": (R("tool =", '"home"."q3" = 0\ntool ='), "robot: line 6: '.' follows another word or string"),
+    "a dotted key": (R("tool =", "home.q3 = 0\ntool ="), "robot: line 6: a key with a dot: 'home.q3 = 0'"),
+    "a quoted dotted key": (R("tool =", '"home"."q3" = 0\ntool ='), "robot: line 6: a word follows another word or string: "),
     "a key of ten parts": (R("schema = 1", "schema = 1\na.b.c.d.e.f.g.h.i.j = 1"), "robot: line 2: a word with two dots"),
     "a key twice": (R("schema = 1", "schema = 1\nschema = 1"), "robot: no TOML: "),
-    "5,000 brackets": (R("schema = 1", "schema = " + "[" * 5000), "robot: line 1: more than 8 brackets in each other"),
+    "5,000 brackets": (R("schema = 1", "schema = " + "[" * 5000), "robot: more than 8 brackets in each other"),
     "a number of 200 digits": (R("-1.5", "-1." + "5" * 200), "robot: line 16: '-1.555555555"),
-    "a string in two words": (R('"arm"', '"arm" "leg"'), 'robot: line 2: \'"leg"\' follows another word or string'),
+    "a string in two words": (R('"arm"', '"arm" "leg"'), 'robot: line 2: a word follows another word or string: '),
     "a string that does not end": (R('"arm"', '"arm'), "robot: line 2: a string that does not end"),
     "schema true": (R("schema = 1", "schema = true"), "robot.schema: 1 is wanted"),
     "schema 2": (R("schema = 1", "schema = 2"), "robot.schema: 1 is wanted"),
@@ -468,7 +467,7 @@ ROBOT = {
     "a continuous joint with limits": (R('type = "revolute"', 'type = "continuous", limits = [-1, 1]'), "robot.joint[0]: a continuous joint has no limits"),
     "a parent that is missing": (R('parent = "1"', 'parent = "7"'), "robot.joint[1]: its parent is not the frame before"),
     "one name for two joints": (R('name = "q2"', 'name = "q1"'), "robot: joint: two are called 'q1'"),
-    "one name for two frames": (R('frame = "2"', 'frame = "0"'), "robot: a frame has the name of another one"),
+    "one name for two frames": (R('frame = "2"', 'frame = "0"'), "robot: frame: two are called '0'"),
     "an origin of two numbers": (R("[0, 0, 2]", "[0, 2]"), "robot.joint[0].origin: a list of 3 is wanted"),
     "an origin of texts": (R("[0, 0, 2]", '["0", "0", "2"]'), "robot.joint[0].origin[0]: a number is wanted"),
     "an origin that is a text": (R("[0, 0, 2]", '"002"'), "robot.joint[0].origin: a list of 3 is wanted"),
@@ -511,7 +510,7 @@ ROBOT = {
     "half a character": (R('"arm"', '"\\ud800"'), "robot: no TOML: "),
     "eight joints": (lambda d: d.update(robot=eight_joints()), "robot.joint: a list of 1 to 7 is wanted"),
     "a robot of more than 500,000 characters": (R("schema = 1", "schema = 1 #" + " " * 500_000), "the file.robot: a text of 1 to 500000 characters is wanted"),
-    "a carriage return within a line": (R("schema = 1", "schema = 1\rname = 2"), "robot: line 1: 'name' follows another word or string"),
+    "a carriage return within a line": (R("schema = 1", "schema = 1\rname = 2"), "robot: line 1: a word follows another word or string: "),
     "a line end of another kind": (R("schema = 1\n", "schema = 1\u2028"), "robot: no TOML: "),
     # what is another robot, for which the proof fails
     "a floor that is higher": (R("offset = -1.5", "offset = 1.5"), "proof.trees[0][0]: the bound of 'floor' fails on a leaf"),
@@ -535,12 +534,12 @@ OF_BODIES = {
     "a part that is not convex": (put("parts", "hook", [[*range(7)]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
     "a flat part": (put("parts", "hook", lambda p: [*p, [0, 6, 5]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
     "parts that overlap": (put("parts", "hook", 0, [0, 1, 2]), "parts.'hook': two pieces lie on one side of an edge"),
-    "a part of a corner that is not there": (put("parts", "hook", 0, 0, 7), "parts.'hook': 0 to 6 is wanted"),
-    "a part of a corner from the end": (put("parts", "hook", 0, 0, lambda k: k - 7), "parts.'hook': 0 to 6 is wanted"),
+    "a part of a corner that is not there": (put("parts", "hook", 0, 0, 7), "parts.hook[0][0]: 0 to 6 is wanted"),
+    "a part of a corner from the end": (put("parts", "hook", 0, 0, lambda k: k - 7), "parts.hook[0][0]: 0 to 6 is wanted"),
     "a part of two corners": (put("parts", "hook", 0, [0, 1]), "parts.hook[0]: a list of 3 to 1000 is wanted"),
     "a part with a corner twice": (put("parts", "hook", 0, lambda part: [*part, part[-1]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
     "a part that goes round twice": (put("parts", "hook", 0, lambda part: part * 2), "parts.'hook': two pieces lie on one side of an edge"),
-    "a part of truth values": (put("parts", "hook", 0, [False, True, 2]), "parts.'hook': 0 to 6 is wanted"),
+    "a part of truth values": (put("parts", "hook", 0, [False, True, 2]), "parts.hook[0][0]: 0 to 6 is wanted"),
     "a part that is a text": (put("parts", "hook", 0, "012"), "parts.hook[0]: a list of 3 to 1000 is wanted"),
     "a larger crate": (R("[[0.6, 0.4], [0.9, 0.4]", "[[0.6, -0.1], [0.9, -0.1]"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
     "a thicker arm": (R("radius = 0.04", "radius = 0.4"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
@@ -641,8 +640,8 @@ def test_where_the_checkers_differ_they_are_known_to(name):
 
 
 def altered(name, **values):
-    """Return a kernel's function that has its result with other values."""
-    true = getattr(check, name)
+    """Return a kernel's method that has its result with other values."""
+    true = getattr(check.Leaf, name)
     return lambda *args: true(*args)._replace(**values)
 
 
@@ -650,14 +649,14 @@ def of_other_keep(name, change):
     """Return a kernel's function to which a thing to keep is described otherwise."""
     true = getattr(check, name)
 
-    def faulty(steps, pose, keep, *rest):
-        return true(steps, pose, replace(keep, **change(keep)), *rest)
+    def faulty(leaf, keep, *rest):
+        return true(leaf, keep._replace(**change(keep)), *rest)
 
     return faulty
 
 
 def first_corner(hull):
-    return replace(hull, corners=hull.corners[:1])
+    return hull._replace(corners=hull.corners[:1])
 
 
 CLIPPING, GRAZING = path("20 0, 30 0"), path("15 0, 24 0")
@@ -678,7 +677,7 @@ FAULTY = {
     "the middle stands for a leaf": (
         {"motion": altered("motion", bend=0, slopes={})}, lambda: proved(BODIES, GRAZING)),
     "directions are twice as long": (
-        {"is_kept": lambda *args, true=check.is_kept: true(*args[:3], tuple(2 * x for x in args[3]), args[4])},
+        {"is_kept": lambda leaf, keep, u, true=check.is_kept: true(leaf, keep, tuple(2 * x for x in u))},
         lambda: proved(BODIES, GRAZING)),
     "the bend of what is violated is forgotten": (
         {"motion": altered("motion", bend=0)},
@@ -693,7 +692,7 @@ def test_what_a_faulty_prover_claims_is_refused(monkeypatch, name):
     patches, maker = FAULTY[name]
     with monkeypatch.context() as kernel:
         for function, faulty_one in patches.items():
-            kernel.setattr(check, function, faulty_one)
+            kernel.setattr(check if hasattr(check, function) else check.Leaf, function, faulty_one)
         data = maker()
     assert not brute_force.tells_the_truth(data), "the fault does not show"
     assert [isinstance(verdict(checker, data), ValueError) for checker in CHECKERS] == [True, True]

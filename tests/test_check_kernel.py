@@ -7,7 +7,6 @@ import random
 import re
 import sys
 import tomllib
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -93,17 +92,16 @@ class Sample:
         size = width * np.where(turns, radian, 3)
         low = np.where(turns, 2 * size * rng.uniform(-1, 1, count), rng.uniform(-4, 3, count))
         high = low + size * rng.random(count) * rng.choice([0, 1, 1], count)
-        self.free = [bool(x) for x in rng.random(count) < free_share]
+        is_free = rng.random(count) < free_share
         is_simplex = seed // 4 % 2
         shares = rng.random((3, count)) if is_simplex else np.array([[0] * count, [1] * count])
         corners = (low + shares * (high - low)).round(3)
-        corners[:, self.free] = np.where(turns, 0, 1)[self.free]  # 1 is the middle of a slide
+        corners[:, is_free] = np.where(turns, 0, 1)[is_free]  # 1 is the middle of a slide
         exact = [[Fraction(str(x)) for x in q] for q in corners]
         low, high = corners.min(axis=0), corners.max(axis=0)
         self.draft = Draft(text, box(" ".join(map(str, low)), " ".join(map(str, high))))
         placed = [self.draft.arm.placed(q) for q in exact]
-        self.cell = check.Simplex(tuple(placed)) if is_simplex else check.Box(*placed)
-        self.pose = check.Pose(self.draft.steps, self.cell.middle)
+        self.cell = (check.Cell if is_simplex else check.Box)(tuple(placed))
         self.middle = corners.mean(axis=0)
         if is_simplex:
             parts = np.concatenate([np.eye(3), rng.dirichlet([0.5] * 3, 60)])
@@ -112,10 +110,14 @@ class Sample:
             ends = np.array([*itertools.product((0, 1), repeat=count)])
             parts = np.concatenate([ends, rng.random((60, count))])
             self.q = corners[0] + parts * (corners[1] - corners[0])
-        self.q = np.repeat(self.q, 20 if any(self.free) else 1, axis=0)
+        arm = self.draft.arm
+        ranges = {j: arm.whole_range(j) for j in np.flatnonzero(is_free).tolist()}
+        free = {j: (high - low + 3) >> 1 for j, (low, high) in ranges.items()}
+        self.leaf = check.Leaf(self.draft.steps, self.cell, free)
+        self.q = np.repeat(self.q, 20 if free else 1, axis=0)
         whole = np.where(turns, np.pi * radian, 5)  # the limits of slides are -4 and 6
         anything = np.where(turns, 0, 1) + whole * rng.uniform(-1, 1, self.q.shape)
-        self.q = np.where(self.free, anything, self.q)
+        self.q = np.where(is_free, anything, self.q)
 
     def corner(self):
         return [round(self.rng.uniform(-9, 9), 3) for _ in range(3)]
@@ -141,7 +143,7 @@ def test_a_place_is_as_near_to_its_linear_motion_as_the_bound_says(free_share):
         near = s.rng.randrange(len(names)) if s.rng.random() < 0.3 else 0
         far = s.rng.randrange(near, len(names))
         placed = s.draft.arm.scaled([Fraction(str(x)) for x in corner])
-        found = check.motion(s.draft.steps, s.pose, near, far, placed, s.cell.widths, s.free)
+        found = s.leaf.motion(near, far, placed)
         linear = in_floats(found.place, scale)
         for k, slope in found.slopes.items():
             one = in_floats(slope, scale if s.draft.steps[k].turns else 1)
@@ -164,7 +166,7 @@ def seen(s, frame, corner, at):
 
 
 def with_gap(keep, gap, scale):
-    return replace(keep, gap=check.in_units(Fraction(gap / scale)))
+    return keep._replace(gap=check.in_units(Fraction(gap / scale)))
 
 
 @pytest.mark.parametrize("width", [0.01, 0.1, 1])
@@ -183,10 +185,7 @@ def test_what_is_kept_on_a_leaf_is_what_is_kept_at_all_its_places(width):
                 true.min() + 1e-9 * scale,
                 *(true.min() - x * scale for x in np.geomspace(1e-9, 99, 40)),
             ]
-            kept = [
-                check.is_kept(s.draft.steps, s.pose, with_gap(keep, x, scale), u, s.cell)
-                for x in below
-            ]
+            kept = [check.is_kept(s.leaf, with_gap(keep, x, scale), u) for x in below]
             assert kept == sorted(kept)
             assert not kept[0], (seed, keep.name)
             lost.append((true.min() - below[kept.index(True)]) / scale)
@@ -212,7 +211,7 @@ def test_what_is_violated_on_a_leaf_is_what_is_violated_at_all_its_places(free_s
             )
             for above, wanted in ((-1e-9, [False]), (10, [False, True])):
                 other = with_gap(keep, true.max() + above * scale, scale)
-                holds = check.is_violated(s.draft.steps, s.pose, other, spots, s.cell, s.free)
+                holds = check.is_violated(s.leaf, other, spots)
                 assert holds in wanted, (seed, keep.name)
                 found += holds
     assert found > 300
@@ -258,8 +257,8 @@ def test_many_turns_of_all_joints_add_less_than_the_slack(unit):
     head = ARM.split("joint = [")[0].replace("q1 = 0, q2 = 0", home).replace("deg", unit)
     point = '[[point]]\nname = "tip"\nframe = "7"\nat = [0.3, -0.1, 0.7]\n'
     arm = check.Arm(check.read_robot(head + "".join(rows) + point, {}), Fraction(0))
-    turned = check.Pose(arm.steps, arm.placed([Fraction(29 - 7 * j) for j in range(7)]))
-    still = check.Pose(arm.steps, (0,) * 7)
+    ends = arm.placed([Fraction(29 - 7 * j) for j in range(7)]), (0,) * 7
+    turned, still = (check.Leaf(arm.steps, check.Box((q, q))) for q in ends)
     tip = arm.scaled([Fraction(3, 10), Fraction(-1, 10), Fraction(7, 10)])
     off = check.size(check.minus(turned.place(14, tip), still.place(14, tip)))
     assert 0 < off < check.SLACK >> 16
@@ -282,17 +281,16 @@ def test_a_disc_lies_within_a_part_if_every_edge_is_that_far(seed):
     at = check.mean(shares, corners)
     depth = hull.exterior.distance(shapely.Point(float(at[0]), float(at[2])))
     for part, within in ((0.999999, True), (1.000001, False)):
-        assert check._holds_disc(corners, (0, 2), at, Fraction(depth * part)) == within
+        assert check._holds_disc(corners, 1, at, Fraction(depth * part)) == within
     outside = (at[0] + 30, at[1], at[2])
-    assert not check._holds_disc(corners, (0, 2), outside, Fraction(1, 10**9))
+    assert not check._holds_disc(corners, 1, outside, Fraction(1, 10**9))
 
 
 def test_leaves_that_nearly_touch_are_one_way_on():
     for gap, touch in ((check.TOUCH, True), (check.TOUCH + 2, False)):
-        leaves = check.Leaves([(0, 0)])
-        leaves.add(check.Box((0, 0), (ONE, ONE)), 0, True)
-        beyond = check.Box((ONE + gap, ONE + gap), (2 * ONE, 2 * ONE))  # at a corner
-        assert [*leaves.touching(beyond)] == [0] * touch
+        leaf = check.Node(check.Box(((0, 0), (ONE, ONE))), is_open=True)
+        beyond = check.Box(((ONE + gap, ONE + gap), (2 * ONE, 2 * ONE)))  # at a corner
+        assert [*leaf.touching(beyond, [(0, 0)])] == [leaf] * touch
 
 
 EVERYWHERE = planar.planar("", "[-90, 90]", "", posts=planar.wall("wall", 0, 1, 99))

@@ -9,12 +9,12 @@ another. This file decides whether the proof holds. It imports nothing but the s
 uses no floating point, and can be copied and run alone. The page "The certificate" of the book
 defines the format; what that page does not list is refused.
 
-Read it from top to bottom. The first three parts are the kernel:
+Read it from top to bottom. The first four parts are the kernel:
 
     numbers       whole numbers of 2^-224, and how far they can be off
+    cells         boxes, segments and triangles, and how they are cut
     kinematics    where the frames are, where a place is, how it moves, how much its path bends
     inequality    why everything is kept, or not kept, all over a leaf
-    cells         boxes and simplices, and the trees that cut them
     claims        sets, witnesses, and configurations between which no path leads
     reading       JSON, TOML, the robot and its normal form
     answer        the statement, written from what was verified, and the exit status
@@ -39,20 +39,23 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Context, Decimal, Inexact
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from operator import lt, mul
+from operator import lt, mul, sub
 from pathlib import Path
 from typing import Any, NamedTuple
 
 SCHEMA = "qbound/certificate/6"
 
 Table = dict[str, Any]
+Rows = list[Table]
 Reader = Callable[[Any, str], Any]
 Exact = tuple[Fraction, ...]
 """A configuration in the units of the robot file, or three coordinates."""
+Loop = list[tuple[int, int]]
 
 
 class Refused(ValueError):
@@ -210,15 +213,84 @@ def rotation(axis: Vector, angle: int) -> Matrix:
     return x, y, z
 
 
-# --- kinematics -----------------------------------------------------------------------------------
+# --- cells ----------------------------------------------------------------------------------------
+# Values of joints are in units too: radians, or parts of the largest length. The corners of the
+# cells of a claim are rounded to units, which the slack covers. Cuts lie at whole numbers, so that
+# the two halves have the same face.
+
+Point = tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Step:
+class Cell:
+    """A segment or a triangle, by its corners."""
+
+    ends: tuple[Point, ...]
+
+    @cached_property
+    def middle(self) -> Point:
+        """Return the mean of the corners, rounded down."""
+        return tuple(sum(column) // len(self.ends) for column in zip(*self.ends, strict=True))
+
+    @cached_property
+    def steps(self) -> list[Point]:
+        """Return the way from the middle to each corner."""
+        return [tuple(map(sub, corner, self.middle)) for corner in self.ends]
+
+    @cached_property
+    def widths(self) -> Point:
+        """Return for each joint the largest distance of a corner from the middle."""
+        return tuple(max(map(abs, column)) for column in zip(*self.steps, strict=True))
+
+    def least(self, slopes: Sequence[int]) -> int:
+        """Return the least sum of slope * offset over all corners, rounded down."""
+        least: int = min(sum(map(mul, slopes, step)) for step in self.steps)
+        return least >> BITS
+
+    def offsets(self, joints: set[int]) -> Iterable[Point]:
+        """Return the ways from the middle to the corners, as far as some joints tell them apart."""
+        del joints
+        return self.steps
+
+    def halves(self, letter: int) -> "tuple[Cell, Cell]":
+        """Cut an edge at its middle: the half that keeps its first end, then the other one."""
+        edges = [*itertools.combinations(range(len(self.ends)), 2)]
+        demand(letter < len(edges), "proof: a tree cuts an edge that its cell does not have")
+        i, k = edges[letter]
+        first, second = [*self.ends], [*self.ends]
+        first[k] = second[i] = Cell((self.ends[i], self.ends[k])).middle
+        return Cell(tuple(first)), Cell(tuple(second))
+
+
+class Box(Cell):
+    """All configurations between a low and a high corner, which are its ends."""
+
+    def least(self, slopes: Sequence[int]) -> int:
+        """Return the least sum of slope * offset over all corners, rounded down."""
+        return -sum((abs(s) * d >> BITS) + 1 for s, d in zip(slopes, self.widths, strict=True))
+
+    def offsets(self, joints: set[int]) -> Iterable[Point]:
+        """Return the ways from the middle to the corners, as far as some joints tell them apart."""
+        ends = [(d, -d) if d and j in joints else (0,) for j, d in enumerate(self.widths)]
+        return itertools.product(*ends)
+
+    def halves(self, letter: int) -> "tuple[Cell, Cell]":
+        """Cut at the middle of a joint: the lower half and the upper one."""
+        low, high = self.ends
+        wide = letter < len(low) and low[letter] < high[letter]
+        demand(wide, "proof: a tree cuts a joint that the box does not have, or that has no range")
+        cut = self.middle[letter : letter + 1]
+        above, below = (end[:letter] + cut + end[letter + 1 :] for end in self.ends)
+        return Box((low, below)), Box((above, high))
+
+
+# --- kinematics -----------------------------------------------------------------------------------
+
+
+class Step(NamedTuple):
     """A translation, a fixed rotation, and a turn about an axis or a slide along it.
 
-    Its value is factor * (value of its joint); factor is 1 or -1. `sweep` is at least the distance
-    of a slide from the middle of its range, within its limits.
+    Its value is factor * (value of its joint); factor is 1 or -1.
     """
 
     joint: int
@@ -227,33 +299,6 @@ class Step:
     origin: Vector
     mount: Matrix
     axis: Vector
-    sweep: int
-
-
-class Pose:
-    """An arm at one configuration: its frames, and the axes of its steps, seen from the base."""
-
-    def __init__(self, steps: Sequence[Step], q: Sequence[int]) -> None:
-        Work.add(60 * len(steps))
-        turned, at = AXES, (0, 0, 0)
-        self.frames: list[tuple[Matrix, Vector]] = [(turned, at)]
-        self.axes: list[tuple[Vector, Vector]] = []
-        for step in steps:
-            at = plus(at, image(turned, step.origin))
-            turned = product(turned, step.mount)
-            axis = image(turned, step.axis)
-            self.axes.append((axis, at))
-            value = step.factor * q[step.joint]
-            if step.turns:
-                turned = product(turned, rotation(step.axis, value))
-            else:
-                at = plus(at, times(value, axis))
-            self.frames.append((turned, at))
-
-    def place(self, frame: int, corner: Vector) -> Vector:
-        """Return where a place of a frame is, seen from the base."""
-        turned, at = self.frames[frame]
-        return plus(at, image(turned, corner))
 
 
 class Motion(NamedTuple):
@@ -269,69 +314,88 @@ class Motion(NamedTuple):
     radius: int
 
 
-def motion(
-    steps: Sequence[Step],
-    pose: Pose,
-    near: int,
-    far: int,
-    corner: Vector,
-    widths: Sequence[int],
-    free: Sequence[bool],
-) -> Motion:
-    """Follow a corner of frame `far` inwards to frame `near`, one step of the arm at a time.
+class Leaf:
+    """An arm on a cell: at the middle its frames, and the axes of its steps, seen from the base.
 
-    widths : for each joint at least the distance from the middle of the leaf to any place of it.
-    free : for each joint whether it takes any value; `pose` has the middle of a slide's range.
-
-    Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Then the place r
-    goes to E_1 ... E_n r, and this differs from r by the sum of L_1 ... L_{k-1} (E_k r - r), where
-    L_i is the rotation of E_i. The chord E_k r - r is the integral of the slope s_k, turned by 0 to
-    d_k, and the rotations before it turn it by up to the sum of their d_i. A vector that is turned
-    by an angle moves by at most this angle times its length. So what is not linear is at most
-
-        bend = sum over k of D_k |s_k| (sum over i < k that turn of D_i, and D_k / 2 if k turns).
-
-    A free step that turns: it keeps what is along its axis and turns what is across it anywhere. So
-    the place and each slope are replaced by their parts along the axis, and the length of what is
-    across is added to `radius`. A turn of the part along is bounded as before.
+    free : joints that take any value, each with a number that is at least the distance of its
+        values from the middle, if it slides.
     """
-    Work.add(25 * (far - near + 1))
-    r, slopes, radius = pose.place(far, corner), dict[int, Vector](), 0
-    for k in reversed(range(near, far)):
-        step, (axis, pivot) = steps[k], pose.axes[k]
-        if not free[step.joint]:
-            slopes[k] = cross(axis, minus(r, pivot)) if step.turns else axis
-        elif not step.turns:
-            radius += step.sweep
-        else:
-            foot = plus(pivot, times(dot(axis, minus(r, pivot)), axis))
-            r, across = foot, size(minus(r, foot))
-            for i, slope in slopes.items():
-                slopes[i] = times(dot(axis, slope), axis)
-                across += (widths[steps[i].joint] * size(minus(slope, slopes[i])) >> BITS) + 1
-            radius += across
-    bend = turned = 0
-    for k in sorted(slopes):
-        width = widths[steps[k].joint]
-        own = width if steps[k].turns else 0
-        bend += (width * size(slopes[k]) >> BITS) * (2 * turned + own)
-        turned += own
-    return Motion(r, slopes, (bend >> BITS + 1) + len(slopes) + 1, radius)
+
+    def __init__(self, steps: Sequence[Step], cell: Cell, free: Mapping[int, int] = {}) -> None:
+        Work.add(60 * len(steps))
+        self.steps, self.cell, self.free = steps, cell, free
+        self.widths = [cell.widths[step.joint] for step in steps]
+        turned, at = AXES, (0, 0, 0)
+        self.frames: list[tuple[Matrix, Vector]] = [(turned, at)]
+        self.axes: list[tuple[Vector, Vector]] = []
+        for step in steps:
+            at = plus(at, image(turned, step.origin))
+            turned = product(turned, step.mount)
+            axis = image(turned, step.axis)
+            self.axes.append((axis, at))
+            value = step.factor * cell.middle[step.joint]
+            if step.turns:
+                turned = product(turned, rotation(step.axis, value))
+            else:
+                at = plus(at, times(value, axis))
+            self.frames.append((turned, at))
+
+    def place(self, frame: int, corner: Vector) -> Vector:
+        """Return where a place of a frame is at the middle, seen from the base."""
+        turned, at = self.frames[frame]
+        return plus(at, image(turned, corner))
+
+    def motion(self, near: int, far: int, corner: Vector) -> Motion:
+        """Follow a corner of frame `far` inwards to frame `near`, one step of the arm at a time.
+
+        Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Then the
+        place r goes to E_1 ... E_n r, and this differs from r by the sum of
+        L_1 ... L_{k-1} (E_k r - r), where L_i is the rotation of E_i. The chord E_k r - r is the
+        integral of the slope s_k, turned by 0 to d_k, and the rotations before it turn it by up to
+        the sum of their d_i. A vector that is turned by an angle moves by at most this angle times
+        its length. So what is not linear is at most, with D_k the width of the leaf in d_k,
+
+            bend = sum over k of D_k |s_k| (sum over i < k that turn of D_i, + D_k / 2 if k turns).
+
+        A free step that turns: it keeps what is along its axis and turns what is across it
+        anywhere. So the place and each slope are replaced by their parts along the axis, and the
+        length of what is across is added to `radius`. A turn of the part along is bounded as
+        before.
+        """
+        Work.add(25 * (far - near + 1))
+        r, slopes, radius = self.place(far, corner), dict[int, Vector](), 0
+        for k in reversed(range(near, far)):
+            step, (axis, pivot) = self.steps[k], self.axes[k]
+            if step.joint not in self.free:
+                slopes[k] = cross(axis, minus(r, pivot)) if step.turns else axis
+            elif not step.turns:
+                radius += self.free[step.joint]
+            else:
+                foot = plus(pivot, times(dot(axis, minus(r, pivot)), axis))
+                r, across = foot, size(minus(r, foot))
+                for i, slope in slopes.items():
+                    slopes[i] = times(dot(axis, slope), axis)
+                    across += (self.widths[i] * size(minus(slope, slopes[i])) >> BITS) + 1
+                radius += across
+        bend = turned = 0
+        for k in sorted(slopes):
+            own = self.widths[k] if self.steps[k].turns else 0
+            bend += (self.widths[k] * size(slopes[k]) >> BITS) * (2 * turned + own)
+            turned += own
+        return Motion(r, slopes, (bend >> BITS + 1) + len(slopes) + 1, radius)
 
 
 # --- the inequality -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Hull:
+class Hull(NamedTuple):
     """The convex hull of some corners of a frame."""
 
     frame: int
     corners: tuple[Vector, ...]
 
 
-@dataclass(frozen=True)
-class Keep:
+class Keep(NamedTuple):
     """Two hulls that stay more than `gap` apart, or one above a plane of the base.
 
     near : of the frame that is not beyond that of `far`; for a plane the origin of the base.
@@ -348,8 +412,14 @@ class Keep:
     along: int | None
     normal: Vector | None
 
+    @property
+    def needs_proof(self) -> bool:
+        """Tell whether trees are wanted: a point and a point or a segment are always 0 apart."""
+        few = len(self.near.corners) + len(self.far.corners) <= 3
+        return self.normal is not None or self.asked or not few
 
-def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cell") -> bool:
+
+def is_kept(leaf: Leaf, keep: Keep, u: Vector) -> bool:
     """Prove that something is kept all over a leaf; u is a unit vector, seen from the near frame.
 
     The distance of r and p is at least u . (r - p), and over the leaf u . r is at least its linear
@@ -357,16 +427,14 @@ def is_kept(steps: Sequence[Step], pose: Pose, keep: Keep, u: Vector, cell: "Cel
     hull at one of its corners.
     """
     Work.add(3 * len(keep.near.corners))
-    matrix, at = pose.frames[keep.near.frame]
-    w, none_free = image(matrix, u), [False] * len(cell.widths)
-    nearest = max(dot(u, p) for p in keep.near.corners)
+    matrix, at = leaf.frames[keep.near.frame]
+    w, nearest = image(matrix, u), max(dot(u, p) for p in keep.near.corners)
     for corner in keep.far.corners:
-        frames = keep.near.frame, keep.far.frame
-        found = motion(steps, pose, *frames, corner, cell.widths, none_free)
-        slopes = [0] * len(none_free)
+        found = leaf.motion(keep.near.frame, keep.far.frame, corner)
+        slopes = [0] * len(leaf.cell.middle)
         for k, slope in found.slopes.items():
-            slopes[steps[k].joint] += steps[k].factor * dot(w, slope)
-        low = dot(w, minus(found.place, at)) + cell.least(slopes) - found.bend
+            slopes[leaf.steps[k].joint] += leaf.steps[k].factor * dot(w, slope)
+        low = dot(w, minus(found.place, at)) + leaf.cell.least(slopes) - found.bend
         if low <= nearest + keep.gap + SLACK:
             return False
     return True
@@ -380,126 +448,28 @@ class Spots(NamedTuple):
     radii: int
 
 
-def is_violated(
-    steps: Sequence[Step],
-    pose: Pose,
-    keep: Keep,
-    spots: Spots,
-    cell: "Cell",
-    free: Sequence[bool],
-) -> bool:
+def is_violated(leaf: Leaf, keep: Keep, spots: Spots) -> bool:
     """Prove that something is not kept anywhere on a leaf, whatever the free joints.
 
     The distance of the two places is convex in the offset from the middle, so it is largest at a
     corner of the leaf. Discs lie in planes that are parallel within `NEARLY` at joint values 0 and
     at one height within `NEARLY`, so their radii are good to the product of both, times 2^6.
     """
-    frames = keep.near.frame, keep.far.frame
-    found = motion(steps, pose, *frames, spots.far, cell.widths, free)
-    start = minus(found.place, pose.place(keep.near.frame, spots.near))
+    found = leaf.motion(keep.near.frame, keep.far.frame, spots.far)
+    start = minus(found.place, leaf.place(keep.near.frame, spots.near))
     spare = NEARLY if spots.radii else SLACK
     allowed = keep.gap + spots.radii - found.bend - found.radius - spare
-    for offset in cell.offsets({steps[k].joint for k in found.slopes}):
+    for offset in leaf.cell.offsets({leaf.steps[k].joint for k in found.slopes}):
         Work.add(10 + 3 * len(found.slopes))
         w = start
         for k, slope in found.slopes.items():
-            w = plus(w, times(steps[k].factor * offset[steps[k].joint], slope))
+            w = plus(w, times(leaf.steps[k].factor * offset[leaf.steps[k].joint], slope))
         if keep.along is not None:
-            axis = pose.frames[keep.near.frame][0][keep.along]
+            axis = leaf.frames[keep.near.frame][0][keep.along]
             w = minus(w, times(dot(axis, w), axis))
         if (size(w) if keep.normal is None else dot(keep.normal, w)) >= allowed:
             return False
     return True
-
-
-# --- cells ----------------------------------------------------------------------------------------
-# Values of joints are in units too: radians, or parts of the largest length. The corners of the
-# cells of a claim are rounded to units, which the slack covers. Cuts lie at whole numbers, so that
-# the two halves have the same face.
-
-Point = tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class Box:
-    """All configurations between a low and a high corner."""
-
-    low: Point
-    high: Point
-
-    @cached_property
-    def middle(self) -> Point:
-        """Return the middle."""
-        return tuple(a + b >> 1 for a, b in zip(self.low, self.high, strict=True))
-
-    @cached_property
-    def widths(self) -> Point:
-        """Return for each joint the distance from the middle to the ends, rounded up."""
-        return tuple(b - a + 1 >> 1 for a, b in zip(self.low, self.high, strict=True))
-
-    def least(self, slopes: Sequence[int]) -> int:
-        """Return the least sum of slope * offset over all corners, rounded down."""
-        return -sum((abs(s) * d >> BITS) + 1 for s, d in zip(slopes, self.widths, strict=True))
-
-    def offsets(self, joints: set[int]) -> Iterator[Point]:
-        """Yield the way from the middle to each corner, as far as some joints tell them apart."""
-        ends = [(d, -d) if d and j in joints else (0,) for j, d in enumerate(self.widths)]
-        return itertools.product(*ends)
-
-    def halves(self, letter: int) -> "tuple[Box, Box]":
-        """Cut at the middle of a joint: the lower half and the upper one."""
-        wide = letter < len(self.low) and self.low[letter] < self.high[letter]
-        demand(wide, "proof: a tree cuts a joint that the box does not have, or that is held")
-        cut = self.middle[letter]
-        below = (*self.high[:letter], cut, *self.high[letter + 1 :])
-        above = (*self.low[:letter], cut, *self.low[letter + 1 :])
-        return Box(self.low, below), Box(above, self.high)
-
-
-@dataclass(frozen=True)
-class Simplex:
-    """A segment or a triangle."""
-
-    ends: tuple[Point, ...]
-
-    @cached_property
-    def middle(self) -> Point:
-        """Return the mean of the corners, rounded."""
-        return tuple(sum(column) // len(self.ends) for column in zip(*self.ends, strict=True))
-
-    @cached_property
-    def steps(self) -> list[Point]:
-        """Return the way from the middle to each corner."""
-        middle = self.middle
-        return [tuple(x - m for x, m in zip(q, middle, strict=True)) for q in self.ends]
-
-    @cached_property
-    def widths(self) -> Point:
-        """Return for each joint the largest distance of a corner from the middle."""
-        return tuple(max(map(abs, column)) for column in zip(*self.steps, strict=True))
-
-    def least(self, slopes: Sequence[int]) -> int:
-        """Return the least sum of slope * offset over all corners, rounded down."""
-        rises = (sum(s * d for s, d in zip(slopes, step, strict=True)) for step in self.steps)
-        return min(rises) >> BITS
-
-    def offsets(self, joints: set[int]) -> Iterator[Point]:
-        """Yield the way from the middle to each corner."""
-        del joints
-        return iter(self.steps)
-
-    def halves(self, letter: int) -> "tuple[Simplex, Simplex]":
-        """Cut an edge at its middle: the half that keeps its first end, then the other one."""
-        edges = [*itertools.combinations(range(len(self.ends)), 2)]
-        demand(letter < len(edges), "proof: a tree cuts an edge that its cell does not have")
-        i, k = edges[letter]
-        cut = tuple(a + b >> 1 for a, b in zip(self.ends[i], self.ends[k], strict=True))
-        first, second = list(self.ends), list(self.ends)
-        first[k], second[i] = cut, cut
-        return Simplex(tuple(first)), Simplex(tuple(second))
-
-
-Cell = Box | Simplex
 
 
 # --- the claims -----------------------------------------------------------------------------------
@@ -507,24 +477,17 @@ Cell = Box | Simplex
 MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
 
-LETTER = re.compile("[a-g]|(?:0|[1-9][0-9]{0,5})?[.]")
+LETTER = re.compile("([a-g]|(?:0|[1-9][0-9]{0,5})?[.])|.", re.DOTALL)
 
 
 def tokens(tree: Any, where: str) -> Iterator[str]:
     """Yield the letters and leaves of a tree one after the other."""
-    at, end = 0, len(tree) if type(tree) is str else 0
-    while at < end:
-        found = LETTER.match(tree, at)
-        if found is None:
-            raise Refused(f"{where}: no tree of letters and leaves")
-        yield found.group()
-        at = found.end()
+    for found in LETTER.finditer(tree if type(tree) is str else ""):
+        demand(found[1], f"{where}: no tree of letters and leaves")
+        yield found[1]
 
 
-Walk = Iterator[tuple[Any, int, dict[str, str]]]
-
-
-def walk(cell: Cell, trees: dict[str, Any]) -> Walk:
+def walk(cell: Cell, trees: dict[str, Any]) -> Iterator[tuple[Cell, int, dict[str, str]]]:
     """Walk some trees of a cell together: yield its parts, how often each was cut, and its leaves.
 
     A part that several trees have comes once, because the arm is placed there once. Trees, and the
@@ -552,132 +515,121 @@ def walk(cell: Cell, trees: dict[str, Any]) -> Walk:
         demand(not next(rest, ""), f"{where}: a tree goes on after its last leaf")
 
 
-def prove_safe(arm: "Arm", cells: Sequence[Cell], proof: Any) -> None:
-    """Verify the trees of all things to keep, cell by cell."""
-    count, some = len(arm.keeps), items(anything, 0, len(cells))
-    spec = {"directions": items(_direction, 0, MAX_CELLS), "trees": items(some, count, count)}
-    found = table(spec)(proof, "proof")
-    for k, row in enumerate(found["trees"]):
-        wanted = len(cells) if arm.needs_proof[k] else 0
-        demand(len(row) == wanted, f"proof.trees[{k}]: {wanted} trees are wanted")
+def prove_safe(arm: "Arm", claim: "Claim", proof: Any) -> str:
+    """Verify the trees of all things to keep, cell by cell; say what is proved."""
+    for q in itertools.chain(*claim.corners):
+        for limit in arm.robot.beyond(q):
+            raise Refused(f"claim: beyond the limit {shown(limit)}")
+    make = Box if claim.kind == "box" else Cell
+    cells = [make(tuple(map(arm.placed, corners))) for corners in claim.corners]
+    trees = items(anything, len(arm.keeps), len(arm.keeps))
+    whole = "three integers, not all 0, are wanted"
+    direction = such(
+        lambda row: {*map(type, row)} == {int} and any(row), whole, items(anything, 3, 3)
+    )
+    found = table({"directions": items(direction, 0, MAX_CELLS), "trees": trees})(proof, "proof")
+    rows = [*enumerate(zip(arm.keeps, found["trees"], strict=True))]
+    for k, (keep, row) in rows:
+        wanted = len(cells) if keep.needs_proof else 0
+        items(anything, wanted, wanted)(row, f"proof.trees[{k}]")
     for c, cell in enumerate(cells):
-        things = {f"proof.trees[{k}][{c}]": k for k, row in enumerate(found["trees"]) if row}
-        trees = {where: found["trees"][k][c] for where, k in things.items()}
-        for part, _, leaves in walk(cell, trees):
-            pose = Pose(arm.steps, part.middle) if leaves else Pose([], ())
+        own = {f"proof.trees[{k}][{c}]": (keep, row[c]) for k, (keep, row) in rows if row}
+        for part, _, leaves in walk(cell, {where: tree for where, (_, tree) in own.items()}):
+            leaf = Leaf(arm.steps if leaves else (), part)
             for where, number in leaves.items():
-                keep = arm.keeps[things[where]]
-                u = _direction_of(keep, number, found["directions"], where)
-                kept = is_kept(arm.steps, pose, keep, u, part)
-                demand(kept, f"{where}: the bound of {shown(keep.name)} fails on a leaf")
+                keep = own[where][0]
+                u = named_direction(keep, number, found["directions"], where)
+                fails = f"{where}: the bound of {shown(keep.name)} fails on a leaf"
+                demand(is_kept(leaf, keep, u), fails)
+    return "proved: at every configuration of the set all of the following is kept"
 
 
-def _direction(value: Any, where: str) -> tuple[Vector, list[int]]:
-    """Read a direction; return it as a unit vector, and as the three integers that are written."""
-    row: list[int] = items(anything, 3, 3)(value, where)
-    known = all(type(x) is int for x in row) and any(row)
-    demand(known, f"{where}: three integers, not all 0, are wanted")
-    return unit(row), row
-
-
-def _direction_of(
-    keep: Keep, number: str, directions: Sequence[tuple[Vector, list[int]]], where: str
-) -> Vector:
+def named_direction(keep: Keep, number: str, rows: Sequence[Any], where: str) -> Vector:
     """Return the direction that a leaf names; that of a half-space is its normal."""
     if keep.normal is not None:
         demand(not number, f"{where}: a leaf of a half-space names a direction")
         return keep.normal
-    known = number and int(number) < len(directions)
+    known = number and int(number) < len(rows)
     demand(known, f"{where}: a leaf names no direction of the list")
-    u, row = directions[int(number)]
+    row = rows[int(number)]
     across = keep.along is None or row[keep.along] == 0
     demand(across, f"{where}: a direction between bodies has a 0 along the common axis")
-    return u
+    return unit(row)
 
 
 def refute(arm: "Arm", claim: "Claim", value: Any) -> str:
     """Verify a witness, and say what is violated where."""
     robot, kind = arm.robot, "limit" if type(value) is dict and "limit" in value else "place"
-    spec: Table = {kind: anything}
     if claim.kind == "box":
-        q = table({**spec, "at": configuration(robot)})(value, "witness")["at"]
-        ends = zip(*claim.loops[0], q, strict=True)
-        demand(all(a <= x <= b for a, b, x in ends), "witness.at: not in the box")
+        found = table({kind: anything, "at": configuration(robot)})(value, "witness")
+        q, (low, high) = found["at"], claim.loops[0]
+        inside = all(a <= x <= b for a, x, b in zip(low, q, high, strict=True))
+        demand(inside, "witness.at: not in the box")
     else:
-        spec |= {"cell": index(len(claim.corners)), "weights": weights(len(claim.corners[0]))}
-        found = table(spec)(value, "witness")
+        spec = {"cell": index(len(claim.corners)), "weights": weights(len(claim.corners[0]))}
+        found = table({kind: anything, **spec})(value, "witness")
         q = mean(found["weights"], claim.corners[found["cell"]])
-    values = (
-        f"{name!a} = {exactly(x)} {robot.unit_of(j)}"
-        for j, (name, x) in enumerate(zip(robot.joints, q, strict=True))
-    )
-    said, named = f"is violated at {', '.join(values)}", value[kind]
     if kind == "limit":
-        beyond = type(named) is str and named in robot.beyond(q)
-        demand(beyond, "witness.limit: no limit of that name is violated")
-        return f"the limit {named!a} {said}"
-    demand(not robot.beyond(q), "witness.place: a limit is violated there: name that")
-    keep, spots = read_spots(arm)(named, "witness.place")
-    point = Box(arm.placed(q), arm.placed(q))
-    pose, none_free = Pose(arm.steps, point.low), [False] * len(q)
-    violated = is_violated(arm.steps, pose, keep, spots, point, none_free) or _cross(pose, keep)
-    demand(violated, f"witness: {shown(keep.name)} is not violated there")
-    return f"{keep.name!a} {said}"
+        there = found["limit"] in robot.beyond(q)
+        demand(there, "witness.limit: no limit of that name is violated")
+        said = f"the limit {found['limit']!a}"
+    else:
+        demand(not robot.beyond(q), "witness.place: a limit is violated there: name that")
+        keep, spots = read_spots(arm)(found["place"], "witness.place")
+        leaf = Leaf(arm.steps, Box((arm.placed(q), arm.placed(q))))
+        violated = is_violated(leaf, keep, spots) or _cross(leaf, keep)
+        demand(violated, f"witness: {shown(keep.name)} is not violated there")
+        said = f"{keep.name!a}"
+    values = ", ".join(itertools.starmap(robot.valued, enumerate(q)))
+    return f"refuted: {said} is violated at {values}\nthe claim was that the set keeps"
 
 
-def _cross(pose: Pose, keep: Keep) -> bool:
+def _cross(leaf: Leaf, keep: Keep) -> bool:
     """Tell whether two segments that keep no distance cross, seen along the common axis."""
-    if keep.asked or keep.along is None:
+    hulls = keep.near, keep.far
+    near, far = ([leaf.place(hull.frame, p) for p in hull.corners] for hull in hulls)
+    if keep.asked or keep.along is None or (len(near), len(far)) != (2, 2):
         return False
-    hulls = [[pose.place(hull.frame, p) for p in hull.corners] for hull in (keep.near, keep.far)]
-    if [len(corners) for corners in hulls] != [2, 2]:
-        return False
-    normal, ((a, b), (c, d)) = pose.frames[keep.near.frame][0][keep.along], hulls
-
-    def side(p: Vector, q: Vector, r: Vector) -> int:
-        return dot(normal, cross(minus(q, p), minus(r, p)))
-
-    sides = [(side(a, b, c), side(a, b, d)), (side(c, d, a), side(c, d, b))]
-    return all(min(pair) < -SLACK and max(pair) > SLACK for pair in sides)
+    axis = leaf.frames[keep.near.frame][0][keep.along]
+    for (p, q), ends in ((near, far), (far, near)):
+        sides = [dot(axis, cross(minus(q, p), minus(r, p))) for r in ends]
+        if min(sides) >= -SLACK or max(sides) <= SLACK:
+            return False
+    return True
 
 
 def read_spots(arm: "Arm") -> Reader:
     """Return the reader of a place of each hull of a thing to keep, and the discs about them."""
-    radii = Maybe(items(not_negative(decimal), 2, 2), (ZERO, ZERO))
-    spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything, "inside": radii}
+    spec = {"keep": index(len(arm.keeps)), "near": anything, "far": anything}
+    place = table(spec, {"inside": items(not_negative(decimal), 2, 2)})
 
     def read(value: Any, where: str) -> tuple[Keep, Spots]:
-        found = table(spec)(value, where)
-        keep, row, inside = arm.keeps[found["keep"]], arm.rows[found["keep"]], found["inside"]
-        demand(not any(inside) or keep.along is not None, f"{where}.inside: of bodies only")
-        sides = list[Vector]()
-        for key, radius in zip(("near", "far"), inside, strict=True):
-            if key not in row:
-                demand(found[key] == [], f"{where}.{key}: an empty list is wanted")
-                sides.append((0, 0, 0))
-                continue
-            hull = arm.hulls[row[key]]
-            at = mean(weights(len(hull["corners"]))(found[key], f"{where}.{key}"), hull["corners"])
-            seen = [k for k in range(3) if k != arm.robot.flat.get(hull["frame"])]
-            within = not radius or _holds_disc(hull["corners"], seen, at, radius)
+        found = place(value, where)
+        keep, row = arm.keeps[found["keep"]], arm.rows[found["keep"]]
+        radii = found["inside"] or (ZERO, ZERO)
+        demand(not any(radii) or keep.along is not None, f"{where}.inside: of bodies only")
+        ends = list[Vector]()
+        for end, radius in zip(("near", "far"), radii, strict=True):
+            hull = arm.hulls[row[end]] if end in row else NO_HULL
+            corners = hull["corners"]
+            at = mean(weights(len(corners))(found[end], f"{where}.{end}"), corners)
+            within = not radius or _holds_disc(corners, arm.robot.flat[hull["frame"]], at, radius)
             demand(within, f"{where}.inside: the disc does not lie within the part")
-            sides.append(arm.scaled(at))
-        near, far = sides
-        return keep, Spots(near, far, in_units(sum(inside) / arm.largest))
+            ends.append(arm.scaled(at or ORIGIN))
+        near, far = ends
+        return keep, Spots(near, far, in_units(sum(radii) / arm.largest))
 
     return read
 
 
-def _holds_disc(corners: Sequence[Exact], seen: Sequence[int], at: Exact, radius: Fraction) -> bool:
+def _holds_disc(corners: Sequence[Exact], flat: int, at: Exact, radius: Fraction) -> bool:
     """Tell whether a disc lies within a convex part: every edge is that far from its middle."""
     Work.add(120 * len(corners))
-    i, k = seen
-    flat = [(p[i], p[k]) for p in corners]
-    sense = 1 if doubled_area(flat) > 0 else -1
-    for (a, b), (c, d) in around(flat):
-        x, y = c - a, d - b
-        inwards = sense * (x * (at[k] - b) - y * (at[i] - a))
-        if inwards <= 0 or inwards**2 < radius**2 * (x * x + y * y):
+    (x, y), *loop = (p[:flat] + p[flat + 1 :] for p in (at, *corners))
+    sense = 1 if doubled_area(loop) > 0 else -1
+    for (a, b), (c, d) in around(loop):
+        inwards = sense * ((c - a) * (y - b) - (d - b) * (x - a))
+        if inwards <= 0 or inwards**2 < radius**2 * ((c - a) ** 2 + (d - b) ** 2):
             return False
     return True
 
@@ -686,39 +638,32 @@ TOUCH = 1 << BITS - 100
 """Open leaves that are nearer than this touch: 8e-31 of a radian or of the largest length."""
 
 
-class Leaves:
-    """The boxes of a tree in preorder; `after` has for each the number that follows its parts."""
+@dataclass(eq=False)
+class Node:
+    """A box of a tree: with its halves, or a leaf; what keeps everything lies in open leaves."""
 
-    def __init__(self, shifts: Sequence[Point]) -> None:
-        self.spans, self.is_open, self.after = list[Box](), list[bool](), list[int]()
-        self.shifts, self.above = shifts, list[int]()
+    box: Cell
+    is_open: bool
+    halves: "list[Node]" = field(default_factory=list)
 
-    def add(self, span: Box, depth: int, is_open: bool) -> None:
-        """Add the next box."""
-        while len(self.above) > depth:
-            self.after[self.above.pop()] = len(self.spans)
-        self.above.append(len(self.spans))
-        self.spans.append(span)
-        self.is_open.append(is_open)
-        self.after.append(MAX_FILE)  # the end, unless a box follows that is no part of this one
-
-    def touching(self, box: Box) -> Iterator[int]:
+    def touching(self, box: Cell, shifts: Sequence[Point]) -> "Iterator[Node]":
         """Yield the open leaves that touch a box, over the seams of joints too."""
-        for shift in self.shifts:
-            low = [x + s - TOUCH for x, s in zip(box.low, shift, strict=True)]
-            high = [x + s + TOUCH for x, s in zip(box.high, shift, strict=True)]
-            k = 0
-            while k < len(self.spans):
+        for shift in shifts:
+            low = [x + s - TOUCH for x, s in zip(box.ends[0], shift, strict=True)]
+            high = [x + s + TOUCH for x, s in zip(box.ends[1], shift, strict=True)]
+            todo = [self]
+            while todo:
                 Work.add(5)
-                span = self.spans[k]
-                apart = any(map(lt, span.high, low)) or any(map(lt, high, span.low))
-                if self.is_open[k] and not apart:
-                    yield k
-                k = self.after[k] if apart else k + 1
+                node = todo.pop()
+                start, end = node.box.ends
+                if not (any(map(lt, end, low)) or any(map(lt, high, start))):
+                    todo += node.halves
+                    if node.is_open:
+                        yield node
 
 
-def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
-    """Verify that the leaves on which something is violated lie in every path.
+def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> str:
+    """Verify that the leaves on which something is violated lie in every path; say so.
 
     A path that keeps everything lies in open leaves. They are closed and finitely many, so a path
     stays within a group of leaves that touch.
@@ -728,38 +673,50 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> None:
     [ends] = claim.loops
     for end, q in zip(("start", "goal"), ends, strict=True):
         demand(not arm.robot.beyond(q), f"claim.points: the {end} is beyond a limit")
-    free, turns = [kind == "any" for kind in claim.joints], list[int]()
-    low, high = [*arm.placed(ends[0])], [*arm.placed(ends[0])]
+    start, goal = map(arm.placed, ends)
+    spans, turns, free = list[Point](), list[int](), dict[int, int]()
     for j, kind in enumerate(claim.joints):
-        if kind != "held":
-            low[j], high[j] = arm.whole_range(j)
-        if free[j]:  # of a slide the middle is where its sweep is measured from
-            low[j] = high[j] = low[j] + high[j] >> 1
+        low, high = arm.whole_range(j)
+        middle = low + high >> 1
+        if kind == "any":
+            free[j] = high - low + 3 >> 1
+        spans.append({"moves": (low, high), "held": (start[j],) * 2, "any": (middle,) * 2}[kind])
         turns.append(TURN if kind == "moves" and arm.joints[j]["limits"] is None else 0)
-    leaves = Leaves([*itertools.product(*({-t, 0, t} for t in turns))])
-    root = Box(tuple(low), tuple(high))
-    for part, depth, found_leaf in walk(root, {"proof.tree": found["tree"]}):
+    shifts = [*itertools.product(*({-t, 0, t} for t in turns))]
+    low_end, high_end = zip(*spans, strict=True)
+    above = list[Node]()
+    for part, depth, leaves in walk(Box((low_end, high_end)), {"proof.tree": found["tree"]}):
         Work.add(90)  # a node takes half a kilobyte
-        number = found_leaf.get("proof.tree")
-        leaves.add(part, depth, number == "")
+        number = leaves.get("proof.tree")
+        node = Node(part, number == "")
+        del above[depth:]
+        if above:
+            above[-1].halves.append(node)
+        above.append(node)
         if number:
             known = int(number) < len(found["places"])
             demand(known, "proof.tree: a leaf names no place of the list")
             keep, spots = found["places"][int(number)]
-            violated = is_violated(arm.steps, Pose(arm.steps, part.middle), keep, spots, part, free)
+            violated = is_violated(Leaf(arm.steps, part, free), keep, spots)
             demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
-    sides = []
-    for end_at in map(arm.placed, ends):
-        at = [x - (x + t // 2) // t * t if t else x for x, t in zip(end_at, turns, strict=True)]
-        place = tuple(a if f else x for a, x, f in zip(low, at, free, strict=True))
-        sides.append({*leaves.touching(Box(place, place))})
-        demand(sides[-1], "proof.tree: the start or the goal is on no open leaf")
-    reached, new = {*sides[0]}, [*sides[0]]
+    groups = list[set[Node]]()
+    for end_at in (
+        start,
+        goal,
+    ):  # at the turn of the tree; a joint of any value has its middle there
+        at = [(x + t // 2) % t - t // 2 if t else x for x, t in zip(end_at, turns, strict=True)]
+        place = tuple(low_end[j] if j in free else x for j, x in enumerate(at))
+        groups.append({*above[0].touching(Box((place, place)), shifts)})
+        demand(groups[-1], "proof.tree: the start or the goal is on no open leaf")
+    reached, goals = groups
+    new = [*reached]
     while new:
-        near = {*leaves.touching(leaves.spans[new.pop()])} - reached
+        near = {*above[0].touching(new.pop().box, shifts)} - reached
         reached |= near
         new += near
-    demand(not reached & sides[1], "proof.tree: open leaves lead from the start to the goal")
+    demand(not reached & goals, "proof.tree: open leaves lead from the start to the goal")
+    one, other = map(_in_brackets, ends)
+    return f"proved: no path from {one} to {other} keeps all of the following"
 
 
 # --- reading: values ------------------------------------------------------------------------------
@@ -779,14 +736,12 @@ MAX_DIGITS, LARGEST = 40, Fraction(10**100)
 """Digits of a number, and its size; one that is not 0 is at least 1 / LARGEST."""
 
 ZERO = Fraction(0)
+ORIGIN: Exact = (ZERO, ZERO, ZERO)
 
 
-def shown(value: Any) -> str:
-    """Write a value for a message: short, in ASCII, on one line."""
-    if type(value) is str:
-        return ascii(value if len(value) <= 60 else f"{value[:57]}...")
-    names = {dict: "a table", list: "a list", int: "a number", bool: "a truth value"}
-    return names.get(type(value), "a value of another type")
+def shown(text: str) -> str:
+    """Write a text for a message: short, in ASCII, on one line."""
+    return ascii(text if len(text) <= 60 else f"{text[:57]}...")
 
 
 def anything(value: Any, where: str) -> Any:
@@ -795,36 +750,29 @@ def anything(value: Any, where: str) -> Any:
     return value
 
 
-def such(test: Callable[[Any], object], wanted: str, reader: Reader = anything) -> Reader:
+def such(test: Callable[[Any], object], told: str, reader: Reader = anything) -> Reader:
     """Return the reader of a value that has to pass a test."""
 
     def read(value: Any, where: str) -> Any:
         found = reader(value, where)
-        demand(test(found), f"{where}: {wanted}")
+        demand(test(found), f"{where}: {told}")
         return found
 
     return read
 
 
-class Maybe(NamedTuple):
-    """What a key that may be missing holds, and what counts where it is missing."""
-
-    reader: Reader
-    missing: Any = None
-
-
-def table(spec: Table) -> Reader:
-    """Return the reader of a table: one row for each key that it may have."""
-    readers = {k: row.reader if isinstance(row, Maybe) else row for k, row in spec.items()}
-    missing = {k: row.missing for k, row in spec.items() if isinstance(row, Maybe)}
+def table(readers: Mapping[str, Reader], others: Mapping[str, Reader] = {}) -> Reader:
+    """Return the reader of a table with some keys; it gives None for others that are missing."""
+    every = {**readers, **others}
 
     def read(value: Any, where: str) -> Table:
         demand(type(value) is dict, f"{where}: a table is wanted")
         for key in value:
-            demand(key in readers, f"{where}: unknown key {shown(key)}")
+            demand(key in every, f"{where}: unknown key {shown(key)}")
         for key in readers:
-            demand(key in value or key in missing, f"{where}: the key {key!r} is missing")
-        return missing | {key: readers[key](value[key], f"{where}.{key}") for key in value}
+            demand(key in value, f"{where}: the key {key!r} is missing")
+        found: Table = dict.fromkeys(others)
+        return found | {key: every[key](value[key], f"{where}.{key}") for key in value}
 
     return read
 
@@ -843,17 +791,18 @@ def items(reader: Reader, least: int, most: int) -> Reader:
 
 def text(most: int) -> Reader:
     """Return the reader of a text of 1 to `most` characters, none of them half of one."""
-    wanted = f"a text of 1 to {most} characters is wanted"
-    written = such(lambda value: type(value) is str and 1 <= len(value) <= most, wanted)
-    return such(lambda value: not re.search("[\ud800-\udfff]", value), "half a character", written)
+
+    def fits(value: Any) -> bool:
+        short = type(value) is str and 1 <= len(value) <= most
+        return short and not re.search("[\ud800-\udfff]", value)
+
+    return such(fits, f"a text of 1 to {most} characters is wanted")
 
 
 def one_of(*choices: Any) -> Reader:
     """Return the reader of a value that is among some."""
-    wanted = " or ".join(map(str, choices))
-    return such(
-        lambda x: any(type(x) is type(c) and x == c for c in choices), f"{wanted} is wanted"
-    )
+    told = f"{' or '.join(map(str, choices))} is wanted"
+    return such(lambda x: type(x) is type(choices[0]) and x in choices, told)
 
 
 def index(count: int) -> Reader:
@@ -867,8 +816,9 @@ NUMBER = re.compile("[+-]?([0-9]+)(?:[.]([0-9]+))?(?:[eE][+-]?[0-9]{1,3})?")
 def exact(written: str, where: str) -> Fraction:
     """Return the value of a decimal; its digits and its size are bounded."""
     found = NUMBER.fullmatch(written)
-    demand(found, f"{where}: {shown(written)} is no decimal number")
-    digits = sum(map(len, found.groups(""))) if found else 0
+    if found is None:
+        raise Refused(f"{where}: {shown(written)} is no decimal number")
+    digits = sum(map(len, found.groups("")))
     demand(digits <= MAX_DIGITS, f"{where}: a number of more than {MAX_DIGITS} digits")
     value = Fraction(written)
     fits = not value or 1 / LARGEST <= abs(value) <= LARGEST
@@ -878,7 +828,7 @@ def exact(written: str, where: str) -> Fraction:
 
 def decimal(value: Any, where: str) -> Fraction:
     """Read a decimal of a certificate: a string such as "-12.5"."""
-    known = type(value) is str and len(value) <= 60 and value.isascii() and value[:1] != "+"
+    known = type(value) is str and value[:1] != "+"
     demand(known, f'{where}: a decimal number in quotes is wanted, such as "-12.5"')
     return exact(value, where)
 
@@ -891,7 +841,7 @@ def not_negative(reader: Reader) -> Reader:
 def weights(count: int) -> Reader:
     """Return the reader of the weights of a mean of corners."""
     shares = items(not_negative(decimal), count, count)
-    return such(lambda row: sum(row) == 1, "weights whose sum is 1 are wanted", shares)
+    return such(lambda row: not row or sum(row) == 1, "weights whose sum is 1 are wanted", shares)
 
 
 def mean(shares: Sequence[Fraction], corners: Sequence[Exact]) -> Exact:
@@ -912,8 +862,7 @@ def read_json(data: bytes) -> Any:
     except RecursionError:
         raise Refused("the file is nested too deeply") from None
     except json.JSONDecodeError as error:
-        where = f"line {error.lineno}, column {error.colno}"
-        raise Refused(f"the file is not JSON: {where}: {error.msg}") from None
+        raise Refused(f"the file is not JSON: {error}") from None
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Table:
@@ -928,135 +877,106 @@ def _integer(written: str) -> int:
     return int(written)
 
 
-# --- reading: TOML --------------------------------------------------------------------------------
+# --- reading: the robot's text --------------------------------------------------------------------
 
-
-@dataclass(frozen=True)
-class TomlFloat:
-    """A float as the robot's text writes it; so it is neither rounded nor taken for a string."""
-
-    text: str
-
-
-TOKEN = re.compile(
-    r"""(?P<string> "[^"\\\n]*(?:\\[^\n][^"\\\n]*)*" | '[^'\n]*' )
-      | (?P<comment> \#[^\n]* )
-      | (?P<mark> [=,\[\]{}\n] )
-      | (?P<blanks> [ \t\r]+ )
-      | (?P<word> [^"'\#=,\[\]{}\n\ \t\r]+ )
-      | (?P<other> . )""",
-    re.VERBOSE | re.DOTALL,
-)
-LONGEST = {"string": 302, "word": 100}
-"""Characters as they are written, quotes included."""
+STRING = re.compile(r"""("(?:[^"\\\n]|\\[^\n]){0,300}"|'[^'\n]{0,300}')|[#][^\n]*""")
+WORD = r"[^ \t\r\n=,\[\]{}]"
+BARRED = {
+    "[\"']": "a string that does not end, or of more than 300 characters",
+    f"{WORD}{{101}}": "a word of more than 100 characters",
+    rf"{WORD}[ \t\r]+{WORD}": "a word follows another word or string",
+    rf"[.]{WORD}*[.]": "a word with two dots",
+    rf"[.]{WORD}*[ \t\r]*=": "a key with a dot",
+}
+"""What robots do not need, and on some of which Python's reader of TOML works for long: dotted keys
+cost it the square of their number of parts, tables in tables more."""
 
 MAX_NESTED = 8
 
 
-def read_toml(written: str) -> Any:
-    """Read TOML after a look at its marks, on which the reader of TOML could work for long.
+class Float(str):
+    """A float as the robot's text writes it; so it is neither rounded nor taken for a string."""
 
-    Dotted keys cost that reader the square of their number of parts, tables in tables more. No
-    robot needs either: between two marks there is at most one string or word.
-    """
-    line, depth, between = 1, 0, list[str]()
-    for token in TOKEN.finditer(written):
-        kind, found, where = str(token.lastgroup), token.group(), f"robot: line {line}"
-        demand(kind != "other", f"{where}: a string that does not end")
-        demand(len(found) <= LONGEST.get(kind, MAX_ROBOT), f"{where}: {shown(found)} is too long")
-        if kind in ("string", "word"):
-            between.append(found)
-            demand(len(between) == 1, f"{where}: {shown(found)} follows another word or string")
-            demand(kind == "string" or found.count(".") <= 1, f"{where}: a word with two dots")
-        if kind == "mark":
-            dotted = any("." in key and key[0] not in "\"'" for key in between)
-            demand(found != "=" or not dotted, f"{where}: a key with a dot")
-            depth += (found in "[{") - (found in "]}")
-            demand(depth <= MAX_NESTED, f"{where}: more than {MAX_NESTED} brackets in each other")
-            line += found == "\n"
-            between.clear()
+
+def read_toml(written: str) -> Any:
+    """Read TOML after a look at its marks; for that look strings are words and comments nothing."""
+    plain = STRING.sub(lambda found: " _ " if found[1] else "", written)
+    for pattern, barred in BARRED.items():
+        if found := re.search(pattern, plain):
+            k = plain.count("\n", 0, found.start())
+            raise Refused(f"robot: line {k + 1}: {barred}: {shown(written.split(chr(10))[k])}")
+    depths = itertools.accumulate((c in "[{") - (c in "]}") for c in plain)
+    deep = max(depths, default=0) > MAX_NESTED
+    demand(not deep, f"robot: more than {MAX_NESTED} brackets in each other")
     try:
-        return tomllib.loads(written, parse_float=TomlFloat)
+        return tomllib.loads(written, parse_float=Float)
     except ValueError as error:  # also an integer of thousands of digits
         raise Refused(f"robot: no TOML: {error}") from None
 
 
 def number(value: Any, where: str) -> Fraction:
     """Read an integer or a float of TOML."""
-    if type(value) is int:
-        demand(abs(value) < 10**MAX_DIGITS, f"{where}: a number of more than {MAX_DIGITS} digits")
-        return Fraction(value)
-    demand(isinstance(value, TomlFloat), f"{where}: a number is wanted")
-    return exact(value.text.replace("_", ""), where)
+    demand(type(value) in (int, Float), f"{where}: a number is wanted")
+    return exact(str(value).replace("_", ""), where)
 
 
-label, vector, size_of = text(200), items(number, 3, 3), not_negative(number)
-corner, two_labels = items(number, 2, 3), items(label, 2, 2)
-direction = such(any, "a direction must not be 0", vector)
-clearance, own_name = Maybe(size_of, ZERO), Maybe(label, "")
+def fields(spec: str) -> Reader:
+    """Return the reader of a table from its keys, each with its kind; some may be missing."""
 
-KINDS = ("revolute", "prismatic", "parallelogram", "continuous")
-JOINT = {
-    "name": label,
-    "type": one_of(*KINDS),
-    "parent": label,
-    "frame": label,
-    "origin": vector,
-    "rpy": Maybe(vector, (ZERO,) * 3),
-    "axis": direction,
-    "limits": Maybe(such(lambda x: x[0] < x[1], "the first one must be less", items(number, 2, 2))),
-    "velocity": Maybe(such(lambda x: x > 0, "a number of more than 0 is wanted", number)),
-    "crank": Maybe(vector),
-    "bar": Maybe(label),
-}
-POINT = {"name": label, "frame": label, "at": vector, "radius": Maybe(size_of, ZERO)}
-SHAPES = {
-    "polygon": Maybe(items(corner, 3, MAX_CORNERS)),
-    "capsule": Maybe(table({"from": corner, "to": corner, "radius": size_of})),
-    "disc": Maybe(table({"at": corner, "radius": size_of})),
-}
-BOUNDARY = {
-    "pair": {"points": two_labels, "clearance": clearance},
-    "bodies": {"bodies": two_labels, "clearance": clearance},
-    "half-space": {
-        "normal": direction,
-        "offset": number,
-        "point": Maybe(label),
-        "body": Maybe(label),
-    },
-}
+    def read(value: Any, where: str) -> Any:
+        wanted, others = dict[str, Reader](), dict[str, Reader]()
+        for row in spec.split(", "):
+            key, kind = row.split()
+            reader = one_of(*kind.split("|")) if "|" in kind else KINDS[kind.removesuffix("[]")]
+            reader = items(reader, 0, MAX_ROWS) if kind[-1] == "]" else reader
+            (others if key[-1] == "?" else wanted)[key.rstrip("?")] = reader
+        return table(wanted, others)(value, where)
+
+    return read
 
 
-def boundary_row(value: Any, where: str) -> Any:
+def boundary(value: Any, where: str) -> Any:
     """Read a boundary by its type."""
-    kind = one_of(*BOUNDARY)(value.get("type") if type(value) is dict else None, f"{where}.type")
-    head = {"name": label, "type": anything, "used": Maybe(one_of(True, False), True)}
-    return table({**head, **BOUNDARY[kind]})(value, where)
+    kind = one_of(*BOUNDARIES)(value.get("type") if type(value) is dict else None, f"{where}.type")
+    return fields(f"name label, type anything, used? truth, {BOUNDARIES[kind]}")(value, where)
 
 
-def rows(spec: Table) -> Maybe:
-    """Return the row of a list of tables that may be missing."""
-    return Maybe(items(table(spec), 0, MAX_ROWS), ())
-
-
-FILE = table(
-    {
-        "schema": one_of(1),
-        "name": label,
-        "length_unit": one_of("m", "cm", "mm"),
-        "angle_unit": one_of("deg", "rad"),
-        "home": anything,
-        "tool": label,
-        "joint": items(table(JOINT), 1, MAX_JOINTS),
-        "point": items(table(POINT), 1, MAX_ROWS),
-        "boundary": Maybe(items(boundary_row, 0, MAX_ROWS), ()),
-        "body": rows({"name": own_name, "frame": label, **SHAPES}),
-        "obstacle": rows({"name": own_name, **SHAPES}),
-        "collisions": Maybe(one_of("all")),
-        "clearance": clearance,
-        "allowed": Maybe(items(two_labels, 0, MAX_ROWS), ()),
-    }
-)
+SHAPES = "polygon? outline, capsule? capsule, disc? disc"
+BOUNDARIES = {
+    "pair": "points two-labels, clearance? size",
+    "bodies": "bodies two-labels, clearance? size",
+    "half-space": "normal direction, offset number, point? label, body? label",
+}
+JOINT = """name label, type revolute|prismatic|parallelogram|continuous, parent label, \
+frame label, origin vector, axis direction, rpy? vector, limits? limits, velocity? velocity, \
+crank? vector, bar? label"""
+ROBOT = """schema schema, name label, length_unit m|cm|mm, angle_unit deg|rad, home anything, \
+tool label, joint joints, point point[], boundary? boundary[], body? body[], obstacle? obstacle[], \
+collisions? every, clearance? size, allowed? two-labels[]"""
+KINDS: dict[str, Reader] = {
+    "anything": anything,
+    "schema": one_of(1),
+    "truth": one_of(True, False),
+    "every": one_of("all"),
+    "label": text(200),
+    "two-labels": items(text(200), 2, 2),
+    "number": number,
+    "size": not_negative(number),
+    "vector": items(number, 3, 3),
+    "direction": such(any, "a direction must not be 0", items(number, 3, 3)),
+    "limits": such(lambda x: x[0] < x[1], "the first one must be less", items(number, 2, 2)),
+    "velocity": such(lambda x: x > 0, "a number of more than 0 is wanted", number),
+    "corner": items(number, 2, 3),
+    "outline": items(items(number, 2, 3), 3, MAX_CORNERS),
+    "capsule": fields("from corner, to corner, radius size"),
+    "disc": fields("at corner, radius size"),
+    "joints": items(fields(JOINT), 1, MAX_JOINTS),
+    "point": fields("name label, frame label, at vector, radius? size"),
+    "body": fields(f"name? label, frame label, {SHAPES}"),
+    "obstacle": fields(f"name? label, {SHAPES}"),
+    "boundary": boundary,
+}
+"""Kinds of values in a robot's text; `kind[]` is a list of at most `MAX_ROWS`."""
 
 # --- reading: the robot ---------------------------------------------------------------------------
 
@@ -1069,6 +989,9 @@ class Thing(NamedTuple):
     frame: int
     corners: tuple[Exact, ...]
     radius: Fraction
+
+
+Things = dict[str, Thing]
 
 
 class Boundary(NamedTuple):
@@ -1086,199 +1009,186 @@ class Robot:
 
     Attributes
     ----------
-    exact : the normal form, see the page, with exact numbers
+    form : the normal form, see the page, with exact numbers
     frames : names, the base first
     boundaries : those in use
     left_out : what is not to be kept, in words
     flat : of each frame with bodies, its coordinate along the common axis
     """
 
-    exact: Table
-    frames: tuple[str, ...]
-    boundaries: tuple[Boundary, ...]
-    left_out: tuple[str, ...]
+    form: Table
+    frames: list[str]
+    boundaries: list[Boundary]
+    left_out: list[str]
     flat: dict[int, int]
 
     @property
     def joints(self) -> list[str]:
         """Return the names of joints."""
-        return [joint["name"] for joint in self.exact["joints"]]
+        return [joint["name"] for joint in self.form["joints"]]
 
     def unit_of(self, j: int) -> str:
         """Return the unit of a joint's values."""
-        turns = self.exact["joints"][j]["turns"]
-        return str(self.exact["angle_unit" if turns else "length_unit"])
+        turns = self.form["joints"][j]["turns"]
+        return str(self.form["angle_unit" if turns else "length_unit"])
+
+    def valued(self, j: int, x: Fraction) -> str:
+        """Write the value of a joint."""
+        return f"{self.joints[j]!a} = {exactly(x)} {self.unit_of(j)}"
 
     def beyond(self, q: Exact) -> list[str]:
         """Return the names of the limits that a configuration is beyond: compared exactly."""
         found = []
-        for joint, value in zip(self.exact["joints"], q, strict=True):
+        for joint, value in zip(self.form["joints"], q, strict=True):
             low, high = joint["limits"] or (value, value)
             found += [f"{joint['name']}.lower"] * (value < low)
             found += [f"{joint['name']}.upper"] * (value > high)
         return found
 
-    @cached_property
-    def form(self) -> Table:
-        """Return the normal form, its decimals written in full."""
-        found: Table = _written(self.exact)
-        return found
 
-
-def _written(value: Any) -> Any:
-    """Return a value for JSON: decimals are written in full."""
-    if isinstance(value, Fraction):
-        return exactly(value)
-    if isinstance(value, dict):
-        return {key: _written(item) for key, item in value.items()}
-    return [*map(_written, value)] if isinstance(value, list | tuple) else value
+EXACTLY = Context(prec=2000, traps=[Inexact])
 
 
 def exactly(x: Fraction) -> str:
     """Write a decimal with all its digits and without an exponent."""
-    twos = (x.denominator & -x.denominator).bit_length() - 1
-    fives, power = 0, 1 << twos
-    while power < x.denominator:
-        fives, power = fives + 1, 5 * power
-    digits = max(twos, fives)
-    Work.add(digits)
-    whole = str(abs(x.numerator) * 10**digits // x.denominator).rjust(digits + 1, "0")
-    point = len(whole) - digits
-    return "-" * (x < 0) + whole[:point] + ("." + whole[point:] if digits else "")
+    return f"{EXACTLY.divide(Decimal(x.numerator), Decimal(x.denominator)):f}"
+
+
+def canonical(form: Any) -> str:
+    """Return the text of a normal form, whose hash stands in a certificate."""
+    return json.dumps(form, default=exactly, indent=1, sort_keys=True) + "\n"
 
 
 def read_robot(written: str, parts: Any) -> Robot:
     """Read a robot's text and bring it to its normal form."""
-    file = FILE(read_toml(written), "robot")
+    file = fields(ROBOT)(read_toml(written), "robot")
     joints, steps, frames = _joints(file)
-    points = [_thing(row, frames) for row in file["point"]]
-    links = [_thing(row, frames) for row in file["body"]]
-    others = [_thing({**row, "frame": frames[0]}, frames) for row in file["obstacle"]]
-    known = _named("point", points)
-    demand(not {*known} & {*frames}, "robot: a point has the name of a frame")
-    demand(file["tool"] in known, "robot: the tool is no point")
+    points = {row["name"]: _thing(row, frames) for row in file["point"]}
+    distinct("point", (row["name"] for row in file["point"]))
+    demand(not {*points} & {*frames}, "robot: a point has the name of a frame")
+    demand(file["tool"] in points, "robot: the tool is no point")
     table({joint["name"]: number for joint in joints})(file["home"], "robot.home")
-    demand(len(links) + len(others) <= MAX_ROWS, f"robot: more than {MAX_ROWS} bodies")
-    bodies = _named("body", _called([*links, *others], len(links), frames))
-    boundaries, left_out = _boundaries(file, known, bodies, joints)
-    used = {t.frame for boundary in boundaries for t in boundary.things if t.kind != "point"}
-    flat = _common_axis(joints, steps, file["angle_unit"], used)
-    hulls, keeps = _keeps(boundaries, flat, parts)
+    bodies = {body.name: body for body in _bodies(file, frames)}
+    boundaries, left_out = _boundaries(file, points, bodies)
     form = {key: file[key] for key in ("name", "length_unit", "angle_unit")}
-    form |= {"joints": joints, "steps": steps, "hulls": hulls, "keep": keeps}
-    return Robot(form, tuple(frames), boundaries, left_out, flat)
+    form |= {"joints": joints, "steps": steps}
+    used = {t.frame for boundary in boundaries for t in boundary.things if t.kind != "point"}
+    flat = _common_axis(form, used)
+    form["hulls"], form["keep"] = _keeps(boundaries, flat, parts)
+    return Robot(form, frames, boundaries, left_out, flat)
 
 
-def _named(what: str, things: Iterable[Any]) -> dict[str, Any]:
-    """Return things by name; refuse a name that stands for two."""
-    found = dict[str, Any]()
-    for thing in things:
-        called = thing["name"] if isinstance(thing, dict) else thing.name
-        demand(called not in found, f"robot: {what}: two are called {shown(called)}")
-        found[called] = thing
+def distinct(what: str, names: Iterable[str]) -> set[str]:
+    """Return names as a set; refuse one that stands for two."""
+    found = set[str]()
+    for named in names:
+        demand(named not in found, f"robot: {what}: two are called {shown(named)}")
+        found.add(named)
     return found
 
 
 LARGEST_ANGLE = {"deg": Fraction(1800), "rad": Fraction(30)}
 
 
-def _joints(file: Table) -> tuple[list[Table], list[Table], list[str]]:
+def _joints(file: Table) -> tuple[Rows, Rows, list[str]]:
     """Return joints, the steps that they make, and the names of frames, the base first."""
-    joints, steps, frames = list[Table](), list[Table](), [file["joint"][0]["parent"]]
-    most = 100 * {"deg": Fraction(360), "rad": 2 * PI}[file["angle_unit"]]
+    joints, steps, frames = Rows(), Rows(), [file["joint"][0]["parent"]]
+    largest = LARGEST_ANGLE[file["angle_unit"]]
+    hundred = 100 * {"deg": Fraction(360), "rad": 2 * PI}[file["angle_unit"]]
     for j, row in enumerate(file["joint"]):
-        where, turns, limits = f"robot.joint[{j}]", row["type"] != "prismatic", row["limits"]
-        demand(row["parent"] == frames[-1], f"{where}: its parent is not the frame before")
-        bars = [row[key] is not None for key in ("crank", "bar")]
-        fits = bars == [row["type"] == "parallelogram"] * 2
-        demand(fits, f"{where}: crank and bar belong to a parallelogram")
-        demand(turns or limits, f"{where}: a prismatic joint needs limits")
-        endless = row["type"] == "continuous"
-        demand(not (endless and limits), f"{where}: a continuous joint has no limits")
-        small = all(abs(angle) <= LARGEST_ANGLE[file["angle_unit"]] for angle in row["rpy"])
-        demand(small, f"{where}.rpy: an angle of more than five turns")
-        near = not (turns and limits) or limits[1] - limits[0] <= most
-        demand(near, f"{where}.limits: more than 100 turns apart")
+        kind, limits, rpy = row["type"], row["limits"], row["rpy"] or ORIGIN
+        crank, bar, turns = row["crank"], row["bar"], kind != "prismatic"
+        linked = (crank is not None) == (bar is not None) == (kind == "parallelogram")
+        span = limits[1] - limits[0] if turns and limits else 0
+        for fits, told in (
+            (row["parent"] == frames[-1], ": its parent is not the frame before"),
+            (linked, ": crank and bar belong to a parallelogram"),
+            (turns or limits, ": a prismatic joint needs limits"),
+            (kind != "continuous" or not limits, ": a continuous joint has no limits"),
+            (max(map(abs, rpy)) <= largest, ".rpy: an angle of more than five turns"),
+            (span <= hundred, ".limits: more than 100 turns apart"),
+        ):
+            demand(fits, f"robot.joint[{j}]{told}")
         joints.append({"name": row["name"], "turns": turns, "limits": limits})
         step = {"joint": j, "factor": Fraction(1), "offset": ZERO, "axis": row["axis"]}
-        steps.append({**step, "origin": row["origin"], "rpy": row["rpy"]})
-        if all(bars):
-            frames.append(row["bar"])
-            back = {"factor": Fraction(-1), "origin": row["crank"], "rpy": (ZERO,) * 3}
-            steps.append({**step, **back})
+        steps.append({**step, "origin": row["origin"], "rpy": rpy})
+        if bar:
+            frames.append(bar)
+            steps.append({**step, "factor": Fraction(-1), "origin": crank, "rpy": ORIGIN})
         frames.append(row["frame"])
-    _named("joint", joints)
-    demand(len({*frames}) == len(frames), "robot: a frame has the name of another one")
+    distinct("joint", (joint["name"] for joint in joints))
+    distinct("frame", frames)
     return joints, steps, frames
 
 
 def _thing(row: Table, frames: Sequence[str]) -> Thing:
     """Return a point or a body; the corners of a body have two numbers or three."""
     demand(row["frame"] in frames, f"robot: no frame is called {shown(row['frame'])}")
-    kinds = [kind for kind in SHAPES if row.get(kind)] or ["point"] * ("at" in row)
-    demand(len(kinds) == 1, "robot: a body has one shape: a polygon, a capsule or a disc")
-    shape = row.get(kinds[0], row)
-    corners, radius = shape, ZERO
-    if kinds != ["polygon"]:
-        corners, radius = (
-            [shape[end] for end in ("at", "from", "to") if end in shape],
-            shape["radius"],
-        )
-    return Thing(row["name"], kinds[0], frames.index(row["frame"]), tuple(corners), radius)
+    shapes = {kind: row[kind] for kind in ("polygon", "capsule", "disc") if row.get(kind)}
+    one = "at" in row or len(shapes) == 1
+    demand(one, "robot: a body has one shape: a polygon, a capsule or a disc")
+    [(kind, shape)] = shapes.items() or [("point", row)]
+    whole = kind == "polygon"
+    corners: Any = shape if whole else [shape[end] for end in ("at", "from", "to") if end in shape]
+    radius = ZERO if whole else shape["radius"] or ZERO
+    return Thing(row["name"], kind, frames.index(row["frame"]), tuple(corners), radius)
 
 
-def _called(bodies: Sequence[Thing], links: int, frames: Sequence[str]) -> list[Thing]:
-    """Order bodies along the chain, obstacles last; one without a name is called by its frame."""
-    found = list[Thing]()
+def _bodies(file: Table, frames: Sequence[str]) -> list[Thing]:
+    """Return bodies along the chain, obstacles last; one without a name is called by its frame."""
+    bodies = [_thing(row, frames) for row in file["body"] or ()]
+    bodies.sort(key=lambda body: body.frame)
+    bodies += [_thing({**row, "frame": frames[0]}, frames) for row in file["obstacle"] or ()]
+    demand(len(bodies) <= MAX_ROWS, f"robot: more than {MAX_ROWS} bodies")
     for k, body in enumerate(bodies):
-        count = 1 + sum(other.frame == body.frame for other in bodies[:k])
-        usual = frames[body.frame] + (f"/{count}" if count > 1 else "")
-        found.append(body if body.name else body._replace(name=usual))
-    return sorted(found[:links], key=lambda body: body.frame) + found[links:]
+        count = sum(other.frame == body.frame for other in bodies[: k + 1])
+        usual = frames[body.frame] + f"/{count}" * (count > 1)
+        bodies[k] = body._replace(name=body.name or usual)
+    distinct("body", (body.name for body in bodies))
+    return bodies
 
 
-def _boundaries(
-    file: Table, points: dict[str, Thing], bodies: dict[str, Thing], joints: Sequence[Table]
-) -> tuple[tuple[Boundary, ...], tuple[str, ...]]:
+def _boundaries(file: Table, points: Things, bodies: Things) -> tuple[list[Boundary], list[str]]:
     """Return the boundaries in use, those that `collisions` makes last, and what is left out."""
-    found, unused = list[Boundary](), list[str]()
-    apart = [_things(names, bodies, "allowed") for names in file["allowed"]]
-    left_out = [f"{len(apart)} allowed pairs"] * bool(apart)
-    for i, row in enumerate(file["boundary"]):
-        where, kind = f"robot.boundary[{i}]", row["type"]
+    found, unused, apart = list[Boundary](), list[str](), set[frozenset[str]]()
+
+    def things_of(names: Sequence[str], known: Things, where: str) -> tuple[Thing, ...]:
+        for named in names:
+            demand(named in known, f"{where}: nothing is called {shown(named)}")
+        demand(len({*names}) == len(names), f"{where}: two different names are wanted")
+        if known is bodies and len(names) == 2:
+            apart.add(frozenset(names))
+        return tuple(known[named] for named in names)
+
+    for names in file["allowed"] or ():
+        things_of(names, bodies, "allowed")
+    for i, row in enumerate(file["boundary"] or ()):
+        where, plane = f"robot.boundary[{i}]", row["type"] == "half-space"
         ends = [key for key in ("points", "bodies", "point", "body") if row.get(key)]
         demand(len(ends) == 1, f"{where}: a point or a body is wanted")
-        names = (row[ends[0]],) if kind == "half-space" else row[ends[0]]
-        things = _things(names, points if ends[0][:5] == "point" else bodies, where)
-        same = kind == "bodies" and things[0].frame == things[1].frame
+        names = (row[ends[0]],) if plane else row[ends[0]]
+        things = things_of(names, bodies if ends[0][0] == "b" else points, where)
+        same = ends == ["bodies"] and things[0].frame == things[1].frame
         demand(not same, f"{where}: two bodies of one frame")
-        apart += [things] if kind == "bodies" else []
-        distance = row["offset"] if kind == "half-space" else row["clearance"]
+        distance = row["offset"] if plane else row["clearance"] or ZERO
         found.append(Boundary(row["name"], things, row.get("normal"), distance))
-        unused += [row["name"]] * (not row["used"])
-    settled = {frozenset(thing.name for thing in pair) for pair in apart}
-    for pair in itertools.combinations(bodies.values(), 2) if file["collisions"] else ():
+        unused += [row["name"]] * (row["used"] is False)
+    for one, other in itertools.combinations(bodies.values(), 2) if file["collisions"] else ():
         Work.add(2)
-        names = [thing.name for thing in pair]
-        if pair[0].frame != pair[1].frame and frozenset(names) not in settled:
+        if one.frame != other.frame and frozenset((one.name, other.name)) not in apart:
             demand(len(found) < 2 * MAX_ROWS, "robot: too many pairs of bodies")
-            found.append(Boundary(", ".join(names), pair, None, file["clearance"]))
-    limits = {f"{joint['name']}.{side}" for joint in joints for side in ("lower", "upper")}
-    demand(not limits & {*_named("boundary", found)}, "robot: a boundary has the name of a limit")
+            named, distance = f"{one.name}, {other.name}", file["clearance"] or ZERO
+            found.append(Boundary(named, (one, other), None, distance))
+    limits = {f"{joint['name']}.{side}" for joint in file["joint"] for side in ("lower", "upper")}
+    names_of_all = distinct("boundary", (boundary.name for boundary in found))
+    demand(not limits & names_of_all, "robot: a boundary has the name of a limit")
     without = {*unused}
-    used = tuple(boundary for boundary in found if boundary.name not in without)
+    used = [boundary for boundary in found if boundary.name not in without]
     demand(len(used) <= MAX_BOUNDARIES, f"robot: more than {MAX_BOUNDARIES} boundaries in use")
-    left_out = [*(f"{named!a} (used = false)" for named in unused), *left_out]
+    left_out = [f"{named!a} (used = false)" for named in unused]
+    left_out += [f"{len(file['allowed'] or ())} allowed pairs"] * bool(file["allowed"])
     left_out += ["bodies of one frame" if file["collisions"] else "other bodies"] * bool(bodies)
-    return used, tuple(left_out)
-
-
-def _things(names: Sequence[str], known: dict[str, Thing], where: str) -> tuple[Thing, ...]:
-    """Return some different things by their names."""
-    for named in names:
-        demand(named in known, f"{where}: nothing is called {shown(named)}")
-    demand(len({*names}) == len(names), f"{where}: two different names are wanted")
-    return tuple(known[named] for named in names)
+    return used, left_out
 
 
 # --- reading: the normal form ---------------------------------------------------------------------
@@ -1298,23 +1208,21 @@ def mount_of(rpy: Exact, unit_name: str) -> Matrix:
     return turned
 
 
-def _common_axis(
-    joints: Sequence[Table], steps: Sequence[Table], unit_name: str, frames: set[int]
-) -> dict[int, int]:
+def _common_axis(form: Table, frames: set[int]) -> dict[int, int]:
     """Return for each frame with bodies its coordinate along the common axis of the joints."""
-    if not frames:
-        return {}
     every, axes = [AXES], list[tuple[bool, Vector]]()
-    for step in steps:
-        every.append(product(every[-1], mount_of(step["rpy"], unit_name)))
-        axes.append((joints[step["joint"]]["turns"], image(every[-1], unit(step["axis"]))))
-    still = (e for e in (AXES[1], AXES[2], AXES[0]) if all(_across(e, z) for _, z in axes))
-    common = next((axis for turns, axis in axes if turns), None) or next(still, None)
+    for step in form["steps"] if frames else ():
+        every.append(product(every[-1], mount_of(step["rpy"], form["angle_unit"])))
+        turns = form["joints"][step["joint"]]["turns"]
+        axes.append((turns, image(every[-1], unit(step["axis"]))))
+
+    def fits(e: Vector) -> bool:
+        return all(_parallel(e, z) if turns else abs(dot(e, z)) <= NEARLY for turns, z in axes)
+
+    tried = [z for turns, z in axes if turns][:1] or (AXES[1], AXES[2], AXES[0])
+    common = next(filter(fits, tried), None)
     if common is None:
-        raise Refused("robot: the joints slide across no axis of the base: bodies have no plane")
-    for turns, axis in axes:
-        fits = _parallel(common, axis) if turns else _across(common, axis)
-        demand(fits, "robot: bodies keep apart in a plane only, and the arm leaves it")
+        raise Refused("robot: bodies keep apart in a plane only, and the arm leaves it")
     flat = dict[int, int]()
     for frame in frames:
         along = [k for k in range(3) if _parallel(common, every[frame][k])]
@@ -1323,70 +1231,65 @@ def _common_axis(
     return flat
 
 
-def _across(u: Vector, v: Vector) -> bool:
-    return abs(dot(u, v)) <= NEARLY
-
-
 def _parallel(u: Vector, v: Vector) -> bool:
     return size(cross(u, v)) <= NEARLY
 
 
-def _keeps(
-    boundaries: Sequence[Boundary], flat: dict[int, int], parts: Any
-) -> tuple[list[Table], list[Table]]:
+def _keeps(boundaries: list[Boundary], flat: dict[int, int], parts: Any) -> tuple[Rows, Rows]:
     """Return the hulls and the things to keep of the normal form."""
-    pairs = [thing for boundary in boundaries if not boundary.normal for thing in boundary.things]
-    outlines = {t.name: t for t in pairs if t.kind == "polygon"}
-    seen = {key: _seen(_lifted(t, flat), flat[t.frame]) for key, t in outlines.items()}
-    for key, outline in seen.items():
-        demand(doubled_area(outline), f"robot: the outline of {shown(key)} has no area")
-    pieces = items(items(anything, 3, MAX_CORNERS), 1, MAX_CORNERS)
-    cut = table({key: pieces for key, outline in seen.items() if not is_convex(outline)})(
-        parts, "parts"
-    )
-    for key, loops in cut.items():
-        where, known = f"parts.{key!a}", index(len(seen[key]))
-        corners = [[seen[key][known(k, where)] for k in loop] for loop in loops]
-        demand_filled([seen[key]], corners, where)
-    hulls, numbers, shapes = list[Table](), dict[Any, int](), dict[str, int]()
 
-    def hull(thing: Thing, loop: Sequence[int] | None = None) -> int:
-        key = thing.kind == "point", thing.name, loop
+    def lifted(thing: Thing) -> tuple[Exact, ...]:
+        k = flat.get(thing.frame, 0)  # corners of two numbers have a 0 along the common axis
+        return tuple(p if len(p) == 3 else (*p[:k], ZERO, *p[k:]) for p in thing.corners)
+
+    loops = dict[str, Loop]()
+    for thing in (t for bound in boundaries if not bound.normal for t in bound.things):
+        if thing.kind == "polygon" and thing.name not in loops:
+            i, k = (x for x in range(3) if x != flat[thing.frame])
+            [loop] = in_plane([lifted(thing)], i, k)
+            area = doubled_area(loop)
+            demand(area, f"robot: the outline of {shown(thing.name)} has no area")
+            loops[thing.name] = loop if area > 0 else [(-x, y) for x, y in loop]
+    spec = {
+        name: items(items(index(len(loop)), 3, MAX_CORNERS), 1, MAX_CORNERS)
+        for name, loop in loops.items()
+        if not is_convex(loop)
+    }
+    cut = table(spec)(parts, "parts")
+    for name, rows in cut.items():
+        pieces = [[loops[name][k] for k in row] for row in rows]
+        demand_filled([loops[name]], pieces, f"parts.{name!a}")
+    hulls, numbers, shapes = Rows(), dict[Any, int](), dict[str, int]()
+
+    def hull(thing: Thing, part: Sequence[int] | None = None) -> int:
+        key = thing.kind == "point", thing.name, part
         if key not in numbers:
-            whole = _lifted(thing, flat)
-            corners = whole if loop is None else tuple(whole[k] for k in loop)
-            numbers[key] = shapes.setdefault(f"{thing.frame} {_written(corners)}", len(hulls))
+            whole = lifted(thing)
+            corners = whole if part is None else tuple(whole[k] for k in part)
+            numbers[key] = shapes.setdefault(canonical((thing.frame, corners)), len(hulls))
             if numbers[key] == len(hulls):
                 hulls.append({"frame": thing.frame, "corners": corners})
         return numbers[key]
 
-    keeps = list[Table]()
-    for named, things, normal, distance in boundaries:
-        row = {"name": named, "gap": distance + sum(thing.radius for thing in things)}
+    keeps = Rows()
+    for name, things, normal, distance in boundaries:
+        row = {"name": name, "gap": distance + sum(thing.radius for thing in things)}
         if normal is not None:
             keeps.append({**row, "far": hull(things[0]), "normal": normal})
             continue
         near, far = sorted(things, key=lambda thing: thing.frame)
         row["along"] = None if near.kind == "point" else flat[near.frame]
-        loops = [cut.get(t.name, [None]) if t.kind == "polygon" else [None] for t in (near, far)]
-        for one, other in itertools.product(*loops):
+        both = (cut.get(t.name, [None]) if t.kind == "polygon" else [None] for t in (near, far))
+        for one, other in itertools.product(*both):
             demand(len(keeps) < MAX_KEEPS, f"robot: more than {MAX_KEEPS} pairs of parts")
             keeps.append({**row, "near": hull(near, one), "far": hull(far, other)})
     return hulls, keeps
 
 
-def _lifted(thing: Thing, flat: dict[int, int]) -> tuple[Exact, ...]:
-    """Return the corners of a thing; one of two numbers has a 0 along the common axis."""
-    k = flat.get(thing.frame, 0)
-    return tuple(p if len(p) == 3 else (*p[:k], ZERO, *p[k:]) for p in thing.corners)
-
-
-def _seen(corners: Sequence[Exact], flat: int) -> list[tuple[int, int]]:
-    """Return an outline along the common axis, anticlockwise, in whole numbers."""
-    pairs = [[x for k, x in enumerate(p) if k != flat] for p in corners]
-    whole = math.lcm(*(x.denominator for pair in pairs for x in pair))
-    found = [(int(x * whole), int(y * whole)) for x, y in pairs]
-    return found if doubled_area(found) > 0 else [(-x, y) for x, y in found]
+def in_plane(loops: Sequence[Sequence[Exact]], i: int, k: int) -> list[Loop]:
+    """Return loops in two coordinates, each scaled to whole numbers: no side of a line changes."""
+    m, n = (math.lcm(*(p[j].denominator for loop in loops for p in loop)) for j in (i, k))
+    return [[(int(p[i] * m), int(p[k] * n)) for p in loop] for loop in loops]
 
 
 def around(loop: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
@@ -1394,13 +1297,13 @@ def around(loop: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
     return zip(loop, [*loop[1:], loop[0]], strict=True)
 
 
-def doubled_area(loop: Sequence[tuple[Any, Any]]) -> Any:
+def doubled_area(loop: Sequence[Any]) -> Any:
     """Return twice the area of a loop, more than 0 if it goes anticlockwise."""
     Work.add(2 * len(loop))
     return sum(a[0] * b[1] - a[1] * b[0] for a, b in around(loop))
 
 
-def is_convex(loop: Sequence[tuple[int, int]]) -> bool:
+def is_convex(loop: Loop) -> bool:
     """Tell whether every corner is on the left of every edge or on its line, and one is not."""
     Work.add(5 * len(loop) ** 2)
     for (x, y), (u, v) in around(loop):
@@ -1410,11 +1313,7 @@ def is_convex(loop: Sequence[tuple[int, int]]) -> bool:
     return True
 
 
-def demand_filled(
-    loops: Sequence[Sequence[tuple[int, int]]],
-    pieces: Sequence[Sequence[tuple[int, int]]],
-    where: str,
-) -> None:
+def demand_filled(loops: Sequence[Loop], pieces: Sequence[Loop], where: str) -> None:
     """Refuse pieces that do not fill loops: convex, inner edges in pairs, all others the loops.
 
     Then the edges of all pieces add up to the loops. So around any place the loops wind as often as
@@ -1425,7 +1324,7 @@ def demand_filled(
         demand(is_convex(piece), f"{where}: a piece is not convex, flat, or goes clockwise")
     numbers = dict[str, int]()
 
-    def edges(loop: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    def edges(loop: Loop) -> Iterator[tuple[int, int]]:
         return around([numbers.setdefault(f"{x} {y}", len(numbers)) for x, y in loop])
 
     outer = [edge for loop in loops for edge in edges(loop)]
@@ -1433,66 +1332,54 @@ def demand_filled(
     outline, sides = {*outer}, {*inner}
     demand(len(sides) == len(inner), f"{where}: two pieces lie on one side of an edge")
     demand(len(outline) == len(outer), f"{where}: an edge of the loops stands there twice")
-    for a, b in outer:
-        alone = (a, b) in sides and (b, a) not in sides
-        demand(alone, f"{where}: an edge of the loops is not the edge of one piece alone")
-    for a, b in sides - outline:
-        demand((b, a) in sides, f"{where}: an inner edge has a piece on one side alone")
+    alone = {(a, b) for a, b in sides if (b, a) not in sides}
+    told = "an edge of the loops is not the edge of one piece alone"
+    demand(outline <= alone, f"{where}: {told}")
+    demand(alone <= outline, f"{where}: an inner edge has a piece on one side alone")
 
 
 # --- reading: the arm of the kernel ---------------------------------------------------------------
+
+NO_HULL: Table = {"frame": 0, "corners": ()}
 
 
 class Arm:
     """A robot in units, and what it has to keep with the margin of a claim."""
 
     def __init__(self, robot: Robot, margin: Fraction) -> None:
-        self.robot, form = robot, robot.exact
+        self.robot, form, angle_unit = robot, robot.form, robot.form["angle_unit"]
         self.joints, self.hulls, self.rows = form["joints"], form["hulls"], form["keep"]
         gaps = [row["gap"] + margin for row in self.rows]
-        lengths = [x for hull in self.hulls for p in hull["corners"] for x in p] + gaps
-        lengths += [x for step in form["steps"] for x in step["origin"]]
-        lengths += [x for joint in self.joints if not joint["turns"] for x in joint["limits"]]
+        places = [p for hull in self.hulls for p in hull["corners"]]
+        places += [step["origin"] for step in form["steps"]]
+        places += [joint["limits"] for joint in self.joints if not joint["turns"]]
+        lengths = itertools.chain(gaps, *places)
         self.largest = max(map(abs, lengths), default=ZERO) or Fraction(1)
-        self.steps = [self._step(row) for row in form["steps"]]
+        self.steps, self.keeps = list[Step](), list[Keep]()
+        for row in form["steps"]:
+            turns, mount = self.joints[row["joint"]]["turns"], mount_of(row["rpy"], angle_unit)
+            vectors = self.scaled(row["origin"]), mount, unit(row["axis"])
+            self.steps.append(Step(row["joint"], turns, int(row["factor"]), *vectors))
         hulls = [Hull(h["frame"], tuple(map(self.scaled, h["corners"]))) for h in self.hulls]
-        base = Hull(0, ((0, 0, 0),))
-        self.keeps = [
-            Keep(
-                row["name"],
-                hulls[row["near"]] if "near" in row else base,
-                hulls[row["far"]],
-                in_units(gap / self.largest),
-                gap != 0,
-                row.get("along"),
-                unit(row["normal"]) if "normal" in row else None,
-            )
-            for row, gap in zip(self.rows, gaps, strict=True)
-        ]
-        self.needs_proof = [
-            keep.normal or keep.asked or len(keep.near.corners) + len(keep.far.corners) > 3
-            for keep in self.keeps
-        ]
+        for row, gap in zip(self.rows, gaps, strict=True):
+            near = hulls[row["near"]] if "near" in row else Hull(0, ((0, 0, 0),))
+            distance = in_units(gap / self.largest), gap != 0
+            normal = unit(row["normal"]) if "normal" in row else None
+            hull_pair = near, hulls[row["far"]]
+            self.keeps.append(Keep(row["name"], *hull_pair, *distance, row.get("along"), normal))
         self._demand_one_height()
 
     def _demand_one_height(self) -> None:
         """Refuse bodies whose corners have not one height along the common axis."""
-        ends = [(k.near, k.far) for k in self.keeps if k.along is not None]
-        hulls = {id(hull): hull for pair in ends for hull in pair}.values()
-        pose, heights = Pose(self.steps if ends else [], [0] * len(self.joints)), list[int]()
-        for hull in hulls:
-            axis = pose.frames[ends[0][0].frame][0][self.robot.flat[ends[0][0].frame]]
-            heights += [dot(axis, pose.place(hull.frame, p)) for p in hull.corners]
-        level = not heights or max(heights) - min(heights) <= NEARLY
+        pairs = [keep for keep in self.keeps if keep.along is not None]
+        hulls = {id(hull): hull for keep in pairs for hull in (keep.near, keep.far)}
+        still = (0,) * len(self.joints)
+        leaf, heights = Leaf(self.steps if pairs else (), Box((still, still))), list[int]()
+        for hull in hulls.values():
+            axis = leaf.frames[pairs[0].near.frame][0][pairs[0].along or 0]
+            heights += [dot(axis, leaf.place(hull.frame, p)) for p in hull.corners]
+        level = max(heights, default=0) - min(heights, default=0) <= NEARLY
         demand(level, "robot: two bodies to keep apart are not at one height")
-
-    def _step(self, row: Table) -> Step:
-        turns, origin = self.joints[row["joint"]]["turns"], self.scaled(row["origin"])
-        low, high = (0, 0) if turns else self.whole_range(row["joint"])
-        mount, sweep = mount_of(row["rpy"], self.robot.exact["angle_unit"]), high - low + 3 >> 1
-        return Step(
-            row["joint"], turns, int(row["factor"]), origin, mount, unit(row["axis"]), sweep
-        )
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
         """Return three lengths in units."""
@@ -1501,17 +1388,18 @@ class Arm:
 
     def placed(self, q: Exact) -> Point:
         """Return a configuration in units."""
-        return tuple(itertools.starmap(self._value, enumerate(q)))
+        return tuple(itertools.starmap(self.value, enumerate(q)))
 
-    def _value(self, j: int, x: Fraction) -> int:
+    def value(self, j: int, x: Fraction) -> int:
+        """Return a value of a joint in units."""
         turns = self.joints[j]["turns"]
         return in_radians(x, self.robot.unit_of(j)) if turns else in_units(x / self.largest)
 
     def whole_range(self, j: int) -> tuple[int, int]:
         """Return the limits of a joint; without limits a turn, in radians a little more."""
-        ends = {"deg": Fraction(180), "rad": Fraction("3.1416")}[self.robot.exact["angle_unit"]]
-        low, high = self.joints[j]["limits"] or (-ends, ends)
-        return self._value(j, low), self._value(j, high)
+        half = {"deg": Fraction(180), "rad": Fraction("3.1416")}[self.robot.form["angle_unit"]]
+        low, high = self.joints[j]["limits"] or (-half, half)
+        return self.value(j, low), self.value(j, high)
 
 
 # --- reading: the claim ---------------------------------------------------------------------------
@@ -1527,12 +1415,21 @@ class Claim(NamedTuple):
     joints: Sequence[str]
 
 
+SETS = {
+    "box": (1, 2, 2, ()),
+    "path": (MAX_CELLS, 2, MAX_CELLS, ()),
+    "polygon": (MAX_CELLS, 3, MAX_CELLS, ("triangles",)),
+    "no path": (1, 2, 2, ("joints",)),
+}
+"""The most lists of configurations; how long a list is, at least and at most; and other keys."""
+
+
 def configuration(robot: Robot) -> Reader:
     """Return the reader of one value for each joint; angles are not too large."""
-    unit_name = robot.exact["angle_unit"]
-    largest, turning = LARGEST_ANGLE[unit_name], [j["turns"] for j in robot.exact["joints"]]
+    unit_name, turning = robot.form["angle_unit"], [j["turns"] for j in robot.form["joints"]]
+    largest = LARGEST_ANGLE[unit_name]
     return such(
-        lambda q: all(abs(x) <= largest for x, turns in zip(q, turning, strict=True) if turns),
+        lambda q: all(abs(x) <= largest for x in itertools.compress(q, turning)),
         f"an angle of more than {largest} {unit_name}",
         items(decimal, len(turning), len(turning)),
     )
@@ -1540,28 +1437,18 @@ def configuration(robot: Robot) -> Reader:
 
 def read_claim(value: Any, robot: Robot) -> Claim:
     """Read a claim and the cells of its set."""
-    q, count = configuration(robot), len(robot.joints)
-    two = {"points": items(items(q, 2, 2), 1, 1)}
-    kinds = one_of("moves", "held", "any")
-    specs = {
-        "box": two,
-        "path": {"points": items(items(q, 2, MAX_CELLS), 1, MAX_CELLS)},
-        "polygon": {
-            "points": items(items(q, 3, MAX_CELLS), 1, MAX_CELLS),
-            "triangles": items(anything, 1, MAX_CELLS),
-        },
-        "no path": {**two, "joints": items(kinds, count, count)},
-    }
-    kind = one_of(*specs)(value.get("set") if type(value) is dict else None, "claim.set")
-    head = {"set": anything, "margin": not_negative(decimal)}
-    found = table({**head, **specs[kind]})(value, "claim")
-    loops, joints, corners = found["points"], found.get("joints", ()), list[Sequence[Exact]]()
-    points = [q for loop in loops for q in loop]
-    demand(len(points) <= MAX_CELLS, f"claim.points: more than {MAX_CELLS} configurations")
+    kind = one_of(*SETS)(value.get("set") if type(value) is dict else None, "claim.set")
+    lists, least, most, others = SETS[kind]
+    points = items(items(configuration(robot), least, most), 1, lists)
+    spec = {"set": anything, "margin": not_negative(decimal), "points": points}
+    found = table({**spec, **dict.fromkeys(others, anything)})(value, "claim")
+    loops, joints = found["points"], list[str]()
+    every = [*itertools.chain(*loops)]
+    demand(len(every) <= MAX_CELLS, f"claim.points: more than {MAX_CELLS} configurations")
+    corners: list[Sequence[Exact]] = [every]
     if kind == "box":
-        rises = all(a <= b for a, b in zip(*points, strict=True))
+        rises = all(a <= b for a, b in zip(*every, strict=True))
         demand(rises, "claim.points: the first corner is the low one in every joint")
-        corners = [points]
     elif kind == "path":
         corners = [pair for loop in loops for pair in itertools.pairwise(loop)]
     elif kind == "polygon":
@@ -1569,25 +1456,26 @@ def read_claim(value: Any, robot: Robot) -> Claim:
         for loop in flat:
             once = len({f"{x} {y}" for x, y in loop}) == len(loop)
             demand(once, "claim.points: a loop passes a configuration twice")
-        numbered = items(items(index(len(points)), 3, 3), 1, MAX_CELLS)
-        triangles = numbered(value["triangles"], "claim.triangles")
-        places = [place for loop in flat for place in loop]
+        numbered = items(items(index(len(every)), 3, 3), 1, MAX_CELLS)
+        triangles = numbered(found["triangles"], "claim.triangles")
+        places = [*itertools.chain(*flat)]
         demand_filled(flat, [[places[k] for k in row] for row in triangles], "claim.triangles")
-        corners = [[points[k] for k in row] for row in triangles]
+        corners = [[every[k] for k in row] for row in triangles]
     else:
+        kinds = items(one_of("moves", "held", "any"), len(robot.joints), len(robot.joints))
+        joints = kinds(found["joints"], "claim.joints")
         demand("moves" in joints, "claim.joints: at least one joint moves")
-        held = [a == b for a, b, each in zip(*points, joints, strict=True) if each == "held"]
+        held = [a == b for a, b, each in zip(*every, joints, strict=True) if each == "held"]
         demand(all(held), "claim.joints: start and goal differ in a joint that is held")
     return Claim(kind, found["margin"], loops, corners, joints)
 
 
-def _flat(loops: Sequence[Sequence[Exact]]) -> list[list[tuple[int, int]]]:
-    """Return the loops of a polygon in the two joints that vary, in whole numbers."""
-    columns = [*zip(*(q for loop in loops for q in loop), strict=True)]
+def _flat(loops: Sequence[Sequence[Exact]]) -> list[Loop]:
+    """Return the loops of a polygon in the two joints that vary."""
+    columns = zip(*itertools.chain(*loops), strict=True)
     plane = [j for j, column in enumerate(columns) if min(column) != max(column)]
     demand(len(plane) == 2, f"claim.points: {len(plane)} joints of a polygon vary, not two")
-    (i, m), (k, n) = ((j, math.lcm(*(x.denominator for x in columns[j]))) for j in plane)
-    return [[(int(q[i] * m), int(q[k] * n)) for q in loop] for loop in loops]
+    return in_plane(loops, *plane)
 
 
 # --- the answer -----------------------------------------------------------------------------------
@@ -1600,20 +1488,16 @@ class Answer(NamedTuple):
     said: str
 
 
-def normal_form(written: str, parts: Any) -> Table:
-    """Return the normal form of a robot's text; for those who write certificates."""
-    Work.done = 0
-    return read_robot(written, parts).form
-
-
-def canonical(form: Table) -> str:
-    """Return the text of a normal form, whose hash stands in a certificate."""
-    return json.dumps(form, indent=1, sort_keys=True) + "\n"
-
-
 def digest(written: str) -> str:
     """Return the SHA-256 of a text."""
     return hashlib.sha256(written.encode()).hexdigest()
+
+
+def normal_form(written: str, parts: Any) -> Table:
+    """Return the normal form of a robot's text; for those who write certificates."""
+    Work.done = 0
+    form: Table = json.loads(canonical(read_robot(written, parts).form))
+    return form
 
 
 def read(data: str | bytes) -> tuple[Table, Robot]:
@@ -1623,8 +1507,9 @@ def read(data: str | bytes) -> tuple[Table, Robot]:
     content = read_json(data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data)
     schema = content.get("schema") if type(content) is dict else None
     demand(schema == SCHEMA, f"schema: {SCHEMA} is wanted; older formats are not read any more")
-    spec = {"robot": text(MAX_ROBOT), "parts": anything, "sha256": text(64), "claim": anything}
-    spec |= {"schema": anything, "witness" if "witness" in content else "proof": anything}
+    shows = "witness" if "witness" in content else "proof"
+    keys = ("schema", "parts", "sha256", "claim", shows)
+    spec = {"robot": text(MAX_ROBOT), **dict.fromkeys(keys, anything)}
     content = table(spec)(content, "the file")
     robot = read_robot(content["robot"], content["parts"])
     sha256 = digest(canonical(robot.form))
@@ -1651,47 +1536,36 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
         demand(told.form == robot.form, other)
         robot = told  # what is said is said in the words of the file that the reader has
         compared = f"compared with {shown(file)}: the same"
-    claim = read_claim(content["claim"], robot)
-    arm, evidence = Arm(robot, claim.margin), content.get("witness", content.get("proof"))
-    if "witness" in content:
+    claim, refuted = read_claim(content["claim"], robot), "witness" in content
+    arm = Arm(robot, claim.margin)
+    if refuted:
         demand(claim.kind != "no path", "witness: a claim of no path has a proof")
-        said = f"refuted: {refute(arm, claim, evidence)}\nthe claim was that the set keeps"
-    elif claim.kind == "no path":
-        prove_no_path(arm, claim, evidence)
-        said = "proved: no path from {} to {} keeps all of the following".format(
-            *map(_in_brackets, claim.loops[0])
-        )
+        said = refute(arm, claim, content["witness"])
     else:
-        for q in (q for cell in claim.corners for q in cell):  # the limits of cells, exactly
-            beyond = robot.beyond(q)
-            demand(not beyond, f"claim: beyond the limit {shown(next(iter(beyond), ''))}")
-        placed = [[*map(arm.placed, corners)] for corners in claim.corners]
-        box = claim.kind == "box"
-        prove_safe(arm, [Box(*c) if box else Simplex(tuple(c)) for c in placed], evidence)
-        said = "proved: at every configuration of the set all of the following is kept"
-    heading = f"robot {robot.exact['name']!a}, sha256 of its normal form {content['sha256']}"
+        prove = prove_no_path if claim.kind == "no path" else prove_safe
+        said = prove(arm, claim, content["proof"])
+    heading = f"robot {robot.form['name']!a}, sha256 of its normal form {content['sha256']}"
     lines = [f"{heading}, {compared}", said, *kept(robot, claim), *described(robot, claim)]
-    return Answer("witness" in content, "\n".join(lines))
+    return Answer(refuted, "\n".join(lines))
 
 
 def kept(robot: Robot, claim: Claim) -> Iterator[str]:
     """Say what was to be kept, and what was not."""
-    length = robot.exact["length_unit"]
+    length = robot.form["length_unit"]
     yield f"all limits of joints, and with {exactly(claim.margin)} {length} to spare each of"
-    for named, things, normal, distance in robot.boundaries:
-        ends = [
-            f"{'outline' if thing.kind == 'polygon' else thing.kind} {thing.name!a}"
-            f" of frame {robot.frames[thing.frame]!a}"
-            + (f", radius {exactly(thing.radius)} {length}" if thing.radius else "")
-            for thing in things
-        ]
+    for name, things, normal, distance in robot.boundaries:
+        ends = []
+        for thing in things:
+            kind = "outline" if thing.kind == "polygon" else thing.kind
+            radius = f", radius {exactly(thing.radius)} {length}" if thing.radius else ""
+            ends.append(f"{kind} {thing.name!a} of frame {robot.frames[thing.frame]!a}{radius}")
         told = f"at least {exactly(distance)} {length}"
         if normal is not None:
             told += f" of height along {_in_brackets(normal)}, in all its places"
         else:
             told = f"{told} apart" if distance else "not overlapping"
             told += "" if things[0].kind == "point" else ", seen along the common axis"
-        yield f"  {named!a}: {' and '.join(ends)}: {told}"
+        yield f"  {name!a}: {' and '.join(ends)}: {told}"
     if robot.left_out:
         yield f"not claimed: {', '.join(robot.left_out)}"
 
@@ -1709,30 +1583,32 @@ JOINTS = {"any": "takes any value, even jumps", "held": "is held", "moves": "mov
 
 def described(robot: Robot, claim: Claim) -> Iterator[str]:
     """Describe the set by the numbers that were verified."""
-    points = [q for loop in claim.loops for q in loop]
+    points = [*itertools.chain(*claim.loops)]
     printed = [" ".join(map(_in_brackets, loop)) for loop in claim.loops]
-    units = [robot.unit_of(j) for j in range(len(robot.joints))]
-    names = ", ".join(f"{name!a} / {u}" for name, u in zip(robot.joints, units, strict=True))
-    told = [LOOPS.get(claim.kind, "")] * len(printed)
+    names = ", ".join(f"{name!a} / {robot.unit_of(j)}" for j, name in enumerate(robot.joints))
+    told, counted = [LOOPS.get(claim.kind, "")] * len(printed), claim.kind
     if claim.kind == "polygon":
         told = ["outline" if doubled_area(loop) > 0 else "hole" for loop in _flat(claim.loops)]
-    counted = [f"{told.count(kind)} {kind}(s)" for kind in ("outline", "hole") if kind in told]
-    yield f"set: {', '.join([claim.kind, *counted])}; {len(points)} configurations ({names})"
-    if len(points) <= MOST_SHOWN:
+        counted += "".join(
+            f", {told.count(kind)} {kind}(s)" for kind in sorted({*told}, reverse=True)
+        )
+    yield f"set: {counted}; {len(points)} configurations ({names})"
+    few = len(points) <= MOST_SHOWN
+    if few:
         yield from (f"  {kind}: {said}" for kind, said in zip(told, printed, strict=True))
     else:
         yield f"  their text is in the certificate; its sha256 is {digest(chr(10).join(printed))}"
         for loop in claim.loops if claim.kind == "path" else ():
             yield f"  path from {_in_brackets(loop[0])} to {_in_brackets(loop[-1])}"
-    turn = 360 if robot.exact["angle_unit"] == "deg" else 2 * PI + Fraction(1, 10**70)
+    turn = 360 if robot.form["angle_unit"] == "deg" else 2 * PI + Fraction(1, 10**70)
     for j, (name, column) in enumerate(zip(robot.joints, zip(*points, strict=True), strict=True)):
         if claim.joints:
             yield f"  {name!a} {JOINTS[claim.joints[j]]}"
             continue
-        if len(points) > MOST_SHOWN:
+        if not few:
             ends = f"{exactly(min(column))} and {exactly(max(column))}"
-            yield f"  {name!a} is between {ends} {units[j]} in the set"
-        if robot.exact["joints"][j]["turns"] and _longest(claim, j) >= turn:
+            yield f"  {name!a} is between {ends} {robot.unit_of(j)} in the set"
+        if robot.form["joints"][j]["turns"] and _longest(claim, j) >= turn:
             yield f"  {name!a} takes every angle"
 
 
@@ -1740,7 +1616,7 @@ def _longest(claim: Claim, j: int) -> Fraction:
     """Return the length of the longest range of a joint that the cells take without a gap."""
     Work.add(50 * len(claim.corners))
     ranges = sorted((min(q[j] for q in cell), max(q[j] for q in cell)) for cell in claim.corners)
-    (start, end), longest = ranges[0], Fraction(0)
+    (start, end), longest = ranges[0], ZERO
     for low, high in ranges:
         start, end = (start, max(end, high)) if low <= end else (low, high)
         longest = max(longest, end - start)
@@ -1776,29 +1652,33 @@ def main(arguments: Sequence[str]) -> int:
         status, said = 130, "not proved: interrupted"
     except Exception:  # whatever a hostile file sets off
         pass
-    return status if _printed(said) else NO_ANSWER
+    safe = re.sub(r"[^\n -~]", lambda found: ascii(found[0])[1:-1], said)
+    try:
+        sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
+        sys.stdout.flush()
+    except (OSError, ValueError, AttributeError):
+        return NO_ANSWER
+    return status
 
 
 def _answer(arguments: list[str]) -> tuple[int, str]:
     """Return the exit status and what is to be printed."""
-    told = {"--help": USAGE, "--version": f"check.py of {SCHEMA}"}
-    if len(arguments) == 1 and arguments[0] in told:
-        return PROVED, told[arguments[0]]
-    known = 1 <= len(arguments) <= 3 and len(arguments) != 2 and "" not in arguments
-    demand(known and arguments[0][:2] != "--", USAGE)
-    option = arguments[1] if len(arguments) > 1 else ""
-    demand(option in ("", "--robot") or arguments[1:] == ["--print", "robot"], USAGE)
-    data = _read_file(arguments[0])
+    if arguments == ["--help"]:
+        return PROVED, USAGE
+    if arguments == ["--version"]:
+        return PROVED, f"check.py of {SCHEMA}"
+    file, option, value = (*arguments, "", "", "")[:3] if len(arguments) in (1, 3) else ("",) * 3
+    demand(file and file[:2] != "--" and bool(option) == bool(value), USAGE)
+    demand(option in ("", "--robot") or (option, value) == ("--print", "robot"), USAGE)
+    data, pin = _read_file(file), None
     if option == "--print":
         return PROVED, canonical(read(data)[1].form)[:-1]
-    if not option:
-        answer = check(data)
-    else:
+    if option:
         try:  # as qbound reads a robot file: without a mark, with one sort of line end
-            pin = _read_file(arguments[2]).decode("utf-8-sig")
+            pin = _read_file(value).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         except UnicodeDecodeError:
-            raise Refused(f"{shown(arguments[2])}: not UTF-8 text") from None
-        answer = check(data, pin.replace("\r\n", "\n").replace("\r", "\n"), arguments[2])
+            raise Refused(f"{shown(value)}: not UTF-8 text") from None
+    answer = check(data, pin, value)
     return (REFUTED if answer.refuted else PROVED), answer.said
 
 
@@ -1813,20 +1693,5 @@ def _read_file(file: str) -> bytes:
     return data
 
 
-def _printed(said: str) -> bool:
-    """Print a text in ASCII and tell whether it arrived."""
-    safe = re.sub(r"[^\n -~]", lambda found: ascii(found[0])[1:-1], said)
-    try:
-        sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
-        sys.stdout.flush()
-    except (OSError, ValueError, AttributeError):
-        try:  # leave nothing for Python to complain about when it closes a broken output
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        except (OSError, ValueError, AttributeError):
-            sys.stdout = None
-        return False
-    return True
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    os._exit(main(sys.argv[1:]))  # and nothing more is tried where an answer could not be printed

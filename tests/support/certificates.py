@@ -81,9 +81,8 @@ class Draft:
 
     @property
     def cells(self) -> list[check.Cell]:
-        placed = [[*map(self.arm.placed, corners)] for corners in self.claim.corners]
-        box = self.claim.kind == "box"
-        return [check.Box(*c) if box else check.Simplex(tuple(c)) for c in placed]
+        make = check.Box if self.claim.kind == "box" else check.Cell
+        return [make(tuple(map(self.arm.placed, corners))) for corners in self.claim.corners]
 
     def file(self, **evidence: Json) -> Json:
         """Return the certificate around some evidence."""
@@ -95,7 +94,7 @@ class Draft:
 def longest(cell: check.Cell, joints: Sequence[int]) -> int:
     """Return the number of the longest edge, or of the widest joint."""
     if isinstance(cell, check.Box):
-        return max(joints, key=lambda j: cell.high[j] - cell.low[j])
+        return max(joints, key=lambda j: cell.ends[1][j] - cell.ends[0][j])
     edges = [*itertools.combinations(cell.ends, 2)]
     return max(range(len(edges)), key=lambda k: math.dist(*edges[k]))
 
@@ -109,29 +108,31 @@ def proved(robot: str, claim: Json, parts: Json = None, depth: int = 14) -> Json
     joints, cells = range(len(draft.arm.joints)), draft.cells
 
     def tree(keep: check.Keep, cell: check.Cell, left: int) -> str:
-        pose = check.Pose(draft.steps, cell.middle)
-        for row in directions(keep, pose):
+        leaf = check.Leaf(draft.steps, cell)
+        for row in directions(keep, leaf):
             u = check.unit(row) if keep.normal is None else keep.normal
-            if check.is_kept(draft.steps, pose, keep, u, cell):
+            if check.is_kept(leaf, keep, u):
                 return f"{known.setdefault(row, len(known))}." if row else "."
         if not left:
             raise NotFound(f"{keep.name} is not proved")
         letter = longest(cell, joints)
         return chr(97 + letter) + "".join(tree(keep, h, left - 1) for h in cell.halves(letter))
 
-    pairs = zip(draft.arm.keeps, draft.arm.needs_proof, strict=True)
-    trees = [[tree(keep, cell, depth) for cell in cells] if asked else [] for keep, asked in pairs]
+    trees = [
+        [tree(keep, cell, depth) for cell in cells] if keep.needs_proof else []
+        for keep in draft.arm.keeps
+    ]
     return draft.file(proof={"directions": [*map(list, known)], "trees": trees})
 
 
-def directions(keep: check.Keep, pose: check.Pose) -> Iterator[tuple[int, ...]]:
+def directions(keep: check.Keep, leaf: check.Leaf) -> Iterator[tuple[int, ...]]:
     """Yield what may separate two hulls: steps between corners, and normals of edges."""
     if keep.normal is not None:
         yield ()
         return
     first = keep.near.frame
-    near = [seen(pose, first, first, p) for p in keep.near.corners]
-    far = [seen(pose, first, keep.far.frame, p) for p in keep.far.corners]
+    near = [seen(leaf, first, first, p) for p in keep.near.corners]
+    far = [seen(leaf, first, keep.far.frame, p) for p in keep.far.corners]
     steps = [[y - x for x, y in zip(p, r, strict=True)] for p in near for r in far]
     if keep.along is not None:
         i, k = (x for x in range(3) if x != keep.along)
@@ -147,9 +148,9 @@ def directions(keep: check.Keep, pose: check.Pose) -> Iterator[tuple[int, ...]]:
             yield tuple(round(x / length * 10**5) for x in row)
 
 
-def seen(pose: check.Pose, near: int, frame: int, corner: check.Vector) -> list[float]:
-    turned, at = pose.frames[near]
-    step = check.minus(pose.place(frame, corner), at)
+def seen(leaf: check.Leaf, near: int, frame: int, corner: check.Vector) -> list[float]:
+    turned, at = leaf.frames[near]
+    step = check.minus(leaf.place(frame, corner), at)
     return [check.dot(column, step) / check.ONE for column in turned]
 
 
@@ -227,17 +228,18 @@ def no_path(robot: str, claim: Json, parts: Json = None, depth: int = 9) -> Json
     """Cover with leaves on which something is violated; leave the smallest ones open."""
     draft = Draft(robot, {"set": "no path"} | claim, parts)
     read, arm, kinds = check.read_spots(draft.arm), draft.arm, draft.claim.joints
-    start, free = arm.placed(draft.claim.loops[0][0]), [kind == "any" for kind in kinds]
+    start = arm.placed(draft.claim.loops[0][0])
     ends = [arm.whole_range(j) if k != "held" else (start[j],) * 2 for j, k in enumerate(kinds)]
-    ends = [((a + b) >> 1,) * 2 if f else (a, b) for (a, b), f in zip(ends, free, strict=True)]
+    free = {j: (ends[j][1] - ends[j][0] + 3) >> 1 for j, kind in enumerate(kinds) if kind == "any"}
+    ends = [((a + b) >> 1,) * 2 if j in free else (a, b) for j, (a, b) in enumerate(ends)]
     known = [(place, *read(place, "")) for place in places(draft)]
     used = list[Json]()
     moving = [j for j, kind in enumerate(kinds) if kind == "moves"]
 
     def tree(cell: check.Box, left: int) -> str:
-        pose = check.Pose(draft.steps, cell.middle)
+        leaf = check.Leaf(draft.steps, cell, free)
         for place, keep, read_one in known:
-            if check.is_violated(draft.steps, pose, keep, read_one, cell, free):
+            if check.is_violated(leaf, keep, read_one):
                 used.extend([place] if place not in used else [])
                 return f"{used.index(place)}."
         if not left:
@@ -246,7 +248,7 @@ def no_path(robot: str, claim: Json, parts: Json = None, depth: int = 9) -> Json
         first, second = (tree(half, left - 1) for half in cell.halves(letter))
         return "." if first == second == "." else chr(97 + letter) + first + second
 
-    found = tree(check.Box(*map(tuple, zip(*ends, strict=True))), depth)
+    found = tree(check.Box(tuple(zip(*ends, strict=True))), depth)
     return draft.file(proof={"places": used, "tree": found})
 
 
