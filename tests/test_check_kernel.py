@@ -1,12 +1,10 @@
 """The checker's arithmetic: what its numbers enclose, and its inequality against samples."""
 
 import ast
-import itertools
 import json
 import random
 import re
 import sys
-import tomllib
 from fractions import Fraction
 from pathlib import Path
 
@@ -20,7 +18,7 @@ from qbound.proofs import second
 from support import brute_force, planar
 from support.certificates import Draft
 from support.claims import ARM, between, box
-from support.robot_files import ALL_KINDS, robot_file
+from support.samples import Sample, in_floats
 
 ONE = check.ONE
 
@@ -76,63 +74,6 @@ def test_the_checker_is_one_file_of_the_standard_library_without_floats():
 # --- kinematics and the inequality, against samples -----------------------------------------------
 
 
-WIRE = '[[boundary]]\nname = "wire"\ntype = "pair"\npoints = ["tip", "mid"]\n'
-
-
-class Sample:
-    """A random arm, a leaf, and configurations of it; some joints may take any value."""
-
-    def __init__(self, seed, free_share=0.0, width=1.0):
-        self.rng, rng = random.Random(seed), np.random.default_rng(seed)
-        unit, count = self.rng.choice(("deg", "rad")), 1 + seed % 4
-        text = robot_file(seed, count, ALL_KINDS, unit) + WIRE
-        self.table = tomllib.loads(text)
-        turns = np.array([row["type"] != "prismatic" for row in self.table["joint"]])
-        radian = 180 / np.pi if unit == "deg" else 1
-        size = width * np.where(turns, radian, 3)
-        low = np.where(turns, 2 * size * rng.uniform(-1, 1, count), rng.uniform(-4, 3, count))
-        high = low + size * rng.random(count) * rng.choice([0, 1, 1], count)
-        is_free = rng.random(count) < free_share
-        is_simplex = seed // 4 % 2
-        shares = rng.random((3, count)) if is_simplex else np.array([[0] * count, [1] * count])
-        corners = (low + shares * (high - low)).round(3)
-        corners[:, is_free] = np.where(turns, 0, 1)[is_free]  # 1 is the middle of a slide
-        exact = [[Fraction(str(x)) for x in q] for q in corners]
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        self.draft = Draft(text, box(" ".join(map(str, low)), " ".join(map(str, high))))
-        placed = [self.draft.arm.placed(q) for q in exact]
-        self.cell = (check.Cell if is_simplex else check.Box)(tuple(placed))
-        self.middle = corners.mean(axis=0)
-        if is_simplex:
-            parts = np.concatenate([np.eye(3), rng.dirichlet([0.5] * 3, 60)])
-            self.q = parts @ corners
-        else:
-            ends = np.array([*itertools.product((0, 1), repeat=count)])
-            parts = np.concatenate([ends, rng.random((60, count))])
-            self.q = corners[0] + parts * (corners[1] - corners[0])
-        arm = self.draft.arm
-        ranges = {j: arm.whole_range(j) for j in np.flatnonzero(is_free).tolist()}
-        free = {j: (high - low + 3) >> 1 for j, (low, high) in ranges.items()}
-        self.leaf = check.Leaf(self.draft.steps, self.cell, free)
-        self.q = np.repeat(self.q, 20 if free else 1, axis=0)
-        whole = np.where(turns, np.pi * radian, 5)  # the limits of slides are -4 and 6
-        anything = np.where(turns, 0, 1) + whole * rng.uniform(-1, 1, self.q.shape)
-        self.q = np.where(is_free, anything, self.q)
-
-    def corner(self):
-        return [round(self.rng.uniform(-9, 9), 3) for _ in range(3)]
-
-    def step_of(self, k):
-        """Return the steps of the joints of step k from the middle, in radians or lengths."""
-        step = self.draft.steps[k]
-        x = step.factor * (self.q - self.middle)[:, step.joint]
-        return np.radians(x) if step.turns and self.table["angle_unit"] == "deg" else x
-
-
-def in_floats(v, scale):
-    return np.array([x / ONE for x in v]) * scale
-
-
 @pytest.mark.parametrize("free_share", [0, 0.3])
 def test_a_place_is_as_near_to_its_linear_motion_as_the_bound_says(free_share):
     tightest = 0.0
@@ -156,15 +97,6 @@ def test_a_place_is_as_near_to_its_linear_motion_as_the_bound_says(free_share):
     assert tightest > 0.9
 
 
-def seen(s, frame, corner, at):
-    """Return a corner of a frame as it is seen from another one, at all samples."""
-    names = brute_force.frames_of(s.table)
-    ends = [*np.eye(3), np.zeros(3)]
-    *axes, origin = (brute_force.place(s.table, {"frame": names[at], "at": e}, s.q) for e in ends)
-    r = brute_force.place(s.table, {"frame": names[frame], "at": corner}, s.q) - origin
-    return np.stack([((axis - origin) * r).sum(axis=1) for axis in axes], axis=1)
-
-
 def with_gap(keep, gap, scale):
     return keep._replace(gap=check.in_units(Fraction(gap / scale)))
 
@@ -180,7 +112,7 @@ def test_what_is_kept_on_a_leaf_is_what_is_kept_at_all_its_places(width):
             row = [s.rng.randint(-99, 99) for _ in "xyz"]
             u = keep.normal or check.unit(row)
             near, far = (in_floats(hull.corners[0], scale) for hull in (keep.near, keep.far))
-            true = (seen(s, keep.far.frame, far, keep.near.frame) - near) @ in_floats(u, 1)
+            true = (s.seen(keep.far.frame, far, keep.near.frame) - near) @ in_floats(u, 1)
             below = [
                 true.min() + 1e-9 * scale,
                 *(true.min() - x * scale for x in np.geomspace(1e-9, 99, 40)),
@@ -201,7 +133,7 @@ def test_what_is_violated_on_a_leaf_is_what_is_violated_at_all_its_places(free_s
         for keep in s.draft.arm.keeps:
             near, far = (hull.corners[0] for hull in (keep.near, keep.far))
             spots = check.Spots(near, far, 0)
-            step = seen(s, keep.far.frame, in_floats(far, scale), keep.near.frame) - in_floats(
+            step = s.seen(keep.far.frame, in_floats(far, scale), keep.near.frame) - in_floats(
                 near, scale
             )
             true = (

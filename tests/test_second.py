@@ -11,169 +11,71 @@ pytest.importorskip("flint")
 from flint import acb_mat, ctx, fmpq
 
 from qbound import check
-from qbound.model.robotfile import packaged_robots, parse_robot, robot_text
+from qbound.model.robotfile import packaged_robots, robot_text
 from qbound.proofs import Verdict
 from qbound.proofs.second import proof, verify
-from qbound.proofs.second.cells import Box, Simplex, numbered
+from qbound.proofs.second.cells import Box, Cell, numbered
 from qbound.proofs.second.normal import is_convex, normal_form, text
 from qbound.proofs.second.reading import Claim, Work, exact
 from qbound.proofs.second.waves import Form, halved
 from support import certificates
+from support.robot_files import ALL_KINDS, robot_file
+from support.samples import Sample
 
-# --- random robots, and where their places are ----------------------------------------------------
-
-
-def random_robot(rng, planar=False):
-    """A robot file of one to four joints of all kinds, a point on each frame, as text and table."""
-    count = rng.integers(1, 4 if planar else 5)
-    kinds = rng.choice(["revolute", "prismatic", "parallelogram"], count, p=[0.6, 0.3, 0.1])
-    joints, frames = [], ["base"]
-    for j, kind in enumerate(kinds):
-        turned = rng.random() < 0.5
-        joint = {
-            "name": f"q{j}",
-            "type": str(kind),
-            "parent": frames[-1],
-            "frame": f"f{j}",
-            "origin": rng.uniform(-1, 1, 3).round(3).tolist(),
-            "axis": rng.uniform(-1, 1, 3).round(3).tolist(),
-            "rpy": rng.uniform(-180, 180, 3).round(1).tolist() if turned else [0, 0, 90],
-        }
-        if kind == "parallelogram":
-            joint |= {"bar": f"b{j}", "crank": rng.uniform(-1, 1, 3).round(3).tolist()}
-            frames.append(f"b{j}")
-        if kind == "prismatic":
-            joint["limits"] = [-0.5, 1]
-        frames.append(f"f{j}")
-        joints.append(joint)
-    points = [
-        {"name": f"p{k}", "frame": frame, "at": rng.uniform(-1, 1, 3).round(3).tolist()}
-        for k, frame in enumerate(frames)
-    ]
-    near, far = sorted(rng.choice(len(frames), 2, replace=False).tolist())
-    return {
-        "schema": 1,
-        "name": "random",
-        "length_unit": "m",
-        "angle_unit": "deg",
-        "home": {joint["name"]: 0 for joint in joints},
-        "tool": "p0",
-        "joint": joints,
-        "point": points,
-        "boundary": [
-            {"name": "pair", "type": "pair", "points": [f"p{far}", f"p{near}"], "clearance": 0.5},
-            {
-                "name": "wall",
-                "type": "half-space",
-                "point": f"p{far}",
-                "normal": rng.uniform(-1, 1, 3).round(2).tolist(),
-                "offset": 0.25,
-            },
-        ],
-    }
+# --- the bounds, against samples ------------------------------------------------------------------
 
 
-def as_text(table):
-    import tomlkit
-
-    return tomlkit.dumps(table)
-
-
-def random_cell(rng, table):
-    """A box, segment or triangle within the limits, in decimals of the file."""
-    turns = [joint["type"] != "prismatic" for joint in table["joint"]]
-    low = [rng.uniform(-180, 180) if t else rng.uniform(-0.5, 0.2) for t in turns]
-    wide = [rng.uniform(0, 60) if t else rng.uniform(0, 0.8) for t in turns]
-    wide = [w * (rng.random() < 0.8) for w in wide]
-    decimals = [[fmpq(round(1000 * x), 1000) for x in row] for row in (low, wide)]
-    low, wide = decimals
-    if rng.random() < 0.5:
-        return Box(tuple(low), tuple(a + w for a, w in zip(low, wide, strict=True)))
-    parts = rng.integers(0, 5, (rng.integers(2, 4), len(low))).tolist()
-    return Simplex(
-        tuple(tuple(a + w * k / 4 for a, w, k in zip(low, wide, row, strict=True)) for row in parts)
-    )
+def scene_of(s):
+    """Return the scene and the cell of a sample, in rationals."""
+    corners = [tuple(fmpq(x.numerator, x.denominator) for x in q) for q in s.corners]
+    claim = Claim("box", fmpq(0), [corners], [], [])
+    scene = proof.Scene(normal_form(s.draft.text, {}), claim, Work())
+    return scene, (Box if isinstance(s.cell, check.Box) else Cell)(tuple(corners))
 
 
-def places_in(rng, cell, count):
-    """Configurations of a cell, its corners among them, as floats."""
-    if isinstance(cell, Box):
-        low, high = (np.array([float(x) for x in q]) for q in (cell.low, cell.high))
-        part = rng.choice([0, 1, 0.5, rng.random()], (count, len(low)))
-        return low + part * (high - low)
-    corners = np.array([[float(x) for x in q] for q in cell.corners])
-    return rng.dirichlet([0.4] * len(corners), count) @ corners
-
-
-def in_units(table, q):
-    turns = [joint["type"] != "prismatic" for joint in table["joint"]]
-    return np.where(turns, np.radians(q), q)
-
-
-def scene_of(table, joints=()):
-    form = normal_form(as_text(table), {})
-    zero = tuple(fmpq(0) for _ in table["joint"])
-    claim = Claim("box", fmpq(0), [[zero, zero]], [], list(joints))
-    return proof.Scene(form, claim, Work())
-
-
-def seen_in(robot, table, q):
-    """The first point of the pair, seen from the frame of the second one; (N, 3)."""
-    frames = robot.frames(q)
-    far, near = table["boundary"][0]["points"]
-    observer = next(p["frame"] for p in table["point"] if p["name"] == near)
-    return np.broadcast_to(frames.position(observer, far, observer), (len(q), 3))
+def ends_of(keep):
+    return [[float(x) for x in hull.corners[0]] if hull.corners else [0.0] * 3
+            for hull in (keep.near, keep.far)]  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_a_place_along_a_direction_is_within_the_bound(seed):
-    rng = np.random.default_rng(seed)
-    table = random_robot(rng)
-    cell, u = random_cell(rng, table), rng.integers(-9, 10, 3).tolist()
+    s = Sample(seed)
     with ctx.workprec(192):
-        scene = scene_of(table)
-        keep = scene.keep[0]
-        terms = halved(scene.seen(keep, keep.far.corners), ())
-        rows = {key: acb_mat([u]) * value for key, value in terms.items()}
-        form = Form(scene.chain, scene.between(keep), rows, scene.reach)
-        linear, errors = (matrix.tolist() for matrix in form.over(cell))
-    ends = [(float(v[0]), float(e[0])) for v, e in zip(linear, errors, strict=True)]
-    q = in_units(table, places_in(rng, cell, 300))
-    found = seen_in(parse_robot(table), table, q) @ np.array(u)
-    assert min(v - e for v, e in ends) <= found.min() + 1e-12
-    assert found.max() - 1e-12 <= max(v + e for v, e in ends)
+        scene, cell = scene_of(s)
+        for keep in scene.keep:
+            u = [s.rng.randint(-9, 9) for _ in "xyz"]
+            terms = halved(scene.seen(keep, keep.far.corners), ())
+            rows = {key: acb_mat([u]) * value for key, value in terms.items()}
+            form = Form(scene.chain, scene.between(keep), rows, scene.reach)
+            linear, errors = (matrix.tolist() for matrix in form.over(cell))
+            ends = [(float(v[0]), float(e[0])) for v, e in zip(linear, errors, strict=True)]
+            found = s.seen(keep.far.frame, ends_of(keep)[1], keep.near.frame) @ np.array(u)
+            assert min(v - e for v, e in ends) <= found.min() + 1e-10
+            assert found.max() - 1e-10 <= max(v + e for v, e in ends)
 
 
 @pytest.mark.parametrize("seed", range(120))
 def test_a_distance_is_within_the_bound_whatever_the_other_joints_are(seed):
-    rng = np.random.default_rng(seed)
-    table = random_robot(rng)
-    cell, count = random_cell(rng, table), len(table["joint"])
-    kinds = rng.choice(["moves", "held", "any"], count).tolist()
-    weights = {"keep": seed % 2, "near": [] if seed % 2 else ["1"], "far": ["1"]}
+    s = Sample(seed, free_share=0.3)
     with ctx.workprec(192):
-        scene = scene_of(table)
-        moving = [j for j in range(count) if kinds[j] == "moves"]
-        fixed = [j for j in range(count) if kinds[j] == "held"]
-        start = [(cell.low if isinstance(cell, Box) else cell.corners[0])[j] for j in fixed]
-        values = dict(zip(fixed, scene.chain.scaled(fixed, start), strict=True))
-        bound = float(proof.Place(scene, weights, moving, values).distance(cell)[0])
-    places = places_in(rng, cell, 400)
-    for j, joint in enumerate(table["joint"]):
-        low, high = joint.get("limits", (-180, 180))
-        if kinds[j] == "any":
-            places[:, j] = rng.uniform(low, high, 400)
-    places[:, fixed] = [float(x) for x in start]
-    q, robot = in_units(table, places), parse_robot(table)
-    if seed % 2:
-        wall = robot.boundary("wall")
-        found = robot.frames(q).position("base", wall.point, "base") @ wall.normal
-    else:
-        near = next(p for p in table["point"] if p["name"] == table["boundary"][0]["points"][1])
-        found = np.linalg.norm(seen_in(robot, table, q) - near["at"], axis=1)
-    assert found.max() <= bound + 1e-12
-    if "any" not in kinds and isinstance(cell, Box) and cell.low == cell.high:
-        assert found.max() == pytest.approx(bound)
+        scene, cell = scene_of(s)
+        own = [j for j in range(len(scene.limits)) if j not in s.leaf.free]
+        fixed = [j for j in own if len({q[j] for q in cell.corners}) == 1]
+        start = scene.chain.scaled(fixed, [cell.corners[0][j] for j in fixed])
+        values, moving = dict(zip(fixed, start, strict=True)), [j for j in own if j not in fixed]
+        spots = [{"keep": k, "near": ["1"] * len(keep.near.corners), "far": ["1"]}
+                 for k, keep in enumerate(scene.keep)]  # fmt: skip
+        places = [proof.Place(scene, spot, moving, values) for spot in spots]
+        for keep, place in zip(scene.keep, places, strict=True):
+            bound, (near, far) = float(place.distance(cell)[0]), ends_of(keep)
+            found = s.seen(keep.far.frame, far, keep.near.frame) - near
+            normal = np.array([float(x) for x in keep.normal])
+            found = found @ normal / np.linalg.norm(normal) if len(normal) else found
+            found = found if len(normal) else np.linalg.norm(found, axis=1)
+            assert found.max() <= bound + 1e-10
+            if not moving and not s.leaf.free:
+                assert found.max() == pytest.approx(bound)
 
 
 # --- certificates ---------------------------------------------------------------------------------
@@ -195,7 +97,7 @@ def test_both_ways_lead_to_one_normal_form(name):
 
 @pytest.mark.parametrize("seed", range(30))
 def test_both_ways_lead_to_one_normal_form_of_random_robots(seed):
-    robot = as_text(random_robot(np.random.default_rng(seed)))
+    robot = robot_file(seed, 1 + seed % 4, ALL_KINDS)
     assert normal_form(robot, {}) == check.normal_form(robot, {})
 
 

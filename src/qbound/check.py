@@ -279,8 +279,8 @@ class Box(Cell):
         low, high = self.ends
         wide = letter < len(low) and low[letter] < high[letter]
         demand(wide, "proof: a tree cuts a joint that the box does not have, or that has no range")
-        cut = self.middle[letter : letter + 1]
-        above, below = (end[:letter] + cut + end[letter + 1 :] for end in self.ends)
+        cut = low[letter] + high[letter] >> 1
+        above, below = ((*end[:letter], cut, *end[letter + 1 :]) for end in self.ends)
         return Box((low, below)), Box((above, high))
 
 
@@ -638,7 +638,7 @@ TOUCH = 1 << BITS - 100
 """Open leaves that are nearer than this touch: 8e-31 of a radian or of the largest length."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, slots=True)
 class Node:
     """A box of a tree: with its halves, or a leaf; what keeps everything lies in open leaves."""
 
@@ -1586,13 +1586,11 @@ def described(robot: Robot, claim: Claim) -> Iterator[str]:
     points = [*itertools.chain(*claim.loops)]
     printed = [" ".join(map(_in_brackets, loop)) for loop in claim.loops]
     names = ", ".join(f"{name!a} / {robot.unit_of(j)}" for j, name in enumerate(robot.joints))
-    told, counted = [LOOPS.get(claim.kind, "")] * len(printed), claim.kind
+    told = [LOOPS.get(claim.kind, "")] * len(printed)
     if claim.kind == "polygon":
         told = ["outline" if doubled_area(loop) > 0 else "hole" for loop in _flat(claim.loops)]
-        counted += "".join(
-            f", {told.count(kind)} {kind}(s)" for kind in sorted({*told}, reverse=True)
-        )
-    yield f"set: {counted}; {len(points)} configurations ({names})"
+    counts = [f", {told.count(kind)} {kind}(s)" for kind in ("outline", "hole") if kind in told]
+    yield f"set: {claim.kind}{''.join(counts)}; {len(points)} configurations ({names})"
     few = len(points) <= MOST_SHOWN
     if few:
         yield from (f"  {kind}: {said}" for kind, said in zip(told, printed, strict=True))

@@ -25,9 +25,7 @@ from qbound.model.robotfile import as_written, parse_robot
 from qbound.printable import printable
 from qbound.proofs import Verdict
 from qbound.proofs.certificates import search as safe
-from qbound.proofs.certificates.inequality import (
-    Arm,
-)
+from qbound.proofs.certificates.inequality import Arm
 from qbound.proofs.certificates.loops import CrossesItself
 from qbound.proofs.certificates.statements import (
     Statement,

@@ -13,10 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.certificates.inequality import (
-    Arm,
-    Kind,
-)
+from qbound.proofs.certificates.inequality import Arm, Kind
 from qbound.proofs.subdivide import Cells, Rows
 
 ALONG = 17

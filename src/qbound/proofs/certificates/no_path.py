@@ -20,9 +20,7 @@ from qbound.model.robot import Robot
 from qbound.proofs import Verdict
 from qbound.proofs.certificates.certify import Certificate, Subject
 from qbound.proofs.certificates.contact import Contacts, contacts, violated
-from qbound.proofs.certificates.inequality import (
-    Arm,
-)
+from qbound.proofs.certificates.inequality import Arm
 from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import within_limits
 from qbound.proofs.certificates.witness import Evidence, place_of

@@ -13,11 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.certificates.inequality import (
-    Arm,
-    Kind,
-    Seen,
-)
+from qbound.proofs.certificates.inequality import Arm, Kind, Seen
 from qbound.proofs.subdivide import Cells, Judged, Search, Tell, best_cuts, silent, subdivide
 
 FIRST_LOOK = 1000

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Floats
 from qbound.proofs.certificates.contact import Contacts, contacts
-from qbound.proofs.certificates.inequality import (
-    Arm,
-)
+from qbound.proofs.certificates.inequality import Arm
 from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import Statement, corners_of, decimal
 from qbound.proofs.subdivide import Boxes, Simplices

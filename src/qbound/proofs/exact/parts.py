@@ -1,4 +1,4 @@
-"""Convex parts of an outline, exact: cut for a certificate, and verified for the second checker.
+"""Convex parts of an outline, exact: cut for a certificate.
 
 An outline is a list of corners with two rational coordinates; parts are lists of their numbers, in
 the sense of the outline. A corner in the middle of a straight edge stays a corner, so that inner
@@ -8,7 +8,6 @@ edges meet whole.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
@@ -18,7 +17,6 @@ from qbound.model.robot import BodyPair, Robot
 from qbound.printable import printable
 
 Corner = tuple[Any, ...]
-Edge = tuple[int, int]
 
 
 def cut(corners: Sequence[Corner]) -> list[list[int]]:
@@ -101,32 +99,3 @@ def turns_left(corners: Sequence[Corner]) -> bool:
     if doubled == 0:
         raise ValueError("robot: an outline without an area")
     return bool(doubled > 0)
-
-
-def check_parts(corners: Sequence[Corner], parts: Sequence[Sequence[int]], name: str) -> None:
-    """Refuse parts that are not convex, do not go with the outline, or do not fill it.
-
-    Edges are compared by the places of their ends.
-    """
-    where = f"parts of {printable(name)}"
-    corners = in_whole_numbers(corners)
-    left = turns_left(corners)
-    edges: Counter[Edge] = Counter()
-    number = {corner: k for k, corner in enumerate(corners)}
-    for part in parts:
-        for i, k in _around(part):
-            sides = [side(corners[i], corners[k], corners[m]) for m in part]
-            sides = sides if left else [-side for side in sides]
-            if any(side < 0 for side in sides) or not any(sides):
-                raise ValueError(
-                    f"{where}: a part is not convex, flat, or goes the other way round"
-                )
-        edges.update((number[corners[i]], number[corners[k]]) for i, k in _around(part))
-    outline = Counter((number[a], number[b]) for a, b in _around(corners))
-    if any(count > 1 for count in (*edges.values(), *outline.values())):
-        raise ValueError(f"{where}: an edge occurs twice")
-    inner = edges - outline
-    if any(edges[i, k] == 0 or edges[k, i] for i, k in outline):
-        raise ValueError(f"{where}: an edge of the outline is not of one part alone")
-    if any(not inner[k, i] for i, k in inner):
-        raise ValueError(f"{where}: an inner edge has a part on one side alone")

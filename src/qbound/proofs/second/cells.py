@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise, product
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from qbound.proofs.second.reading import MOST_BYTES, Claim, Point, Work, demand, refuse, text_of
 
@@ -18,9 +18,12 @@ CUT_WORK = 10
 TREE = re.compile(r"(?:[a-g]|(?:0|[1-9][0-9]{0,8})?[.])+")
 TOKEN = re.compile(r"[a-g]|[0-9]*[.]")
 
+Loop = Sequence[Point]
+"""Places in a plane: two rationals each."""
+
 
 @dataclass(frozen=True, eq=False)
-class Simplex:
+class Cell:
     """A segment or a triangle by its corners; the letters of its cuts are its edges."""
 
     corners: tuple[Point, ...]
@@ -40,69 +43,50 @@ class Simplex:
         edges = enumerate(combinations(self.corners, 2))
         return [(k, [a[j] - b[j] for j in joints]) for k, (a, b) in edges]
 
-    def halves(self, letter: int) -> tuple[Simplex, Simplex]:
+    def halves(self, letter: int) -> tuple[Cell, Cell]:
         """Cut across an edge: the half that keeps its first corner, then the other half."""
         edges = list(combinations(range(len(self.corners)), 2))
         demand(letter < len(edges), "a tree cuts an edge that its cell does not have")
         i, k = edges[letter]
-        middle = tuple((x + y) / 2 for x, y in zip(self.corners[i], self.corners[k], strict=True))
-        first, second = list(self.corners), list(self.corners)
-        first[k], second[i] = middle, middle
-        return Simplex(tuple(first)), Simplex(tuple(second))
+        first, second = [*self.corners], [*self.corners]
+        first[k] = second[i] = Cell((self.corners[i], self.corners[k])).middle
+        return Cell(tuple(first)), Cell(tuple(second))
 
 
-@dataclass(frozen=True, eq=False)
-class Box:
+class Box(Cell):
     """All values between two corners; the letters of its cuts are the joints of the robot."""
-
-    low: Point
-    high: Point
-
-    @property
-    def corners(self) -> tuple[Point, ...]:
-        """The two corners that bound all others."""
-        return self.low, self.high
-
-    @property
-    def middle(self) -> Point:
-        """The middle."""
-        return tuple((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
 
     def steps(self, joints: Sequence[int]) -> list[list[Any]]:
         """Return the steps to all corners, as far as some of the joints tell them apart."""
-        halves = [(self.high[j] - self.low[j]) / 2 for j in joints]
+        halves = [high for _, high in zip(*super().steps(joints), strict=True)]
         return [list(step) for step in product(*((-h, h) if h else (h,) for h in halves))]
 
     def cuts(self, joints: Sequence[int]) -> list[tuple[int, list[Any]]]:
         """Return the letters of all cuts, and the steps along what they cut."""
-        wide = [j for j in joints if self.low[j] != self.high[j]]
-        return [(j, [(self.high[i] - self.low[i]) * (i == j) for i in joints]) for j in wide]
+        low, high = self.corners
+        wide = [j for j in joints if low[j] != high[j]]
+        return [(j, [(high[i] - low[i]) * (i == j) for i in joints]) for j in wide]
 
-    def halves(self, letter: int) -> tuple[Box, Box]:
+    def halves(self, letter: int) -> tuple[Cell, Cell]:
         """Halve a joint: the lower half, then the upper one."""
-        wide = letter < len(self.low) and self.low[letter] != self.high[letter]
+        low, high = self.corners
+        wide = letter < len(low) and low[letter] != high[letter]
         demand(wide, "a tree cuts a joint that its box does not")
-        middle = (self.low[letter] + self.high[letter]) / 2
-        first, second = (
-            (*corner[:letter], middle, *corner[letter + 1 :]) for corner in (self.high, self.low)
-        )
-        return Box(self.low, first), Box(second, self.high)
-
-
-Cell = Simplex | Box
-AnyCell = TypeVar("AnyCell", Box, Simplex, Cell)
+        cut = self.middle[letter : letter + 1]
+        second, first = (end[:letter] + cut + end[letter + 1 :] for end in self.corners)
+        return Box((low, first)), Box((second, high))
 
 
 @dataclass(frozen=True, eq=False)
-class Node(Generic[AnyCell]):
+class Node:
     """A cell of a tree: a leaf with its number, which may be empty, or one that is cut."""
 
-    cell: AnyCell
+    cell: Cell
     depth: int
     number: str | None
 
 
-def nodes(cell: AnyCell, tree: Any, work: Work) -> Iterator[Node[AnyCell]]:
+def nodes(cell: Cell, tree: Any, work: Work) -> Iterator[Node]:
     """Yield the cells of a tree in preorder; its last leaf must be its end."""
     letters = text_of(tree, "tree", MOST_BYTES)
     work.add(CUT_WORK * len(letters))
@@ -143,40 +127,44 @@ def holds(cell: Cell, attempt: Callable[[Cell], int | None], deepest: int, why: 
 def cells_of(claim: Claim) -> list[Cell]:
     """Return the cells of a set, in their order."""
     if claim.kind == "box":
-        return [Box(*claim.lists[0])]
+        return [Box(tuple(claim.lists[0]))]
     if claim.kind == "path":
-        return [Simplex(ends) for points in claim.lists for ends in pairwise(points)]
-    _check_polygon(claim)
-    points = claim.points
-    return [Simplex(tuple(points[k] for k in triangle)) for triangle in claim.triangles]
-
-
-def _check_polygon(claim: Claim) -> None:
-    """Refuse triangles that do not fill the loops exactly, place by place."""
+        return [Cell(ends) for points in claim.lists for ends in pairwise(points)]
     points = claim.points
     plane = [j for j, column in enumerate(zip(*points, strict=True)) if min(column) != max(column)]
     demand(len(plane) == 2, f"a polygon in which {len(plane)} joints differ, and not 2")
-    place = numbered(points)
-    for a, b, c in claim.triangles:
-        (x, y), (u, v) = ([points[k][j] - points[a][j] for j in plane] for k in (b, c))
-        demand(x * v - y * u > 0, "a triangle is clockwise or flat")
-    loops, first = [], 0
-    for loop in claim.lists:
-        loops.append(place[first : first + len(loop)])
-        first += len(loop)
-        demand(len({*loops[-1]}) == len(loop), "a loop passes a configuration twice")
-    sides = _edges([[place[k] for k in triangle] for triangle in claim.triangles])
-    outline = _edges(loops)
-    inner, outer = set(sides), set(outline)
+    places = [tuple(point[j] for j in plane) for point in points]
+    loops, rest = [], iter(places)
+    for points_of_loop in claim.lists:
+        loops.append([next(rest) for _ in points_of_loop])
+        once = len({*numbered(loops[-1])}) == len(loops[-1])
+        demand(once, "a loop passes a configuration twice")
+    check_filled(loops, [[places[k] for k in row] for row in claim.triangles], "triangles")
+    return [Cell(tuple(points[k] for k in row)) for row in claim.triangles]
+
+
+def check_filled(loops: Sequence[Loop], pieces: Sequence[Loop], where: str) -> None:
+    """Refuse pieces that are not convex and anticlockwise, or do not fill loops, place by place."""
+    for piece in pieces:
+        for (a, b), (c, d) in around(piece):
+            left = [(c - a) * (y - b) - (d - b) * (x - a) for x, y in piece]
+            demand(min(left) >= 0 and any(left), f"{where}: one is not convex, or is clockwise")
+    numbers = iter(numbered([place for loop in (*loops, *pieces) for place in loop]))
+    outline, sides = (
+        [edge for loop in group for edge in around([next(numbers) for _ in loop])]
+        for group in (loops, pieces)
+    )
+    inner, outer = {*sides}, {*outline}
     once = len(inner) == len(sides) and len(outer) == len(outline)
-    demand(once, "an edge of the polygon or of its triangles stands twice")
-    single = all((a, b) in inner and (b, a) not in inner for a, b in outer)
-    demand(single, "an edge of a loop is not the edge of one triangle alone")
-    demand(all((b, a) in inner for a, b in inner - outer), "the triangles do not fill the polygon")
+    demand(once, f"{where}: an edge stands twice")
+    alone = {(a, b) for a, b in inner if (b, a) not in inner}
+    demand(outer <= alone, f"{where}: an edge of a loop is not the edge of one of them alone")
+    demand(alone <= outer, f"{where}: they do not fill the loops")
 
 
-def _edges(loops: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
-    return [(loop[k - 1], x) for loop in loops for k, x in enumerate(loop)]
+def around(loop: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Return the pairs of neighbours around a loop."""
+    return list(zip(loop, [*loop[1:], *loop[:1]], strict=True))
 
 
 def numbered(points: Sequence[Point]) -> list[int]:

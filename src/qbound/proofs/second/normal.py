@@ -16,7 +16,7 @@ from qbound.model.boundaries import BodyPair, HalfSpace, Pair
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.model.source import Source
-from qbound.proofs.exact.parts import check_parts
+from qbound.proofs.second.cells import around, check_filled
 from qbound.proofs.second.reading import (
     LARGEST,
     LARGEST_ANGLE,
@@ -178,7 +178,10 @@ class _Robot:
                 for k in items(part, where, 3, size):
                     index(k, where, size)
             work.add(3 * sum(len(part) ** 2 for part in found[name]))
-            check_parts(flat, found[name], name)
+            area = sum(a * d - b * c for (a, b), (c, d) in around(flat))
+            demand(area, f"robot: the outline of {shown(name)} has no area")
+            loop = flat if area > 0 else [(-x, y) for x, y in flat]
+            check_filled([loop], [[loop[k] for k in part] for part in found[name]], where)
         return found
 
     def _hull(self, kind: type, name: str, part: tuple[int, ...]) -> int:
@@ -246,19 +249,15 @@ def text(x: Any) -> str:
 
 def is_convex(corners: Sequence[Place]) -> bool:
     """Tell whether an outline in a plane turns one way only, once round, and has an area."""
-    edges = [(c - a, d - b) for (a, b), (c, d) in _around(corners)]
-    turns = [(x * v - y * u, x * u + y * v) for (x, y), (u, v) in _around(edges)]
+    edges = [(c - a, d - b) for (a, b), (c, d) in around(corners)]
+    turns = [(x * v - y * u, x * u + y * v) for (x, y), (u, v) in around(edges)]
     if any(side == 0 and ahead <= 0 for side, ahead in turns):
         return False  # it turns back, or stands still
     sides = [side for side, _ in turns]
     if not any(sides) or min(sides) < 0 < max(sides):
         return False
     upwards = [bool(y > 0 or (y == 0 and x > 0)) for x, y in edges]
-    return [b and not a for a, b in _around(upwards)].count(True) == 1
-
-
-def _around(loop: Sequence[Any]) -> list[tuple[Any, Any]]:
-    return list(zip(loop, [*loop[1:], *loop[:1]], strict=True))
+    return [b and not a for a, b in around(upwards)].count(True) == 1
 
 
 def _check_counts(table: Mapping[str, Any]) -> None:

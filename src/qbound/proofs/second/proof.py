@@ -444,16 +444,16 @@ def whole_box(scene: Scene, moving: Sequence[int]) -> Box:
         (limits or (-half, half)) if j in moving else (fmpq(0), fmpq(0))
         for j, limits in enumerate(scene.limits)
     ]
-    return Box(tuple(low for low, _ in ends), tuple(high for _, high in ends))
+    return Box(tuple(zip(*ends, strict=True)))
 
 
 class _Leaves:
     """The leaves of a tree in preorder, and which open ones touch; joints without limits close."""
 
-    def __init__(self, scene: Scene, moving: Sequence[int], found: Sequence[Node[Box]]) -> None:
+    def __init__(self, scene: Scene, moving: Sequence[int], found: Sequence[Node]) -> None:
         self.work, self.moving, self.chain = scene.work, moving, scene.chain
         self.is_open = [node.number == "" for node in found]
-        self.boxes = [(self._scaled(n.cell.low), self._scaled(n.cell.high)) for n in found]
+        self.boxes = [[*map(self._scaled, node.cell.corners)] for node in found]
         self.after = [0] * len(found)  # the node that follows all within this one
         for k in reversed(range(len(found))):
             leaf = found[k].number is not None
@@ -519,8 +519,8 @@ def _check_witness(scene: Scene, value: Any) -> None:
         point = tuple(_mean(weights_of(table["weights"], "weights", len(corners)), corners))
     else:
         point = configuration(table["at"], "at", scene.form)
-        ends = zip(box.low, point, box.high, strict=True)
-        demand(all(a <= x <= b for a, x, b in ends), "the witness is not in the box of the claim")
+        ends = zip(*box.corners, point, strict=True)
+        demand(all(a <= x <= b for a, b, x in ends), "the witness is not in the box of the claim")
     if what == "limit":
         limit = table["limit"]
         demand(isinstance(limit, str) and limit in scene.beyond(point), "the limit is not violated")
@@ -529,5 +529,5 @@ def _check_witness(scene: Scene, value: Any) -> None:
     joints = range(len(point))
     values = dict(zip(joints, scene.chain.scaled(joints, point), strict=True))
     place = Place(scene, table["place"], [], values)
-    violated = place.is_violated(Box(point, point)) == HOLDS or place.crosses()
+    violated = place.is_violated(Box((point, point))) == HOLDS or place.crosses()
     demand(violated, f"{shown(place.keep.name)} is not violated at the witness")
