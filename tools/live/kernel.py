@@ -65,8 +65,8 @@ class Shown:
 
     kind = "text/plain"
 
-    def __init__(self, data: str) -> None:
-        self.data = data
+    def __init__(self, data: str | bytes) -> None:
+        self.data = data.decode() if isinstance(data, bytes) else str(data)
 
     def __repr__(self) -> str:
         """Be the name of the kind, as in Jupyter."""
