@@ -17,6 +17,7 @@ class Extra(NamedTuple):
 
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
+    "contourpy": Extra("an outline on a grid", "contourpy", "figures"),
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
@@ -25,7 +26,6 @@ EXTRAS: Final = {
     "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
-    "skimage": Extra("a surface", "scikit-image", "arms"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
     "trimesh": Extra("a mesh", "trimesh", "arms"),

@@ -6,6 +6,7 @@ and matplotlib-inline that the chapters import, because Jupyter itself does not 
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import io
 import json
@@ -32,13 +33,40 @@ ABSENT = {"fcl": "python-fcl", "shapely": "shapely", "skimage": "scikit-image"}
 """Libraries that cannot be had for a page, by the name that is imported."""
 
 
+class Absent(types.ModuleType):
+    """A library that cannot be had here: a cell may import it, and fails where it uses it."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what fails when it is called."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+
+        def lacking(*_: object, **__: object) -> None:
+            what = f"{ABSENT[self.__name__]} cannot be had inside a page"
+            raise ModuleNotFoundError(what, name=self.__name__)
+
+        return lacking
+
+
+def import_for_cells(name: str, *rest: Any) -> Any:
+    """Import as usual; of what cannot be had, an `Absent`. The library still finds it missing."""
+    top, _, below = name.partition(".")
+    if top in ABSENT:
+        named = bool(rest[2:3] and rest[2])  # "from top.below import ..."
+        made = Absent(top)
+        if below and not named:
+            setattr(made, below, Absent(top))
+        return made
+    return builtins.__import__(name, *rest)
+
+
 class Shown:
     """What `IPython.display` makes of a text: it shows as one kind of output."""
 
     kind = "text/plain"
 
-    def __init__(self, data: str) -> None:
-        self.data = data
+    def __init__(self, data: str | bytes) -> None:
+        self.data = data.decode() if isinstance(data, bytes) else str(data)
 
     def __repr__(self) -> str:
         """Be the name of the kind, as in Jupyter."""
@@ -88,7 +116,8 @@ class Cells:
         self.chapter = chapter
         self.outputs: list[dict[str, str]] = []
         self.compared: list[dict[str, Any]] = []
-        self.names: dict[str, Any] = {"__name__": "__main__"}
+        names = vars(builtins) | {"__import__": import_for_cells}
+        self.names: dict[str, Any] = {"__name__": "__main__", "__builtins__": names}
         self._stand_in()
 
     def run(self, number: int, source: str) -> str:

@@ -49,7 +49,7 @@ def script(name: str, content: bytes) -> str:
 def engine_files(folder: Path) -> Iterator[tuple[str, str, bytes]]:
     """Yield name, part and bytes of what every page shares."""
     yield "worker.js", "engine", (HERE / "worker.js").read_bytes()
-    for file in wanted():
+    for file in for_pages():
         if not is_there(folder, file):
             raise SystemExit(f"{file['name']} is not in {folder}: run fetch.py first.")
         yield file["name"], file["part"], (folder / file["name"]).read_bytes()
@@ -58,6 +58,11 @@ def engine_files(folder: Path) -> Iterator[tuple[str, str, bytes]]:
     yield "check_desk.py", "check", (HERE / "check_desk.py").read_bytes()
     yield "try_desk.py", "try", (HERE / "try_desk.py").read_bytes()
     yield "check.py", "check", (ROOT / "src" / "qbound" / "check.py").read_bytes()
+
+
+def for_pages() -> list[dict[str, Any]]:
+    """Return the files of the lock without those that only tests need."""
+    return [file for file in wanted() if file["part"] != "tests"]
 
 
 def chapter(notebook: Path) -> dict[str, Any]:
@@ -93,7 +98,7 @@ def pages(html: Path) -> Iterator[tuple[str, str, bytes]]:
 def licences(folder: Path) -> str:
     """Return one notice with the licences of all files."""
     parts = [HEAD]
-    for file in wanted():
+    for file in for_pages():
         place = folder / file["name"]
         texts = [f"{'=' * 78}\n{file['name']}\n{file['licence']}\nSHA-256 {file['sha256']}\n"]
         if place.suffix == ".whl":

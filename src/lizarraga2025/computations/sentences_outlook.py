@@ -27,6 +27,7 @@ from lizarraga2025.evidence.tool_paths import (
 from lizarraga2025.verdicts import Outcome, judge, strongest
 from qbound import clearance
 from qbound.boundary.functions import closest_approach, components, position
+from qbound.geometry.isosurface import marching_cubes
 from qbound.region import clearance_problem, solve
 from qbound.symbols import joint_symbols, with_symbols
 
@@ -88,15 +89,13 @@ def affine_constraints() -> Outcome:
 @cache
 def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices (rad, rad, cm) and triangles of B7 = 0 on an n by n by n grid."""
-    from skimage.measure import marching_cubes
-
     low, high = np.array([-np.pi, -np.pi, -10.0]), np.array([np.pi, np.pi, 10.0])
     axes = [np.linspace(a, b, n) for a, b in zip(low, high, strict=True)]
     q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = clearance(sliding(), sliding().boundary("B7"))(q)
     if values.min() > 0 or values.max() < 0:
         return np.empty((0, 3)), np.empty((0, 3), int)
-    points, triangles, _, _ = marching_cubes(values, 0.0)  # type: ignore[no-untyped-call]
+    points, triangles = marching_cubes(values)
     return low + points * (high - low) / (n - 1), triangles
 
 

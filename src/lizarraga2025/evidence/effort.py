@@ -33,7 +33,7 @@ def contour_of_grid(n: int) -> tuple[Floats, ...]:
 
     The grid carries the least margin of any side of the box and of the tool's limit.
     """
-    from skimage.measure import find_contours
+    from contourpy import contour_generator
 
     lattice = np.linspace(-np.pi, np.pi, n)
     q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), axis=-1)
@@ -41,8 +41,8 @@ def contour_of_grid(n: int) -> tuple[Floats, ...]:
     sides = np.minimum(q - box.lower, box.upper - q).min(axis=-1)
     margin = np.minimum(sides, floor()(q) / np.hypot(15, 25.98))
     step = lattice[1] - lattice[0]
-    rings = find_contours(margin, 0.0)  # type: ignore[no-untyped-call]
-    return tuple(ring * step - np.pi for ring in rings)
+    rings = contour_generator(z=margin).lines(0.0)  # each place as column and row
+    return tuple(np.asarray(ring)[:, ::-1] * step - np.pi for ring in rings)
 
 
 def contour_is_closed(n: int) -> bool:

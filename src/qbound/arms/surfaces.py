@@ -34,6 +34,7 @@ from qbound.arms.surface_forms import (
 )
 from qbound.arrays import Bools, Floats
 from qbound.extras import require
+from qbound.geometry.isosurface import marching_cubes
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.printable import printable
 
@@ -167,8 +168,6 @@ def find_surface(
     ValueError
         If these are not three joints, one of them is held, a held value is beyond its limits, a
         boundary is about bodies, or the grid is too coarse or too fine.
-    ModuleNotFoundError
-        If scikit-image is missing.
 
     Examples
     --------
@@ -191,7 +190,6 @@ def find_surface(
     >>> [name for name in surface.pairs if "." not in name]
     ['apart']
     """
-    require("skimage", "a surface")
     refuse_no_robot("find_surface", robot)
     if not 4 <= resolution <= FINEST:
         raise ValueError(f"a resolution of {resolution}; from 4 to {FINEST} steps are possible")
@@ -256,11 +254,7 @@ def _marched(forms: SurfaceForms, values: Floats, grid: list[Floats]) -> Mesh:
     """
     if not values.min() < 0 < values.max():
         return Mesh.empty()
-    from skimage.measure import marching_cubes
-
-    places, triangles, _, _ = marching_cubes(  # type: ignore[no-untyped-call]
-        values, 0.0, gradient_direction="ascent", allow_degenerate=False
-    )
+    places, triangles = marching_cubes(values)
     ends = np.stack([np.floor(places), np.ceil(places)]).astype(np.intp)
     signs = values[tuple(np.moveaxis(ends, -1, 0))]
     first = (signs[0] >= signs[1])[:, None]
@@ -270,7 +264,7 @@ def _marched(forms: SurfaceForms, values: Floats, grid: list[Floats]) -> Mesh:
     last = np.array(values.shape) - 1
     return Mesh(
         vertices=vertices,
-        triangles=triangles.astype(np.intp),
+        triangles=triangles,
         active=np.zeros(len(triangles), dtype=np.intp),
         exact=np.zeros(len(vertices), dtype=np.bool_),
         held=(places == 0) | (places == last),

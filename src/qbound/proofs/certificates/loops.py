@@ -1,4 +1,4 @@
-"""Loops of a polygon, filled with triangles, or cut open where they go round a joint (by shapely).
+"""Loops of a polygon, filled with triangles, or cut open where they go round a joint.
 
 Joint values of a certificate are numbers on the line. So a component that
 goes all the way round a joint is cut along one value of
@@ -12,14 +12,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
-from typing import Any
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats
-from qbound.extras import require
+from qbound.geometry import polygon
+from qbound.geometry.triangulation import triangulated
 
 Polygon = list[Floats]
 """An outline, anticlockwise, and its holes, clockwise."""
@@ -81,68 +81,169 @@ def cut_open(
     ValueError
         If the loops bound no component of this area.
     """
-    require("shapely")
-    import shapely
-
     around = [loop for loop in loops if loop.winding.any()]
-    holes = _copies([loop.points for loop in loops if not loop.winding.any()], turns)
-    if not around:
-        ends = [(c, c + (turn or 0)) for c, turn in zip(cut, turns, strict=True)]
-        window = shapely.box(ends[0][0], ends[1][0], ends[0][1], ends[1][1])
-        return _polygons(window.difference(holes), ends)
-    axis = 0 if around[0].winding[0] else 1
-    lower, upper = sorted(around, key=lambda loop: -loop.winding[axis])
-    length = (turns[axis] or 0.0) * int(lower.winding[axis])
-    ends = [(-FAR, FAR), (-FAR, FAR)]
-    ends[axis] = (float(cut[axis]), float(cut[axis]) + length)
-    window = shapely.box(ends[0][0], ends[1][0], ends[0][1], ends[1][1])
-    inside = _side(lower, axis, turns).intersection(window).difference(holes)
-    shifts = {k * (turns[1 - axis] or 0.0) for k in range(-SHIFTS, SHIFTS + 1)}
-    found = [inside.intersection(_side(upper, axis, turns, shift)) for shift in sorted(shifts)]
-    best = min(found, key=lambda shape: abs(shape.area - area))
-    if abs(best.area - area) > SAME_AREA * area:
-        raise ValueError("the home component goes round a joint in a way that no polygon shows")
-    return _polygons(best, ends)
+    rings = _copies([loop.points for loop in loops if not loop.winding.any()], turns)
+    curves: list[Floats] = []
+    low, high = np.full(2, -FAR), np.full(2, FAR)
+    axes = [j for j, turn in enumerate(turns) if turn]
+    if around:
+        axes = [0 if around[0].winding[0] else 1]
+        holes = -sum(polygon.area(loop.points) for loop in loops if not loop.winding.any())
+        curves = _facing(around, axes[0], turns, float(cut[axes[0]]), area + holes)
+        rings = [ring for ring in rings if _is_between(ring[0], curves, axes[0])]
+        lengths = np.array([(turn or 0.0) for turn in turns]) * abs(around[0].winding)
+    else:
+        lengths = np.array([turn or 0.0 for turn in turns])
+    for j in axes:
+        low[j], high[j] = cut[j], cut[j] + lengths[j]
+    return _polygons(*_within(curves, rings, axes, low, high), low, high)
 
 
-def _side(loop: Loop, axis: int, turns: Sequence[float | None], shift: float = 0) -> Any:
-    """Return what lies on the left of a loop that goes round, over several turns.
-
-    The curve is cut where it is farthest back and farthest on, so that straight lines from there to
-    a distant line on its left cross it nowhere.
-    """
-    import shapely
-
-    sense = np.sign(loop.winding[axis])
-    period = loop.winding * np.array([turn or 0.0 for turn in turns])
-    curve = np.concatenate([loop.points + k * period for k in range(-PERIODS, PERIODS + 1)])
-    curve[:, 1 - axis] += shift
-    along = curve[:, axis] * sense
-    curve = curve[along.argmin() : along.argmax() + 1]
-    ends = curve[[-1, 0]].copy()
-    ends[:, 1 - axis] = FAR * sense * (1 if axis == 0 else -1)
-    return shapely.Polygon(np.concatenate([curve, ends]))
-
-
-def _copies(holes: Sequence[Floats], turns: Sequence[float | None]) -> Any:
+def _copies(holes: Sequence[Floats], turns: Sequence[float | None]) -> list[Floats]:
     """Return the holes on all turns around the cut."""
-    import shapely
-
     ranges = [range(-PERIODS, PERIODS + 1) if turn else range(1) for turn in turns]
     steps = [np.array(k) * [turn or 0.0 for turn in turns] for k in product(*ranges)]
-    return shapely.union_all([shapely.Polygon(hole + step) for hole in holes for step in steps])
+    return [hole + step for hole in holes for step in steps]
 
 
-def _polygons(shape: Any, ends: Sequence[tuple[float, float]]) -> list[Polygon]:
-    """Return the polygons of a shape, what lies almost on the cut brought onto it."""
-    import shapely
+def _facing(
+    around: Sequence[Loop], axis: int, turns: Sequence[float | None], cut: float, area: float
+) -> list[Floats]:
+    """Return the two curves that bound a component which goes round a joint, over several turns.
 
-    parts = [part for part in shapely.get_parts(shape) if part.area > ON_THE_CUT]
+    The second one is shifted by the turns of the other joint that make the area between them right.
+    """
+    if len(around) != 2:
+        raise ValueError("the home component goes round a joint in a way that no polygon shows")
+    curves = []
+    for loop in around:
+        period = loop.winding * np.array([turn or 0.0 for turn in turns])
+        steps = range(-PERIODS, PERIODS + 1)
+        curves.append(np.concatenate([loop.points + k * period for k in steps]))
+    length = (turns[axis] or 0.0) * abs(int(around[0].winding[axis]))
+    shown = sum(_area_beside(curve, axis, cut, cut + length) for curve in curves)
+    other = turns[1 - axis] or 0.0
+    sense = int(np.sign(around[1].winding[axis])) * (1 if axis == 1 else -1)
+    off = {k: abs(shown + sense * k * other * length - area) for k in range(-SHIFTS, SHIFTS + 1)}
+    best = min(off, key=lambda k: (off[k], abs(k)))
+    if off[best] > SAME_AREA * area:
+        raise ValueError("the home component goes round a joint in a way that no polygon shows")
+    curves[1][:, 1 - axis] += best * other
+    return curves
+
+
+def _area_beside(curve: Floats, axis: int, low: float, high: float) -> float:
+    """Return the integral of the other joint along a curve between two values of a joint.
+
+    Its sign is that of an area on the left of the curve.
+    """
+    x, y = curve[:, axis], curve[:, 1 - axis]
+    a, b = x[:-1], x[1:]
+    step = np.where(b == a, 1.0, b - a)
+    u, v = (np.clip(ends, low, high) for ends in (a, b))
+    slope = np.diff(y) / step
+    middle = y[:-1] + slope * ((u + v) / 2 - a)
+    whole = float(((v - u) * middle).sum())
+    return whole if axis == 1 else -whole
+
+
+def _is_between(place: Floats, curves: Sequence[Floats], axis: int) -> bool:
+    """Tell whether a place lies between two curves that go round a joint."""
+    below = []
+    for curve in curves:
+        x, y = curve[:, axis] - place[axis], curve[:, 1 - axis] - place[1 - axis]
+        across = (x[:-1] <= 0) != (x[1:] <= 0)
+        a, b, c, d = (each[across] for each in (x[:-1], x[1:], y[:-1], y[1:]))
+        below.append(int((c - a * (d - c) / (b - a) < 0).sum()) % 2)
+    return sum(below) == 1
+
+
+def _within(
+    curves: Sequence[Floats],
+    rings: Sequence[Floats],
+    axes: Sequence[int],
+    low: Floats,
+    high: Floats,
+) -> tuple[list[Floats], list[Floats]]:
+    """Return what of curves and rings lies in a window: chains from edge to edge, whole rings."""
+    chains, whole = list(curves), list(rings)
+    for axis in axes:
+        for value, sign in ((low[axis], 1.0), (high[axis], -1.0)):
+            kept: list[Floats] = []
+            for chain in chains:
+                kept += _inside(chain, axis, value, sign)
+            left: list[Floats] = []
+            for ring in whole:
+                inside = sign * (ring[:, axis] - value) >= 0
+                if inside.all():
+                    left.append(ring)
+                elif inside.any():
+                    start = int(np.flatnonzero(~inside)[0])
+                    opened = np.concatenate([ring[start:], ring[: start + 1]])
+                    kept += _inside(opened, axis, value, sign)
+            chains, whole = kept, left
+    return chains, whole
+
+
+def _inside(chain: Floats, axis: int, value: float, sign: float) -> list[Floats]:
+    """Return the pieces of a chain on one side of a line, each cut off on the line itself."""
+    inside = sign * (chain[:, axis] - value) >= 0
+    change = np.flatnonzero(inside[1:] != inside[:-1])
+    a, b = chain[change], chain[change + 1]
+    part = (value - a[:, axis]) / (b[:, axis] - a[:, axis])
+    cuts = a + part[:, None] * (b - a)
+    cuts[:, axis] = value
+    ends = [0, *(change + 1).tolist(), len(chain)]
     found = []
-    for part in shapely.orient_polygons(parts):
-        rings = [shapely.get_coordinates(ring)[:-1] for ring in (part.exterior, *part.interiors)]
-        found.append([_snapped(ring, ends) for ring in rings])
-    return found
+    for k, (first, last) in enumerate(pairwise(ends)):
+        if inside[first]:
+            before, after = cuts[k - 1 : k] if k else cuts[:0], cuts[k : k + 1]
+            found.append(np.concatenate([before, chain[first:last], after]))
+    return [piece for piece in found if np.ptp(piece, axis=0).max() > ON_THE_CUT]
+
+
+def _polygons(
+    chains: Sequence[Floats], rings: Sequence[Floats], low: Floats, high: Floats
+) -> list[Polygon]:
+    """Join chains along the window's edge to outlines, and give each outline its holes."""
+    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+    starts = [_along(chain[0], low, high) for chain in chains]
+    left, outlines = set(range(len(chains))), list[Floats]()
+    while left:
+        first = k = min(left)
+        parts = []
+        while k in left:
+            left.remove(k)
+            chain, end = chains[k], _along(chains[k][-1], low, high)
+            k = min(range(len(chains)), key=lambda n, end=end: (starts[n] - end) % 4)
+            on = end + (starts[k] - end) % 4
+            passed = [corners[c % 4] for c in range(math.floor(end) + 1, math.ceil(on))]
+            parts += [chain, *(corner[None] for corner in passed)]
+        if k != first:
+            raise ValueError("the home component goes round a joint in a way that no polygon shows")
+        outlines.append(np.concatenate(parts))
+    if not chains:
+        outlines = [corners]
+    ends = list(zip(low.tolist(), high.tolist(), strict=True))
+    large = [ring for ring in map(_tidy, outlines) if polygon.area(ring) > ON_THE_CUT]
+    holes = {k: [h for h in rings if polygon.contains(ring, h[0])] for k, ring in enumerate(large)}
+    return [[_snapped(each, ends) for each in (ring, *holes[k])] for k, ring in enumerate(large)]
+
+
+def _along(place: Floats, low: Floats, high: Floats) -> float:
+    """Return how far round the window's edge a place is, from its low corner on: 0 to 4."""
+    x, y = (place - low) / (high - low)
+    if place[1] == low[1]:
+        return float(x)
+    if place[0] == high[0]:
+        return float(1 + y)
+    return float(3 - x) if place[1] == high[1] else float(4 - y)
+
+
+def _tidy(ring: Floats) -> Floats:
+    """Drop corners that repeat the one before."""
+    apart = np.abs(ring - np.roll(ring, 1, axis=0)).max(axis=1) > ON_THE_CUT / 1000
+    return ring[apart]
 
 
 def _snapped(ring: Floats, ends: Sequence[tuple[float, float]]) -> Floats:
@@ -183,24 +284,14 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
 
     Notes
     -----
-    Decimals times a power of ten are whole numbers, which doubles hold exactly up to ``2**53``,
-    more than `statements.DIGITS` need. What longer decimals may spoil the checkers refuse.
+    Decimals times a power of ten are whole numbers, and these are triangulated exactly.
     """
-    require("shapely", "the proof of a polygon (its triangles)")
-    import shapely
-
     if min(map(len, loops)) < 3:
         raise ValueError("a loop of a polygon has 3 corners or more")
     whole = math.lcm(*(x.denominator for loop in loops for place in loop for x in place))
-    rings = [[(float(x * whole), float(y * whole)) for x, y in loop] for loop in loops]
-    outline, *holes = sorted(rings, key=lambda ring: -shapely.Polygon(ring).area)
-    polygon = shapely.Polygon(outline, holes)
-    turned = [shapely.LinearRing(ring).is_ccw for ring in (outline, *holes)]
-    if not polygon.is_valid or turned != [True, *(False for _ in holes)]:
-        reason = shapely.is_valid_reason(polygon)
+    places = [[(int(x * whole), int(y * whole)) for x, y in loop] for loop in loops]
+    try:
+        return triangulated(places)
+    except ValueError as error:
         why = "the polygon crosses itself, or its inside is not on the left"
-        raise CrossesItself(f"{why}: {reason}")
-    triangles = shapely.orient_polygons(shapely.constrained_delaunay_triangles(polygon))
-    number = {place: k for k, place in enumerate(place for ring in rings for place in ring)}
-    corners = [[number[place] for place in part.exterior.coords[:3]] for part in triangles.geoms]
-    return [(a, b, c) for a, b, c in corners]
+        raise CrossesItself(f"{why}: {error}") from None

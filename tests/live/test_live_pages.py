@@ -1,0 +1,160 @@
+"""Pages that run, in two browsers, without a network: from the file system and over http."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import http.server
+import json
+import re
+import threading
+from pathlib import Path
+
+import pytest
+
+from lizarraga2025 import recorded
+from qbound.cli import main as qbound
+
+ROOT = Path(__file__).resolve().parents[2]
+CHAPTER = f"chapters/{recorded.file_stem('region')}.html"
+SAID = "document.querySelector('.rerun-said').textContent"
+AT_REST = "document.querySelector('.rerun-bar').dataset.state !== 'busy'"
+LOADED = 'robot = load_robot("minervabot-v2")'
+SHORTER = """from qbound.model.robotfile import parse_robot, robot_text
+robot = parse_robot(robot_text("minervabot-v2")[0].replace("[25.0,", "[24.5,"))"""
+
+
+def run_to_the_end(reader):
+    reader.until(f"!({AT_REST})", 60)
+    reader.until(AT_REST)
+    return reader.evaluate(SAID)
+
+
+def pictures(reader, cell):
+    """The text of a cell's new pictures."""
+    found = f"[...document.querySelectorAll('.rerun-output[data-cell=\"{cell}\"] img')]"
+    return reader.evaluate(
+        f"Promise.all({found}.map(async (i) => {{"
+        " const c = document.createElement('canvas'); await i.decode();"
+        " c.width = i.naturalWidth; c.height = i.naturalHeight;"
+        " c.getContext('2d').drawImage(i, 0, 0); return c.toDataURL().length; }))"
+    )
+
+
+def cells():
+    """The chapter's cells as the page has them: number in the notebook, and text."""
+    notebook = ROOT / "notebooks" / f"{recorded.file_stem('region')}.ipynb"
+    found = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    return {k: "".join(c["source"]) for k, c in enumerate(found) if c["cell_type"] == "code"}
+
+
+def test_file_url_and_chapter_7(reader, html, tmp_path):
+    reader.open((html / "index.html").as_uri())
+    chapter = reader.evaluate(f"document.querySelector('a[href=\"{CHAPTER}\"]').href")
+    reader.open(chapter)
+    assert not reader.evaluate(
+        "performance.getEntriesByType('resource').some((e) => e.name.includes('_live/'))"
+    )
+    reader.tap(".rerun-start")
+    said = run_to_the_end(reader)
+    count = len([each for each in recorded.results() if each["chapter"] == "region"])
+    assert said.startswith(f"{count} of {count} numbers agree with the printed ones"), said
+
+    first = pictures(reader, 4)
+    number = next(k for k, text in cells().items() if LOADED in text)
+    text = cells()[number].replace(LOADED, SHORTER)
+    reader.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    tools = f".rerun-code-{number} ~ .rerun-tools"
+    reader.tap(f"{tools} .rerun-button")
+    reader.evaluate(
+        f"((e) => {{ e.value = {json.dumps(text)}; e.dispatchEvent(new Event('input')); }})"
+        "(document.querySelector('.rerun-editor'))"
+    )
+    assert reader.text(".rerun-changed .rerun-mark") == "changed"
+    reader.tap(f"{tools} .rerun-button:nth-child(3)")
+    run_to_the_end(reader)
+    assert pictures(reader, 4) != first
+
+    reader.open((html / "_static" / "rerun-check.html").as_uri())
+    certificate = tmp_path / "certificate.json"
+    robot, *poses = "two-links-on-a-table", "20deg", "30deg", "40deg", "60deg"
+    assert qbound(["why", robot, *poses, "-o", str(certificate)]) == 1
+    reader.give("#certificate", certificate)
+    assert reader.until("document.getElementById('verdict').textContent") == "Refuted"
+    assert "'forearm, post' is violated at 'shoulder' = 20 deg" in reader.text("#words")
+    assert (reader.complaints, reader.requests) == ([], [])
+
+
+def test_a_wrong_file_gets_the_checkers_own_sentence_and_no_markup(reader, html, tmp_path):
+    reader.open((html / "_static" / "rerun-check.html").as_uri())
+    wrong = tmp_path / "<img src=x onerror=alert(1)>.json"
+    wrong.write_text('{"schema": "<b>7</b>"}', encoding="utf-8")
+    reader.give("#certificate", wrong)
+    assert reader.until("document.getElementById('verdict').textContent") == "Not proved"
+    assert reader.text("#words").startswith("not proved: ")
+    assert reader.evaluate("document.querySelectorAll('#answer img, #answer b').length") == 0
+    assert re.fullmatch("[0-9a-f]{64}", reader.text("#hash"))
+
+
+def test_an_arm_is_tried_and_an_error_names_its_line(reader, html):
+    reader.open((html / "_static" / "rerun-try.html").as_uri())
+    reader.tap("#run")
+    reader.until("/safe poses/.test(document.getElementById('said').textContent)")
+    before = reader.evaluate("document.getElementById('shown').srcdoc")
+    edit = (
+        "(() => {{ const t = document.getElementById('text'); t.value = t.value.replace({}); }})()"
+    )
+    reader.evaluate(edit.format('"0.25", "0.2"'))
+    reader.tap("#run")
+    reader.until("/busy/.test(document.getElementById('said').dataset.kind)", 30)
+    reader.until("/safe poses/.test(document.getElementById('said').textContent)")
+    assert reader.evaluate("document.getElementById('shown').srcdoc") != before
+    reader.evaluate(edit.format('"[0, 0, 1] },", "[0, 0] },"'))
+    reader.tap("#run")
+    wrong = reader.until(
+        "(/Line 9: .*/.exec(document.getElementById('said').textContent) ?? [''])[0]"
+    )
+    assert "a list of 3 numbers" in wrong
+
+
+@contextlib.contextmanager
+def served(folder):
+    quiet = type("Quiet", (http.server.SimpleHTTPRequestHandler,), {"log_message": lambda *_: None})
+    handler = functools.partial(quiet, directory=str(folder))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+def test_the_first_chapter_runs_over_http(html):
+    from live.readers import chromium_reader
+
+    with chromium_reader() as reader, served(html) as address:
+        reader.page.context.set_offline(False)
+        reader.open(f"{address}/chapters/01_introduction.html")
+        reader.tap(".rerun-start")
+        assert "numbers agree" in run_to_the_end(reader)
+        assert (reader.complaints, reader.requests) == ([], [])
+
+
+@pytest.mark.parametrize("scripts", [True, False])
+def test_without_the_files_a_chapter_has_no_button(html, tmp_path, scripts):
+    from playwright.sync_api import sync_playwright
+
+    from support.browser import FLAGS, chromium
+
+    copy = tmp_path / "book"
+    for name in ("chapters", "_static"):
+        (copy / name).mkdir(parents=True)
+    for file in [html / CHAPTER, *(html / "_static").glob("rerun*"), html / "_static" / "book.css"]:
+        (copy / file.relative_to(html)).write_bytes(file.read_bytes())
+    empty = ROOT / "book" / "_static" / "rerun-files.js"
+    (copy / "_static" / "rerun-files.js").write_bytes(empty.read_bytes())
+    with sync_playwright() as run:
+        browser = run.chromium.launch(executable_path=chromium(), args=FLAGS)
+        page = browser.new_context(offline=True, java_script_enabled=scripts).new_page()
+        page.goto((copy / CHAPTER).as_uri())
+        assert page.locator(".rerun-bar, .rerun-button").count() == 0
+        assert ("run.py live" in page.content()) == scripts
+        browser.close()
