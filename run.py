@@ -102,9 +102,6 @@ PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS ha
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 
-# What `run.py renumber` does to the chapters, in this order; lint asks that nothing is left to do.
-CHAPTER_TOOLS = ["renumber", "references", "first_cells", "list_chapters"]
-
 PORT = 8000  # of the author's local page
 
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
@@ -816,14 +813,7 @@ def lint() -> int:
         "Layout (ruff format)": [in_venv("ruff"), "format", "--check"],
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
-        **{
-            f"Chapters (run.py renumber: {name})": [
-                in_venv("python"),
-                TOOLS / f"{name}.py",
-                "--check",
-            ]
-            for name in CHAPTER_TOOLS
-        },
+        "Chapters (run.py renumber)": [in_venv("python"), TOOLS / "renumber.py", "--check"],
         "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
@@ -881,11 +871,8 @@ def find_uv(scratch: Path) -> str | Path:
 
 def renumber() -> int:
     """Write what chapters have in common: numbers, references, first cells, their list."""
-    for name in CHAPTER_TOOLS:
-        status = subprocess.call([sys.executable, TOOLS / f"{name}.py"], cwd=ROOT)
-        if status != 0:
-            return status
-    return 0
+    prepare()
+    return subprocess.call([in_venv("python"), TOOLS / "renumber.py"], cwd=ROOT)
 
 
 def metadata() -> int:

@@ -13,8 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import references
-from chapter_files import chapters
+import renumber
 
 # Front matter of the first cell: no numbers but ours.
 PLAIN = "---\nnumbering:\n  equation: false\n---\n\n"
@@ -27,8 +26,8 @@ def main(arguments: list[str]) -> int:
     """Copy what is not there yet."""
     folder = Path(arguments[0])
     folder.mkdir(parents=True, exist_ok=True)
-    known = references.numbers()
-    sources = [path for path in chapters() if path.suffix == ".ipynb"]
+    known = renumber.numbers()
+    sources = [path.with_suffix(".ipynb") for path in renumber.chapter_texts()]
     missing = [source for source in sources if not (folder / source.name).exists()]
     for source in missing:
         content = json.loads(source.read_text(encoding="utf-8"))
@@ -55,12 +54,12 @@ def reader_copy(notebook: dict[str, Any], known: dict[str, str]) -> dict[str, An
 
 
 def readable(text: str, known: dict[str, str]) -> str:
-    """Write the book's numbers beside equations and theorems, and into references."""
+    """Write the book's numbers beside equations and theorems, and into renumber."""
 
     def tagged(match: re.Match[str]) -> str:
         return f"\\tag{{{known[match[1]]}}}\n$$ ({match[1]})"
 
-    text = EQUATION.sub(tagged, references.with_numbers(text, known))
+    text = EQUATION.sub(tagged, renumber.with_numbers(text, known))
     text = THEOREM.sub(lambda m: f"{m[1]}{m[2]}\n:enumerator: {known[m[2]]}", text)
     return CITED.sub(lambda match: f"({match[1]})", text)
 
@@ -68,7 +67,7 @@ def readable(text: str, known: dict[str, str]) -> str:
 def caption(cell: str, figure: dict[str, str], known: dict[str, str]) -> dict[str, Any]:
     """Return a cell with the caption of what the cell before it shows."""
     label = figure.get("name", "")
-    words = references.WORDS.get(label.partition(":")[0], "")
+    words = renumber.WORDS.get(label.partition(":")[0], "")
     title = f"**{words.format(known[label])}.** " if label in known else ""
     text = title + readable(figure["caption"], known)
     return {
