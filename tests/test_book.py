@@ -190,7 +190,7 @@ def test_a_wide_picture_has_a_box_in_which_it_scrolls():
     pages = [read(page) for page in PAGES if page.startswith("chapters/")]
     boxed = {image["src"] for page in pages for image in page.select(".wide-figure > img")}
     everywhere = {image["src"] for page in pages for image in page.select("article img")}
-    wide = {src for src in everywhere if "#" not in src and inches(HTML / "chapters" / src) > 6.5}
+    wide = {src for src in everywhere if "#" not in src and inches(HTML / "chapters" / src) > 6.3}
     assert wide == boxed != set()
 
 

@@ -103,12 +103,13 @@
       const whole = wholePicture(plane.svg, planeBox(robot), 26);
       drawGround(robot, whole, viewAxes(robot, robot.q));
       drawScaleBar(whole, unit);
-      for (const wall of walls) {
-        if (wall.kind !== "half-space") continue;
+      const limits = walls.flatMap((wall) => {
+        if (wall.kind !== "half-space") return [];
         const [, y] = whole.at([0, wall.offset]);
         const limit = make("path", { class: "wall limit", d: `M0 ${y}H${whole.width}` });
-        whole.svg.append(ownColour(robot, limit, wall.name));
-      }
+        return [ownColour(robot, limit, wall.name)];
+      });
+      whole.svg.append(...limits);
       const arm = armParts(robot, whole);
       const { elbow, tool } = armHandles(plane.svg);
       const { low, high } = robot.views[1];
@@ -154,7 +155,9 @@
         group.appendChild(ownColour(robot, make("circle", { class: "value-dot", r: 5 }), name)),
       );
       const knob = handle(plot.svg, make("circle", { class: "handle", r: 7 }));
-      return { plane: { ...arm, group: tool.group }, elbow, tool, graph, arcs, now, dots, knob };
+      const parts = [...limits, ...arcs, ...dots];
+      const moving = { ...arm, group: tool.group };
+      return { plane: moving, elbow, tool, graph, arcs, now, dots, knob, parts };
     }
 
     function draw() {
@@ -193,7 +196,7 @@
      * @type {(name: string | null) => void} */
     function light(name) {
       moveArm(robot, drawn.plane, state.q, name === null ? [] : [name], false);
-      for (const one of [...drawn.arcs, ...drawn.dots, ...lines])
+      for (const one of [...drawn.parts, ...lines])
         one.classList.toggle("lit", one.dataset.boundary === name);
     }
 
