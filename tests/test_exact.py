@@ -20,6 +20,7 @@ from qbound.proofs.exact import parts
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import balls, precision
 from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
+from qbound.proofs.second.cells import check_filled
 from qbound.region import clearance_problem, paper_rule
 from support.oracles import packaged_table, robot_tables
 from support.robot_files import robot_file
@@ -195,6 +196,8 @@ def test_parts_fill_outlines_with_corners_that_are_nearly_on_an_edge(digits):
             found = parts.cut(corners)
         except ValueError:  # the outline crosses itself
             continue
-        parts.check_parts(corners, found, "outline")
+        sense = 1 if parts.turns_left(corners) else -1
+        loop = [(sense * x, y) for x, y in corners]
+        check_filled([loop], [[loop[k] for k in part] for part in found], "outline")
         filled += 1
     assert filled > 20

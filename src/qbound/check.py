@@ -523,10 +523,6 @@ def prove_safe(arm: "Arm", claim: "Claim", proof: Any) -> str:
     make = Box if claim.kind == "box" else Cell
     cells = [make(tuple(map(arm.placed, corners))) for corners in claim.corners]
     trees = items(anything, len(arm.keeps), len(arm.keeps))
-    whole = "three integers, not all 0, are wanted"
-    direction = such(
-        lambda row: {*map(type, row)} == {int} and any(row), whole, items(anything, 3, 3)
-    )
     found = table({"directions": items(direction, 0, MAX_CELLS), "trees": trees})(proof, "proof")
     rows = [*enumerate(zip(arm.keeps, found["trees"], strict=True))]
     for k, (keep, row) in rows:
@@ -542,6 +538,14 @@ def prove_safe(arm: "Arm", claim: "Claim", proof: Any) -> str:
                 fails = f"{where}: the bound of {shown(keep.name)} fails on a leaf"
                 demand(is_kept(leaf, keep, u), fails)
     return "proved: at every configuration of the set all of the following is kept"
+
+
+def direction(value: Any, where: str) -> Any:
+    """Read three integers."""
+    row = items(anything, 3, 3)(value, where)
+    whole = {*map(type, row)} == {int} and any(row)
+    demand(whole, f"{where}: three integers, not all 0, are wanted")
+    return row
 
 
 def named_direction(keep: Keep, number: str, rows: Sequence[Any], where: str) -> Vector:
@@ -700,10 +704,7 @@ def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> str:
             violated = is_violated(Leaf(arm.steps, part, free), keep, spots)
             demand(violated, f"proof.tree: {shown(keep.name)} is not violated all over a leaf")
     groups = list[set[Node]]()
-    for end_at in (
-        start,
-        goal,
-    ):  # at the turn of the tree; a joint of any value has its middle there
+    for end_at in (start, goal):  # on the turn that the tree covers
         at = [(x + t // 2) % t - t // 2 if t else x for x, t in zip(end_at, turns, strict=True)]
         place = tuple(low_end[j] if j in free else x for j, x in enumerate(at))
         groups.append({*above[0].touching(Box((place, place)), shifts)})
@@ -921,7 +922,7 @@ def number(value: Any, where: str) -> Fraction:
 
 
 def fields(spec: str) -> Reader:
-    """Return the reader of a table from its keys, each with its kind; some may be missing."""
+    """Return the reader of a table from its keys, each with its kind; `key?` may be missing."""
 
     def read(value: Any, where: str) -> Any:
         wanted, others = dict[str, Reader](), dict[str, Reader]()
@@ -1156,20 +1157,20 @@ def _boundaries(file: Table, points: Things, bodies: Things) -> tuple[list[Bound
         for named in names:
             demand(named in known, f"{where}: nothing is called {shown(named)}")
         demand(len({*names}) == len(names), f"{where}: two different names are wanted")
-        if known is bodies and len(names) == 2:
-            apart.add(frozenset(names))
         return tuple(known[named] for named in names)
 
     for names in file["allowed"] or ():
         things_of(names, bodies, "allowed")
+        apart.add(frozenset(names))
     for i, row in enumerate(file["boundary"] or ()):
         where, plane = f"robot.boundary[{i}]", row["type"] == "half-space"
         ends = [key for key in ("points", "bodies", "point", "body") if row.get(key)]
         demand(len(ends) == 1, f"{where}: a point or a body is wanted")
         names = (row[ends[0]],) if plane else row[ends[0]]
         things = things_of(names, bodies if ends[0][0] == "b" else points, where)
-        same = ends == ["bodies"] and things[0].frame == things[1].frame
-        demand(not same, f"{where}: two bodies of one frame")
+        if row["type"] == "bodies":
+            demand(things[0].frame != things[1].frame, f"{where}: two bodies of one frame")
+            apart.add(frozenset(names))
         distance = row["offset"] if plane else row["clearance"] or ZERO
         found.append(Boundary(row["name"], things, row.get("normal"), distance))
         unused += [row["name"]] * (row["used"] is False)

@@ -139,18 +139,28 @@ def _deepest(near: Floats, far: Floats) -> Floats:
     return np.asarray(best)
 
 
+def _to_edges(hull: Floats, places: Floats) -> tuple[Floats, Floats, Floats]:
+    """Compare places, shape (T, k, 2), with the edges of hulls: three arrays (T, k, edges).
+
+    Where along an edge its nearest point lies, from 0 to 1; how far that is from the place; and
+    what is more than 0 if the place lies on the left of the edge.
+    """
+    step = (np.roll(hull, -1, axis=1) - hull)[:, None]
+    square = (step**2).sum(axis=-1)
+    off = places[:, :, None] - hull[:, None]
+    part = np.clip((off * step).sum(axis=-1) / np.where(square > 0, square, 1), 0, 1)
+    distance: Floats = np.linalg.norm(off - part[..., None] * step, axis=-1)
+    return part, distance, _cross(step, off)
+
+
 def _depth(hull: Floats, places: Floats) -> Floats:
     """Return the distances of places (T, k, 2) to the edge of a hull; below 0 outside."""
-    start, step = hull[:, None], (np.roll(hull, -1, axis=1) - hull)[:, None]
-    square = (step**2).sum(axis=-1)
-    off = places[:, :, None] - start
-    part = np.clip((off * step).sum(axis=-1) / np.where(square > 0, square, 1), 0, 1)
-    distance: Floats = np.linalg.norm(off - part[..., None] * step, axis=-1).min(axis=-1)
+    _, distances, left = _to_edges(hull, places)
+    distance = distances.min(axis=-1)
     if hull.shape[1] < 3:
         return np.asarray(-distance)
     area = (hull[..., 0] * np.roll(hull[..., 1], -1, 1)).sum(1)
     area -= (hull[..., 1] * np.roll(hull[..., 0], -1, 1)).sum(1)
-    left = step[..., 0] * off[..., 1] - step[..., 1] * off[..., 0]
     inside = (left * np.sign(area)[:, None, None] >= 0).all(axis=-1)
     return np.where(inside, distance, -distance)
 
@@ -162,11 +172,8 @@ def _weights(hull: Floats, places: Floats) -> Floats:
     if count == 1:
         return np.ones((len(hull), 1))
     following = np.roll(np.arange(count), -1)
-    step = hull[:, following] - hull
-    square = (step**2).sum(axis=-1)
-    off = places[:, None] - hull
-    part = np.clip((off * step).sum(axis=-1) / np.where(square > 0, square, 1), 0, 1)
-    edge = np.linalg.norm(off - part[..., None] * step, axis=-1).argmin(axis=1)
+    part, distance = (x[:, 0] for x in _to_edges(hull, places[:, None])[:2])
+    edge = distance.argmin(axis=1)
     weights = np.zeros((len(hull), count))
     np.add.at(weights, (rows, edge), 1 - part[rows, edge])
     np.add.at(weights, (rows, following[edge]), part[rows, edge])

@@ -220,23 +220,13 @@ class Arm:
         slopes = np.zeros((*cells.centres.shape, *r.shape[1:]))
         for k, move in moves.items():
             slopes[:, steps[k].joint] += steps[k].factor * move
-        places = kind.places[rows]
-        if kind.along is not None:
-            for table in (places, r, slopes):  # copies all
-                table[..., kind.along] = 0
-        normals = None if kind.normals is None else kind.normals[rows]
-        return Seen(places, r, slopes, bend, spread, kind.distances[rows], normals, kind.along)
+        return _seen(kind, rows, r, slopes, bend, spread)
 
     def still(self, kind: Kind, rows: Ints, q: Floats) -> Seen:
         """Return what the near frame sees at configurations, shape (T, n), without any motion."""
         r, *_ = self._posed(kind, kind.corners[rows], q)
-        places = kind.places[rows]
-        if kind.along is not None:
-            places[..., kind.along] = r[..., kind.along] = 0
-        normals = None if kind.normals is None else kind.normals[rows]
         none = np.zeros(r.shape[:2])
-        slopes = np.zeros((len(q), 0, *r.shape[1:]))
-        return Seen(places, r, slopes, none, none, kind.distances[rows], normals, kind.along)
+        return _seen(kind, rows, r, np.zeros((len(q), 0, *r.shape[1:])), none, none)
 
     def _posed(
         self, kind: Kind, corners: Floats, q: Floats
@@ -266,6 +256,16 @@ def _bend(
         bend += reach[k] * np.linalg.norm(moves[k], axis=2) * (turned + own / 2)
         turned = turned + own
     return bend
+
+
+def _seen(kind: Kind, rows: Ints, r: Floats, slopes: Floats, bend: Floats, spread: Floats) -> Seen:
+    """Put both hulls of things together, and leave out the coordinate that does not count."""
+    places = kind.places[rows]
+    if kind.along is not None:
+        for table in (places, r, slopes):  # copies all
+            table[..., kind.along] = 0
+    normals = None if kind.normals is None else kind.normals[rows]
+    return Seen(places, r, slopes, bend, spread, kind.distances[rows], normals, kind.along)
 
 
 @dataclass(frozen=True, eq=False)

@@ -137,22 +137,15 @@ class _Robot:
         bodies = [*self.robot.bodies, *self.robot.obstacles]
         rows = [*self.table.get("body", ()), *self.table.get("obstacle", ())]
         k = next(k for k, body in enumerate(bodies) if body.name == name)
-        row, frame, radius = rows[k], bodies[k].frame, 0
-        if "polygon" in row:
-            places = row["polygon"]
-        elif "capsule" in row:
-            places, radius = (
-                [row["capsule"][end] for end in ("from", "to")],
-                row["capsule"]["radius"],
-            )
-        else:
-            places, radius = [row["disc"]["at"]], row["disc"]["radius"]
+        row, frame = rows[k], bodies[k].frame
+        shape = row.get("capsule", row.get("disc", {}))
+        ends = [shape[end] for end in ("from", "to", "at") if end in shape]
         along = self.robot.plane.flat_coordinate(frame)
         if along is None:
             refuse(f"robot: the frame of {shown(name)} has no axis along that of the joints")
-        full = [p if len(p) == 3 else [*p[:along], 0, *p[along:]] for p in places]
+        full = [p if len(p) == 3 else [*p[:along], 0, *p[along:]] for p in ends or row["polygon"]]
         corners = [tuple(map(number, place)) for place in full]
-        return _Thing(name, self.frames[frame], corners, number(radius), along)
+        return _Thing(name, self.frames[frame], corners, number(shape.get("radius", 0)), along)
 
     def _point(self, name: str) -> _Thing:
         row = next(row for row in self.table["point"] if row["name"] == name)
