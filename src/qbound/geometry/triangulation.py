@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from qbound.arrays import Floats
+from qbound.arrays import Floats, Indices
 
 Whole = tuple[int, int]
 Triangle = tuple[int, int, int]
@@ -90,15 +90,16 @@ def doubled_area(places: Sequence[Whole], loop: Sequence[int]) -> int:
 def crossing(places: Sequence[Whole], edges: Sequence[tuple[int, int]]) -> Whole | None:
     """Return a corner near which edges cross or touch, other than at a corner that they share."""
     boxes = _boxes(places, edges)
-    order = np.argsort(boxes[:, 0], kind="stable")
+    order: Indices = np.argsort(boxes[:, 0], kind="stable")
     low = boxes[order, 0]
     for k, one in enumerate(order.tolist()):
         last = int(np.searchsorted(low, boxes[one, 2], side="right"))
         others = order[k + 1 : last]
         near = (boxes[others, 1] <= boxes[one, 3]) & (boxes[others, 3] >= boxes[one, 1])
-        for other in others[near].tolist():
-            if _touch(places, edges[one], edges[other]):
-                return places[edges[one][0]]
+        found: list[int] = others[near].tolist()
+        if any(_touch(places, edges[one], edges[other]) for other in found):
+            start = edges[int(one)][0]
+            return places[start]
     return None
 
 
@@ -251,21 +252,23 @@ def _flipped(
     places: Sequence[Whole], triangles: Sequence[Triangle], edges: Sequence[tuple[int, int]]
 ) -> list[Triangle]:
     """Flip every cut whose neighbours' circles hold each other's corners (Lawson)."""
-    apex = {}
+    apex = dict[tuple[int, int], int]()
     for a, b, c in triangles:
         apex |= {(a, b): c, (b, c): a, (c, a): b}
     walls = set(edges)
     waiting = [edge for edge in apex if edge not in walls and edge[0] < edge[1]]
     while waiting:
         a, b = waiting.pop()
-        c, d = apex.get((a, b)), apex.get((b, a))
-        if c is None or d is None or not _in_circle(*(places[k] for k in (a, b, c, d))):
+        if (a, b) not in apex:
+            continue  # flipped since
+        c, d = apex[a, b], apex[b, a]
+        if not _in_circle(*(places[k] for k in (a, b, c, d))):
             continue
         del apex[a, b], apex[b, a]
         apex |= {(c, d): b, (d, b): c, (b, c): d, (d, c): a, (c, a): d, (a, d): c}
         sides = ((b, c), (c, a), (a, d), (d, b))
         waiting += [(i, j) for i, j in sides if (i, j) not in walls and (j, i) not in walls]
-    return sorted({min((a, b, c), (b, c, a), (c, a, b)) for (a, b), c in apex.items()})
+    return sorted({min((i, j, k), (j, k, i), (k, i, j)) for (i, j), k in apex.items()})
 
 
 def _in_circle(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
