@@ -63,12 +63,31 @@ def test_triangles_are_the_constrained_delaunay_triangulation(seed, count, holes
         ([[(0, 0), (9, 0), (9, 9)], [(5, 1), (6, 2), (7, 1)], [(20, 1), (20, 2), (21, 1)]], "hole"),
         ([[(0, 0), (9, 0), (9, 9), (0, 9)], [(1, 1), (3, 1), (3, 3)]], "left"),
         ([[(0, 0), (9, 0), (9, 9), (0, 9)], [(0, 3), (3, 6), (6, 3)]], "touch"),
+        ([[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (5, 5), (9, 9)]], "touch"),
+        ([[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (8, 5), (9, 9)]], "hole"),
         ([[(1, 1), (1, 1), (2, 5)]], "touch"),
     ],
 )
 def test_loops_that_bound_no_polygon_are_refused(loops, says):
     with pytest.raises(ValueError, match=says):
         triangulated(loops)
+
+
+@pytest.mark.parametrize("where", [(0, 0), (9, 0), (4, 4)])
+def test_holes_may_touch_the_outline_and_each_other_in_a_corner(where):
+    square = [(0, 0), (9, 0), (9, 9), (0, 9)]
+    holes = {
+        (0, 0): [[(0, 0), (1, 2), (2, 1)]],
+        (9, 0): [[(9, 0), (7, 1), (8, 2)], [(7, 1), (5, 1), (6, 2)]],
+        (4, 4): [[(4, 4), (4, 5), (5, 5)], [(4, 4), (3, 2), (2, 3)], [(4, 4), (6, 3), (5, 2)]],
+    }[where]
+    loops = [square, *holes]
+    places = [place for loop in loops for place in loop]
+    triangles = triangulated(loops)
+    expected = shapely.constrained_delaunay_triangles(shapely.Polygon(square, holes))
+    assert len(triangles) == len(expected.geoms)
+    covered = sum(doubled_area(places, triangle) for triangle in triangles)
+    assert covered == sum(doubled_area(loop, range(len(loop))) for loop in loops)
 
 
 def test_corners_on_straight_edges_are_corners_of_triangles():

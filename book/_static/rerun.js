@@ -8,6 +8,7 @@
 
   /** By the name that is imported: the part of the files that brings it. */
   const PARTS_OF = /** @type {Record<string, string>} */ ({
+    contourpy: "matplotlib",
     flint: "base",
     lxml: "lxml",
     matplotlib: "matplotlib",

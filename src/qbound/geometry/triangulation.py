@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from qbound.arrays import Floats
+from qbound.arrays import Floats, Indices
 
 Whole = tuple[int, int]
 Triangle = tuple[int, int, int]
@@ -26,7 +26,8 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
     ----------
     loops : sequence of sequence of (int, int)
         Corners with the inside on the left: one outline anticlockwise, holes clockwise, each of
-        three corners or more. A corner may lie on the straight line between its neighbours.
+        three corners or more. A corner may lie on the straight line between its neighbours, and
+        loops may touch in a corner that both have; the higher one of its numbers is taken.
 
     Returns
     -------
@@ -51,8 +52,10 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
     [(0, 1, 3), (1, 2, 3)]
     """
     places = [place for loop in loops for place in loop]
-    starts = np.cumsum([0, *map(len, loops)]).tolist()
-    numbers = [list(range(*ends)) for ends in pairwise(starts)]
+    number = {place: k for k, place in enumerate(places)}
+    numbers = [[number[place] for place in loop] for loop in loops]
+    if any(len(set(loop)) < len(loop) for loop in numbers):
+        raise ValueError("a loop passes a corner twice: it crosses or touches itself")
     edges = [edge for loop in numbers for edge in around(loop)]
     if (fault := crossing(places, edges)) is not None:
         raise ValueError(f"edges cross or touch at {fault}")
@@ -61,8 +64,9 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
         raise ValueError("the inside of a loop is not on its left")
     for hole in holes:
         others = [loop for loop in holes if loop is not hole]
-        within = [_holds(places, loop, places[hole[0]]) for loop in (outline, *others)]
-        if within != [True, *(False for _ in others)]:
+        if not all(_holds(places, outline, hole)) or any(
+            any(_holds(places, other, hole)) for other in others
+        ):
             raise ValueError("a hole is not inside the outline, or is inside another hole")
     whole = _bridged(places, outline, holes, edges)
     return _flipped(places, list(_ears(places, whole)), edges)
@@ -90,15 +94,16 @@ def doubled_area(places: Sequence[Whole], loop: Sequence[int]) -> int:
 def crossing(places: Sequence[Whole], edges: Sequence[tuple[int, int]]) -> Whole | None:
     """Return a corner near which edges cross or touch, other than at a corner that they share."""
     boxes = _boxes(places, edges)
-    order = np.argsort(boxes[:, 0], kind="stable")
+    order: Indices = np.argsort(boxes[:, 0], kind="stable")
     low = boxes[order, 0]
     for k, one in enumerate(order.tolist()):
         last = int(np.searchsorted(low, boxes[one, 2], side="right"))
         others = order[k + 1 : last]
         near = (boxes[others, 1] <= boxes[one, 3]) & (boxes[others, 3] >= boxes[one, 1])
-        for other in others[near].tolist():
-            if _touch(places, edges[one], edges[other]):
-                return places[edges[one][0]]
+        found: list[int] = others[near].tolist()
+        if any(_touch(places, edges[one], edges[other]) for other in found):
+            start = edges[int(one)][0]
+            return places[start]
     return None
 
 
@@ -133,14 +138,18 @@ def meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
     )
 
 
-def _holds(places: Sequence[Whole], loop: Sequence[int], at: Whole) -> bool:
-    """Tell whether a place that is on no edge lies inside a loop."""
-    inside = False
-    for i, j in around(loop):
-        low, high = sorted((places[i], places[j]), key=lambda place: place[1])
-        if low[1] <= at[1] < high[1] and side(low, high, at) > 0:
-            inside = not inside
-    return inside
+def _holds(places: Sequence[Whole], loop: Sequence[int], other: Sequence[int]) -> Iterator[bool]:
+    """Tell of the middle of each edge of another loop whether it lies inside a loop.
+
+    One edge stands for all where the loops touch nowhere.
+    """
+    ends = [sorted((places[i], places[j]), key=lambda place: place[1]) for i, j in around(loop)]
+    twice = [((2 * a[0], 2 * a[1]), (2 * b[0], 2 * b[1])) for a, b in ends]
+    edges = around(other)
+    for i, j in edges if set(loop) & set(other) else edges[:1]:
+        at = places[i][0] + places[j][0], places[i][1] + places[j][1]
+        above = (a[1] <= at[1] < b[1] and side(a, b, at) > 0 for a, b in twice)
+        yield sum(above) % 2 == 1
 
 
 # --- one loop, and its ears -----------------------------------------------------------------------
@@ -159,6 +168,11 @@ def _bridged(
     """
     whole, walls = list(outline), list(edges)
     for hole in sorted(holes, key=lambda loop: -max(places[k][0] for k in loop)):
+        touched = next((k for k in range(len(whole)) if _opens(places, whole, k, hole)), None)
+        if touched is not None:
+            at = hole.index(whole[touched])
+            whole[touched + 1 : touched + 1] = [*hole[at + 1 :], *hole[: at + 1]]
+            continue
         start = max(hole, key=lambda k: places[k])
         x, y = places[start]
         nearest = sorted(
@@ -173,6 +187,21 @@ def _bridged(
     return whole
 
 
+def _opens(places: Sequence[Whole], whole: Sequence[int], k: int, hole: Sequence[int]) -> bool:
+    """Tell whether a hole touches a loop in its k-th corner, on the loop's left."""
+    if whole[k] not in hole:
+        return False
+    after = hole[(hole.index(whole[k]) + 1) % len(hole)]
+    return _is_left(places, whole, k, places[after])
+
+
+def _is_left(places: Sequence[Whole], whole: Sequence[int], k: int, at: Whole) -> bool:
+    """Tell whether a place, seen from the k-th corner of a loop, lies between its edges, inside."""
+    a, b, c = (places[i] for i in (whole[k - 1], whole[k], whole[(k + 1) % len(whole)]))
+    left = side(a, b, at) > 0, side(b, c, at) > 0
+    return all(left) if side(a, b, c) > 0 else any(left)
+
+
 def _sees(
     places: Sequence[Whole],
     walls: Sequence[tuple[int, int]],
@@ -182,11 +211,9 @@ def _sees(
     k: int,
 ) -> bool:
     """Tell whether a bridge from a corner of a hole to the k-th corner of a loop meets no wall."""
-    end, before, after = whole[k], whole[k - 1], whole[(k + 1) % len(whole)]
-    a, b, c, p = (places[i] for i in (before, end, after, start))
-    left = side(a, b, p) > 0, side(b, c, p) > 0
-    if not (all(left) if side(a, b, c) > 0 else any(left)):
-        return False  # it would leave to the outside, or along an edge
+    end = whole[k]
+    if not _is_left(places, whole, k, places[start]):
+        return False
     bridge = (start, end)
     low_x, low_y, high_x, high_y = _boxes(places, [bridge])[0]
     near = (boxes[:, 0] <= high_x) & (boxes[:, 2] >= low_x)
@@ -251,21 +278,23 @@ def _flipped(
     places: Sequence[Whole], triangles: Sequence[Triangle], edges: Sequence[tuple[int, int]]
 ) -> list[Triangle]:
     """Flip every cut whose neighbours' circles hold each other's corners (Lawson)."""
-    apex = {}
+    apex = dict[tuple[int, int], int]()
     for a, b, c in triangles:
         apex |= {(a, b): c, (b, c): a, (c, a): b}
     walls = set(edges)
     waiting = [edge for edge in apex if edge not in walls and edge[0] < edge[1]]
     while waiting:
         a, b = waiting.pop()
-        c, d = apex.get((a, b)), apex.get((b, a))
-        if c is None or d is None or not _in_circle(*(places[k] for k in (a, b, c, d))):
+        if (a, b) not in apex:
+            continue  # flipped since
+        c, d = apex[a, b], apex[b, a]
+        if not _in_circle(*(places[k] for k in (a, b, c, d))):
             continue
         del apex[a, b], apex[b, a]
         apex |= {(c, d): b, (d, b): c, (b, c): d, (d, c): a, (c, a): d, (a, d): c}
         sides = ((b, c), (c, a), (a, d), (d, b))
         waiting += [(i, j) for i, j in sides if (i, j) not in walls and (j, i) not in walls]
-    return sorted({min((a, b, c), (b, c, a), (c, a, b)) for (a, b), c in apex.items()})
+    return sorted({min((i, j, k), (j, k, i), (k, i, j)) for (i, j), k in apex.items()})
 
 
 def _in_circle(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:

@@ -207,7 +207,7 @@ def _polygons(
 ) -> list[Polygon]:
     """Join chains along the window's edge to outlines, and give each outline its holes."""
     corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
-    starts = [_along(chain[0], low, high) for chain in chains]
+    starts = np.array([_along(chain[0], low, high) for chain in chains])
     left, outlines = set(range(len(chains))), list[Floats]()
     while left:
         first = k = min(left)
@@ -215,8 +215,8 @@ def _polygons(
         while k in left:
             left.remove(k)
             chain, end = chains[k], _along(chains[k][-1], low, high)
-            k = min(range(len(chains)), key=lambda n, end=end: (starts[n] - end) % 4)
-            on = end + (starts[k] - end) % 4
+            k = int(np.argmin((starts - end) % 4))
+            on = end + float((starts[k] - end) % 4)
             passed = [corners[c % 4] for c in range(math.floor(end) + 1, math.ceil(on))]
             parts += [chain, *(corner[None] for corner in passed)]
         if k != first:
@@ -243,7 +243,7 @@ def _along(place: Floats, low: Floats, high: Floats) -> float:
 def _tidy(ring: Floats) -> Floats:
     """Drop corners that repeat the one before."""
     apart = np.abs(ring - np.roll(ring, 1, axis=0)).max(axis=1) > ON_THE_CUT / 1000
-    return ring[apart]
+    return np.asarray(ring[apart])
 
 
 def _snapped(ring: Floats, ends: Sequence[tuple[float, float]]) -> Floats:
