@@ -1666,9 +1666,10 @@ def _answer(arguments: list[str]) -> tuple[int, str]:
         return PROVED, USAGE
     if arguments == ["--version"]:
         return PROVED, f"check.py of {SCHEMA}"
-    file, option, value = (*arguments, "", "", "")[:3] if len(arguments) in (1, 3) else ("",) * 3
-    demand(file and file[:2] != "--" and bool(option) == bool(value), USAGE)
-    demand(option in ("", "--robot") or (option, value) == ("--print", "robot"), USAGE)
+    demand(len(arguments) in (1, 3) and "" not in arguments, USAGE)
+    file, option, value = (*arguments, "", "")[:3]
+    known = option in ("", "--robot") or (option, value) == ("--print", "robot")
+    demand(known and file[:2] != "--", USAGE)
     data, pin = _read_file(file), None
     if option == "--print":
         return PROVED, canonical(read(data)[1].form)[:-1]
