@@ -1,7 +1,12 @@
 """Check a certificate of qbound with nothing but Python's own integers.
 
-    python -I check.py FILE [--robot ARM.toml]
-    python -I check.py FILE --print robot
+usage: python -I check.py FILE [--robot ARM.toml]
+       python -I check.py FILE --print robot
+
+    --robot ARM.toml  the robot file that the certificate must be about
+    --print robot     print the normal form of its robot, whose SHA-256 is in the file
+    --version         print the format that this file checks
+    --help            print this text
 
 A certificate claims that every configuration of a set keeps a robot clear of all that it has to
 keep clear of, or that one configuration does not, or that no path leads from one configuration to
@@ -1627,15 +1632,7 @@ def _longest(claim: Claim, j: int) -> Fraction:
 PROVED, REFUTED, NO_ANSWER = 0, 3, 2
 """Exit statuses; not 1, which a Python that cannot run this file ends with."""
 
-USAGE = """usage: python -I check.py FILE [--robot ARM.toml]
-       python -I check.py FILE --print robot
-
-Check a certificate of qbound: 0 proved, 3 refuted, 2 anything else.
-
-  --robot ARM.toml  the robot file that the certificate must be about
-  --print robot     print the normal form of the certificate's robot; its SHA-256 is in the file
-  --version         print the format that this file checks
-  --help            print this text"""
+USAGE = "usage: python -I check.py FILE [--robot ARM.toml | --print robot]; or --version, --help"
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -1663,7 +1660,7 @@ def main(arguments: Sequence[str]) -> int:
 def _answer(arguments: list[str]) -> tuple[int, str]:
     """Return the exit status and what is to be printed."""
     if arguments == ["--help"]:
-        return PROVED, USAGE
+        return PROVED, __doc__ or USAGE
     if arguments == ["--version"]:
         return PROVED, f"check.py of {SCHEMA}"
     demand(len(arguments) in (1, 3) and "" not in arguments, USAGE)
