@@ -1373,19 +1373,17 @@ class Arm:
             normal = unit(row["normal"]) if "normal" in row else None
             hull_pair = near, hulls[row["far"]]
             self.keeps.append(Keep(row["name"], *hull_pair, *distance, row.get("along"), normal))
-        self._demand_one_height()
-
-    def _demand_one_height(self) -> None:
-        """Refuse bodies whose corners have not one height along the common axis."""
         pairs = [keep for keep in self.keeps if keep.along is not None]
-        hulls = {id(hull): hull for keep in pairs for hull in (keep.near, keep.far)}
-        still = (0,) * len(self.joints)
-        leaf, heights = Leaf(self.steps if pairs else (), Box((still, still))), list[int]()
-        for hull in hulls.values():
-            axis = leaf.frames[pairs[0].near.frame][0][pairs[0].along or 0]
-            heights += [dot(axis, leaf.place(hull.frame, p)) for p in hull.corners]
-        level = max(heights, default=0) - min(heights, default=0) <= NEARLY
-        demand(level, "robot: two bodies to keep apart are not at one height")
+        if pairs:  # all corners of bodies have one height along the common axis
+            still, frame = (0,) * len(self.joints), pairs[0].near.frame
+            leaf = Leaf(self.steps, Box((still, still)))
+            axis = leaf.frames[frame][0][robot.flat[frame]]
+            bodies = {id(hull): hull for keep in pairs for hull in (keep.near, keep.far)}.values()
+            heights = [
+                dot(axis, leaf.place(hull.frame, p)) for hull in bodies for p in hull.corners
+            ]
+            level = max(heights) - min(heights) <= NEARLY
+            demand(level, "robot: two bodies to keep apart are not at one height")
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
         """Return three lengths in units."""
