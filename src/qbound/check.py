@@ -1,7 +1,12 @@
 """Check a certificate of qbound with nothing but Python's own integers.
 
-    python -I check.py FILE [--robot ARM.toml]
-    python -I check.py FILE --print robot
+usage: python -I check.py FILE [--robot ARM.toml]
+       python -I check.py FILE --print robot
+
+    --robot ARM.toml  the robot file that the certificate must be about
+    --print robot     print the normal form of its robot, whose SHA-256 is in the file
+    --version         print the format that this file checks
+    --help            print this text
 
 A certificate claims that every configuration of a set keeps a robot clear of all that it has to
 keep clear of, or that one configuration does not, or that no path leads from one configuration to
@@ -1368,19 +1373,17 @@ class Arm:
             normal = unit(row["normal"]) if "normal" in row else None
             hull_pair = near, hulls[row["far"]]
             self.keeps.append(Keep(row["name"], *hull_pair, *distance, row.get("along"), normal))
-        self._demand_one_height()
-
-    def _demand_one_height(self) -> None:
-        """Refuse bodies whose corners have not one height along the common axis."""
         pairs = [keep for keep in self.keeps if keep.along is not None]
-        hulls = {id(hull): hull for keep in pairs for hull in (keep.near, keep.far)}
-        still = (0,) * len(self.joints)
-        leaf, heights = Leaf(self.steps if pairs else (), Box((still, still))), list[int]()
-        for hull in hulls.values():
-            axis = leaf.frames[pairs[0].near.frame][0][pairs[0].along or 0]
-            heights += [dot(axis, leaf.place(hull.frame, p)) for p in hull.corners]
-        level = max(heights, default=0) - min(heights, default=0) <= NEARLY
-        demand(level, "robot: two bodies to keep apart are not at one height")
+        if pairs:  # all corners of bodies have one height along the common axis
+            still, frame = (0,) * len(self.joints), pairs[0].near.frame
+            leaf = Leaf(self.steps, Box((still, still)))
+            axis = leaf.frames[frame][0][robot.flat[frame]]
+            bodies = {id(hull): hull for keep in pairs for hull in (keep.near, keep.far)}.values()
+            heights = [
+                dot(axis, leaf.place(hull.frame, p)) for hull in bodies for p in hull.corners
+            ]
+            level = max(heights) - min(heights) <= NEARLY
+            demand(level, "robot: two bodies to keep apart are not at one height")
 
     def scaled(self, place: Sequence[Fraction]) -> Vector:
         """Return three lengths in units."""
@@ -1627,15 +1630,7 @@ def _longest(claim: Claim, j: int) -> Fraction:
 PROVED, REFUTED, NO_ANSWER = 0, 3, 2
 """Exit statuses; not 1, which a Python that cannot run this file ends with."""
 
-USAGE = """usage: python -I check.py FILE [--robot ARM.toml]
-       python -I check.py FILE --print robot
-
-Check a certificate of qbound: 0 proved, 3 refuted, 2 anything else.
-
-  --robot ARM.toml  the robot file that the certificate must be about
-  --print robot     print the normal form of the certificate's robot; its SHA-256 is in the file
-  --version         print the format that this file checks
-  --help            print this text"""
+USAGE = "usage: python -I check.py FILE [--robot ARM.toml | --print robot]; or --version, --help"
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -1663,12 +1658,13 @@ def main(arguments: Sequence[str]) -> int:
 def _answer(arguments: list[str]) -> tuple[int, str]:
     """Return the exit status and what is to be printed."""
     if arguments == ["--help"]:
-        return PROVED, USAGE
+        return PROVED, __doc__ or USAGE
     if arguments == ["--version"]:
         return PROVED, f"check.py of {SCHEMA}"
-    file, option, value = (*arguments, "", "", "")[:3] if len(arguments) in (1, 3) else ("",) * 3
-    demand(file and file[:2] != "--" and bool(option) == bool(value), USAGE)
-    demand(option in ("", "--robot") or (option, value) == ("--print", "robot"), USAGE)
+    demand(len(arguments) in (1, 3) and "" not in arguments, USAGE)
+    file, option, value = (*arguments, "", "")[:3]
+    known = option in ("", "--robot") or (option, value) == ("--print", "robot")
+    demand(known and file[:2] != "--", USAGE)
     data, pin = _read_file(file), None
     if option == "--print":
         return PROVED, canonical(read(data)[1].form)[:-1]

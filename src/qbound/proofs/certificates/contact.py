@@ -156,7 +156,7 @@ def _to_edges(hull: Floats, places: Floats) -> tuple[Floats, Floats, Floats]:
 def _depth(hull: Floats, places: Floats) -> Floats:
     """Return the distances of places (T, k, 2) to the edge of a hull; below 0 outside."""
     _, distances, left = _to_edges(hull, places)
-    distance = distances.min(axis=-1)
+    distance: Floats = distances.min(axis=-1)
     if hull.shape[1] < 3:
         return np.asarray(-distance)
     area = (hull[..., 0] * np.roll(hull[..., 1], -1, 1)).sum(1)

@@ -12,7 +12,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import prod
 from typing import Any
@@ -316,15 +316,13 @@ def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bool
                 left.append((int(open_cells.sum()), may))
         start += length
     open_cells = ~feasible & ~infeasible
-    return Paving(
-        paving.problem,
-        paving.bounds,
-        (*paving.feasible, *_some(cells[feasible])),
-        (*paving.infeasible, *_some(cells[infeasible])),
-        cells[open_cells],
-        tuple(_joined(left)),
-        paving.bodies,
-        unseparated[open_cells],
+    return replace(
+        paving,
+        feasible=(*paving.feasible, *_some(cells[feasible])),
+        infeasible=(*paving.infeasible, *_some(cells[infeasible])),
+        undecided=cells[open_cells],
+        runs=tuple(_joined(left)),
+        unseparated=unseparated[open_cells],
     )
 
 
