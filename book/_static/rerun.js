@@ -391,7 +391,7 @@ cells`;
   }
 
   const invitation = () => {
-    const whole = bytesOf(["engine", "base", "library", "matplotlib"]);
+    const whole = bytesOf([...ALWAYS, ...(entry.needs ?? [])]);
     const way = location.protocol === "file:" ? "It reads" : "It downloads";
     return `Python runs inside this page, and its code becomes editable. ${way} about ${megabytes(whole)} once, and it takes up to half a gigabyte of memory.`;
   };
