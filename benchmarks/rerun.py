@@ -48,7 +48,7 @@ def memory(root: int) -> float:
 
 
 def measured(html: Path) -> dict[str, Any]:
-    chapter = next((html / "chapters").glob("*_region.html"))
+    chapter = next((html / "chapters").glob("[0-9][0-9]_region.html"))
     listed = (html / "_static" / "rerun-files.js").read_text(encoding="utf-8")
     files = json.loads(listed[listed.index("{") : listed.rindex("}") + 1])["files"]
     size: dict[str, float] = {}

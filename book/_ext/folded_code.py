@@ -38,7 +38,7 @@ class OneCodeBox(SphinxPostTransform):
             if title_of(section) == EXERCISES and cells:
                 for cell in cells:
                     leave_out_unfilled(cell)
-                section.insert(1, nodes.paragraph("", WHERE))
+                section.insert(1, nodes.paragraph("", WHERE, classes=["exercises-where"]))
             folded = [cell for cell in cells if is_folded(cell)]
             if folded:
                 whole = box(folded)  # first: it takes emptied cells out of the section

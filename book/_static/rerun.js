@@ -59,6 +59,11 @@
     return node;
   }
 
+  const exercises = document.querySelector(".exercises-where");
+  exercises?.append(
+    " They run in this page too: run it, edit a cell, put your value in place of the dots, and run the cell.",
+  );
+
   // --- the bar at the top -----------------------------------------------------------------------
 
   const start = button("Run this page", () => void runAll(), "rerun-start");
@@ -386,9 +391,9 @@ cells`;
   }
 
   const invitation = () => {
-    const whole = bytesOf(["engine", "base", "library", "matplotlib"]);
+    const whole = bytesOf([...ALWAYS, ...(entry.needs ?? [])]);
     const way = location.protocol === "file:" ? "It reads" : "It downloads";
-    return `Python runs inside this page, and its code becomes editable. ${way} about ${megabytes(whole)} once; the memory it takes is about ten times that.`;
+    return `Python runs inside this page, and its code becomes editable. ${way} about ${megabytes(whole)} once, and it takes up to half a gigabyte of memory.`;
   };
   say(invitation());
 })();

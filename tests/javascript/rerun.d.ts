@@ -5,6 +5,7 @@ interface LiveFile {
   part: string;
   script: string;
   bytes: number;
+  needs?: string[];
 }
 
 interface Window {

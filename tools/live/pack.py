@@ -129,6 +129,8 @@ def pack(folder: Path, html: Path) -> int:
         file = f"{name}-{hashlib.sha256(content).hexdigest()[:8]}.js"
         (target / file).write_text(text, encoding="ascii")
         told.append({"name": name, "part": part, "script": file, "bytes": len(text)})
+        if part == "cells":  # said before anything is read: what a click costs
+            told[-1]["needs"] = needs().get(name.partition("_")[2], [])
         whole += len(text)
     (target / LICENCES).write_text(licences(folder), encoding="utf-8")
     listed = json.dumps({"folder": FOLDER, "files": told}, indent=1)
