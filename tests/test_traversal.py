@@ -22,7 +22,6 @@ from qbound import find_region, load_robot
 from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.geometry.polygon import centroid, scaled, self_crossings
 from qbound.model.robotfile import parse_robot
-from qbound.paths.asymmetry import asymmetry
 from qbound.paths.encounters import report
 from qbound.paths.trajectory import (
     joint_speeds,
@@ -35,6 +34,7 @@ from qbound.paths.trajectory import (
 )
 from qbound.paths.traversal import (
     Leg,
+    asymmetry,
     follow,
     nth_component,
     plan_route,
