@@ -11,7 +11,7 @@
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
     python3 run.py renumber write numbers, references, first cells and the list of the chapters
-    python3 run.py metadata write CITATION.cff, codemeta.json, ... from pyproject.toml
+    python3 run.py metadata write version, day, address and DOI into CITATION.cff and its kin
     python3 run.py licences list the licence of everything that is installed in .venv
     python3 run.py bench    measure side by side with other tools (--quick: a trial of minutes)
     python3 run.py pack     make the files of a release in dist/, with their checksums

@@ -24,9 +24,8 @@ from qbound.model.robotfile import load_robot
 from qbound.paths.encounters import boundaries, least_margin
 from qbound.paths.traversal import plan_route, traverse
 from qbound.region import clearance_problem
-from qbound.workspace.areas import find_workspace
+from qbound.workspace.areas import find_passage, find_workspace
 from qbound.workspace.layers import find_fibres
-from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import planar_arm, postures
 from support.scenes import configurations, random_scene
 

@@ -1,23 +1,37 @@
 """A robot as data: forward kinematics against 4 x 4 matrices, labels for the printed formulas."""
 
+from __future__ import annotations
+
 import math
+import pickle
 import re
+import sys
 import tomllib
 from dataclasses import replace
 from fractions import Fraction
+from importlib import resources
 from math import radians
 
+import fcl
 import numpy as np
 import pytest
 import sympy
+from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
+from skimage.measure import label
 
 from lizarraga2025 import printed as paper
-from qbound import load_robot, packaged_robots
+from qbound import find_region, load_robot, packaged_robots
+from qbound.arms.why import why
 from qbound.boundary.functions import position
-from qbound.model.robotfile import parse_robot
+from qbound.model.robot import HalfSpace, Pair, Robot
+from qbound.model.robotfile import as_written, parse_robot, robot_text
+from qbound.model.source import Source
+from qbound.proofs.certificates import statements
+from qbound.proofs.certificates.certify import Subject, certify
+from qbound.region import margins, violated
 from qbound.symbols import joint_symbols, with_symbols
 from support.oracles import (
     ANGLES,
@@ -27,8 +41,11 @@ from support.oracles import (
     packaged_table,
     point_seen_from,
     robot_tables,
+    row_of,
 )
+from support.regions import check_arcs, check_grid, check_roles
 from support.robot_files import robot_file
+from support.robots import OF_POINTS
 
 MINERVA = load_robot("minervabot-v2")
 
@@ -269,3 +286,242 @@ def test_a_robot_shows_itself_on_one_line() -> None:
     assert repr(odd).isprintable()
     assert len(repr(odd)) <= 140
     assert repr(odd).endswith("; 1 boundary>")
+
+
+# --- the packaged robots --------------------------------------------------------------------------
+
+
+KINDS = {
+    "two-joint-arm-with-walls": ("revolute", "revolute"),
+    "rp-telescopic-boom": ("revolute", "prismatic"),
+    "pr-gantry-arm": ("prismatic", "revolute"),
+    "pp-portal": ("prismatic", "prismatic"),
+}
+PACKAGED = [name for name in packaged_robots() if len(load_robot(name).joints) == 2]
+WHOLE_BODIES = [name for name in PACKAGED if name not in OF_POINTS]
+robots = pytest.mark.parametrize("name", PACKAGED)
+
+
+def table_of(name: str) -> dict:
+    file = resources.files("qbound") / "robots" / f"{name}.toml"
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def thick(robot: Robot) -> Robot:
+    """The same robot with clearances that a grid can see."""
+    wide = [
+        replace(b, clearance=2.0) if isinstance(b, Pair) and robot.name == "MinervaBotV2" else b
+        for b in robot.boundaries
+    ]
+    return replace(robot, boundaries=tuple(wide))
+
+
+def grid(robot: Robot, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Middles of the cells of a grid over both ranges, shape (n, n, 2), and their sides."""
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
+    step = (ends[:, 1] - ends[:, 0]) / n
+    axes = [low + (np.arange(n) + 0.5) * h for low, h in zip(ends[:, 0], step, strict=True)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), step
+
+
+def clearances_by_kinematics(robot: Robot, q: np.ndarray) -> np.ndarray:
+    """Least margin of all boundaries over configurations, by forward kinematics, a length."""
+    frames = robot.frames(q)
+    least = np.full(q.shape[:-1], np.inf)
+    for b in (b for b in robot.boundaries if b.used):
+        names = b.points if isinstance(b, Pair) else (b.point,)
+        places = [frames.position(robot.base, p, robot.base) for p in names]
+        radii = sum(robot.point(p).radius for p in names)
+        if isinstance(b, HalfSpace):
+            margin = places[0] @ b.normal - b.offset - radii
+        else:
+            margin = np.linalg.norm(places[1] - places[0], axis=-1) - radii - b.clearance
+        least = np.minimum(least, margin)
+    return least
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_the_four_kinds_of_arm_are_there(name):
+    robot = load_robot(name)
+    assert robot.kinds == KINDS[name]
+    assert all(joint.velocity for joint in robot.joints)
+    assert {type(b) for b in robot.boundaries} == {Pair, HalfSpace}
+    assert robot.bodies
+
+
+@robots
+def test_home_is_safe_and_in_the_first_component(name):
+    robot = load_robot(name)
+    region = find_region(robot)
+    assert violated(robot, robot.home) == []
+    assert region.components[0].contains_home
+    assert region.component_of(robot.home) == 0
+
+
+@pytest.mark.parametrize("name", [name for name in PACKAGED if name in OF_POINTS])
+def test_arcs_grid_and_roles_of_the_joints(name):
+    region = find_region(load_robot(name))
+    check_arcs(region)
+    check_grid(region)
+    check_roles(region)
+
+
+@pytest.mark.parametrize("name", [*KINDS, "minervabot-v2"])
+def test_the_area_is_that_of_forward_kinematics_on_a_grid(name):
+    robot = thick(load_robot(name))
+    q, step = grid(robot, 700)
+    counted = (clearances_by_kinematics(robot, q) > 0).sum() * step.prod()
+    assert find_region(robot).area == pytest.approx(counted, rel=3e-3)
+
+
+@pytest.mark.parametrize("name", [*KINDS, "minervabot-v2"])
+def test_components_are_the_flood_fill_of_scikit_image(name):
+    """One patch of pixels a component, glued where a joint turns all the way round."""
+    robot = thick(load_robot(name))
+    region = find_region(robot)
+    q, step = grid(robot, 240)
+    free = clearances_by_kinematics(robot, q) > 0
+    patches = flood(free, [joint.limits is None for joint in robot.joints])
+    rng = np.random.default_rng(0)
+    components: dict[int, set[int | None]] = {}
+    for patch in np.unique(patches[free]):
+        pixels = q[free & (patches == patch)]
+        if len(pixels) > 200:
+            chosen = rng.choice(len(pixels), 8, replace=False)
+            components[int(patch)] = {region.component_of(pixels[i]) for i in chosen}
+    large = [i for i, c in enumerate(region.components) if c.area > 300 * step.prod()]
+    assert sorted(components.values(), key=str) == sorted(({i} for i in large), key=str)
+
+
+@pytest.mark.parametrize("name", WHOLE_BODIES)
+def test_regions_of_whole_bodies_are_what_distances_on_a_grid_say(name):
+    """`margins` measures distances of bodies and knows no region."""
+    robot = load_robot(name)
+    region = find_region(robot)
+    q, step = grid(robot, 300)
+    free = (region.margins(q) >= 0).all(axis=-1)
+    assert region.area == pytest.approx(free.sum() * step.prod(), rel=3e-3)
+    assert 0.1 < free.mean() < 0.9
+
+
+def flood(free: np.ndarray, rounds: list[bool]) -> np.ndarray:
+    """Label patches by scikit-image, then merge labels that meet across the cut of a joint."""
+    patches = label(free, connectivity=1)
+    for axis in (0, 1):
+        if rounds[axis]:
+            first, last = np.moveaxis(patches, axis, 0)[[0, -1]]
+            for k in np.flatnonzero((first > 0) & (last > 0)):
+                one, other = np.moveaxis(patches, axis, 0)[[0, -1], k]
+                patches[patches == other] = one
+    return patches
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_margins_of_pairs_are_the_distances_of_a_collision_library(name):
+    """Spheres placed by SciPy's rotations, measured by fcl; deep overlap is only a collision."""
+    table, robot = table_of(name), load_robot(name)
+    rng = np.random.default_rng(1)
+    apart = 0
+    for _ in range(40):
+        q = [rng.uniform(*(joint.limits or (-np.pi, np.pi))) for joint in robot.joints]
+        found = dict(margins(robot, q))
+        for pair in (b for b in robot.boundaries if isinstance(b, Pair)):
+            distance = sphere_distance(table, pair.points, q)
+            if distance > 0:
+                apart += 1
+                assert found[pair.name] == pytest.approx(distance - pair.clearance, abs=1e-6)
+            else:
+                assert found[pair.name] <= -pair.clearance
+    assert apart > 40
+
+
+def sphere_distance(table: dict, names: tuple[str, str], q: list[float]) -> float:
+    solids = []
+    for name in names:
+        row = row_of(table, "point", name)
+        frame = frame_matrix(table, row["frame"], q)
+        centre = (frame @ np.array([*row["at"], 1.0]))[:3]
+        transform = fcl.Transform(frame[:3, :3], centre)
+        solids.append(fcl.CollisionObject(fcl.Sphere(row["radius"]), transform))
+    if fcl.collide(*solids, fcl.CollisionRequest(), fcl.CollisionResult()):
+        return -1.0
+    return fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult())
+
+
+# --- a robot file is read once --------------------------------------------------------------------
+
+
+@pytest.fixture
+def readers(monkeypatch):
+    """The modules that parse TOML, one entry for each time."""
+    found, loads = [], tomllib.loads
+
+    def counted(*args, **options):
+        found.append(sys._getframe(1).f_globals["__name__"])
+        return loads(*args, **options)
+
+    monkeypatch.setattr(tomllib, "loads", counted)
+    return found
+
+
+QUESTIONS = {
+    "separated by a joint": [0.0, 2.3],
+    "connected": [0.2, -0.5],
+    "infeasible": [0.0, 3.0],
+}
+
+
+@pytest.mark.parametrize("goal", QUESTIONS.values(), ids=QUESTIONS)
+def test_why_parses_its_file_once(readers, goal):
+    found = why("minervabot-v2", [0.0, 0.0], goal)
+    assert found.certificate is not None
+    assert readers.count("qbound.model.source") == 1
+    assert set(readers) == {"qbound.model.source", "qbound.check"}  # which shares nothing
+
+
+def test_why_of_a_paving_parses_its_file_once(readers):
+    found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
+    assert found.answer == "separated"
+    assert readers.count("qbound.model.source") == 1
+
+
+def test_certify_parses_its_text_once(readers):
+    text, _ = robot_text("minervabot-v2")
+    answer = certify(text, statements.box(["-10", "-10"], ["10", "10"]))
+    assert answer.verdict == "proved"
+    assert readers.count("qbound.model.source") == 1
+
+
+def test_a_robot_that_was_read_is_certified_without_a_reader_of_its_own(readers):
+    robot = load_robot("minervabot-v2")
+    subject = Subject(robot)
+    for size in ("10", "5"):
+        answer = certify(subject, statements.box([f"-{size}"] * 2, [size] * 2))
+        assert answer.verdict == "proved"
+    assert readers.count("qbound.model.source") == 1
+    assert subject.text == robot_text("minervabot-v2")[0]
+
+
+def test_a_decimal_is_a_double_and_a_rational():
+    source = Source.of_text("a = 0.1\nb = [1, 2.50]\nc = {d = 1e3}\ne = true")
+    assert source.table == {"a": 0.1, "b": [1, 2.5], "c": {"d": 1000.0}, "e": True}
+    assert {type(x) for x in (source.table["a"], source.table["c"]["d"])} == {float}
+    exact = {"a": fmpq(1, 10), "b": [1, fmpq(5, 2)], "c": {"d": fmpq(1000)}, "e": True}
+    assert source.exact == exact
+
+
+def test_a_source_goes_with_its_robot_into_another_process():
+    robot = load_robot("minervabot-v2")
+    again = pickle.loads(pickle.dumps(robot))
+    assert again == robot
+    assert again.source.text == robot.source.text
+    assert again.source.exact == robot.source.exact
+
+
+def test_a_robot_that_was_changed_is_written_anew():
+    robot = load_robot("pp-portal")
+    assert as_written(robot) is robot
+    other = replace(robot, name="another portal")
+    assert as_written(other) == other
+    assert as_written(other).source.text != robot.source.text
+    assert parse_robot(as_written(other).source.text) == other

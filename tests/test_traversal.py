@@ -1,5 +1,10 @@
 """Traversals: straight in joint space, the tool by 4 x 4 matrices, crossings against shapely."""
 
+import csv
+import io
+import json
+from dataclasses import replace
+from importlib import resources
 from itertools import pairwise, permutations
 
 import numpy as np
@@ -7,14 +12,37 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.interpolate import CubicHermiteSpline
+from shapely.geometry import Polygon
 
 from lizarraga2025.closed_form import vertices
-from qbound import load_robot
+from qbound import find_region, load_robot
+from qbound.export.routes import route_csv, route_document, route_lines
 from qbound.geometry.polygon import centroid, scaled, self_crossings
 from qbound.model.robotfile import parse_robot
-from qbound.paths.asymmetry import asymmetry
-from qbound.paths.traversal import simple_orders, traverse
+from qbound.paths.encounters import report
+from qbound.paths.trajectory import (
+    joint_speeds,
+    lasting,
+    ros_trajectory,
+    row_times,
+    stretched,
+    timed,
+    top_speeds,
+)
+from qbound.paths.traversal import (
+    Leg,
+    asymmetry,
+    follow,
+    nth_component,
+    plan_route,
+    reach,
+    simple_orders,
+    traverse,
+)
+from qbound.sampling import keeps_clear
 from support.oracles import (
     crosses_itself,
     crossing_points,
@@ -46,9 +74,9 @@ def test_joint_path_is_straight_from_stop_to_stop(closed) -> None:
 def test_tool_and_reach_are_forward_kinematics() -> None:
     """Distance from the shoulder, o_1, and not from the base."""
     path = traverse(MINERVA, SMALL, step=0.2)
-    for q, tool, reach in zip(path.q, path.tool, path.reach, strict=True):
+    for q, tool, far in zip(path.q, path.tool, path.reach, strict=True):
         assert_allclose(tool, point_seen_from(TABLE, "3", "0", q), atol=1e-12)
-        assert reach == pytest.approx(np.linalg.norm(tool - [0, 0, 22.5]))
+        assert far == pytest.approx(np.linalg.norm(tool - [0, 0, 22.5]))
 
 
 def test_reach_is_greatest_with_the_links_in_line() -> None:
@@ -70,10 +98,10 @@ def test_reach_is_measured_from_the_first_frame_of_any_chain(table, data) -> Non
         )
     )
     path = traverse(robot, stops, step=0.5)
-    for q, reach in zip(path.q, path.reach, strict=True):
+    for q, far in zip(path.q, path.reach, strict=True):
         shoulder = frame_matrix(table, "1", q)[:3, 3]
         tool = point_seen_from(table, robot.tool, "0", q)
-        assert reach == pytest.approx(np.linalg.norm(tool - shoulder), abs=1e-9)
+        assert far == pytest.approx(np.linalg.norm(tool - shoulder), abs=1e-9)
 
 
 def test_stops_that_repeat_cost_no_division_by_zero() -> None:
@@ -256,3 +284,288 @@ def test_paths_of_a_symmetric_arm_are_mirror_images() -> None:
 def test_the_asymmetry_of_an_arm_that_slides_is_refused() -> None:
     with pytest.raises(ValueError, match="joints that slide"):
         asymmetry(load_robot("pp-portal"), [[0, 0], [1, 1]], [[0, 0], [1, 1]])
+
+
+# --- time -----------------------------------------------------------------------------------------
+
+
+STOPS = st.lists(
+    st.tuples(*[st.integers(-30, 30).map(lambda k: k / 10)] * 2), min_size=2, max_size=5
+)
+SPEEDS = st.tuples(st.floats(0.1, 10), st.floats(0.1, 10))
+
+
+def along_the_boundary():
+    component = find_region(MINERVA).components[0]
+    return follow(MINERVA, [Leg(a.at, parts=len(a.pieces.roots)) for a in component.loops[0]], 0.01)
+
+
+@settings(max_examples=30, deadline=None)
+@given(STOPS, SPEEDS)
+def test_no_joint_is_too_fast_whichever_way_rows_are_joined(stops, speeds) -> None:
+    """SciPy's cubics through positions and velocities, and straight lines, at many places."""
+    walk = traverse(MINERVA, stops, deviation=0.5)
+    trajectory = timed(walk, speeds)
+    assume(len(trajectory.t) > 1)
+    assert (np.diff(trajectory.t) > 0).all()
+    straight = np.abs(np.diff(trajectory.q, axis=0)) / np.diff(trajectory.t)[:, None]
+    assert (straight <= np.array(speeds) * (1 + 1e-9)).all()
+    cubic = CubicHermiteSpline(trajectory.t, trajectory.q, trajectory.velocity)
+    dense = np.abs(cubic.derivative()(np.linspace(0, trajectory.t[-1], 4001)))
+    assert (dense <= np.array(speeds) * (1 + 1e-6)).all()
+    assert_allclose(dense.max(axis=0), top_speeds(trajectory), rtol=2e-2, atol=1e-9)
+
+
+def test_arcs_are_timed_as_safely() -> None:
+    trajectory = timed(along_the_boundary(), [1.0, 2.0])
+    cubic = CubicHermiteSpline(trajectory.t, trajectory.q, trajectory.velocity)
+    dense = np.abs(cubic.derivative()(np.linspace(0, trajectory.t[-1], 40_001)))
+    assert (dense <= np.array([1.0, 2.0]) * (1 + 1e-9)).all()
+    assert top_speeds(trajectory) == pytest.approx([1, 2], rel=0.2)
+
+
+def test_a_bend_between_rows_slows_the_whole_path() -> None:
+    """A circle of joint space in few rows: cubics overshoot, by more than a thousandth."""
+
+    def circle(s):
+        return np.stack([np.cos(6 * s), np.sin(6 * s)], axis=-1)
+
+    trajectory = timed(follow(MINERVA, [Leg(circle)], 5.0), [1.0, 1.0])
+    fastest = np.abs(np.diff(trajectory.q, axis=0)).max(axis=1) / np.diff(trajectory.t)
+    assert fastest[1:-1].max() < 0.999
+    assert top_speeds(trajectory).max() == pytest.approx(1.0)
+
+
+@settings(max_examples=30, deadline=None)
+@given(STOPS, SPEEDS)
+def test_time_is_the_shortest_but_for_gathering_speed_and_braking(stops, speeds) -> None:
+    stops = np.array(stops)
+    legs = np.abs(np.diff(stops, axis=0))
+    assume((legs.max(axis=1) > 0).all())
+    walk = traverse(MINERVA, stops, deviation=1e-4)
+    shortest = (legs / np.array(speeds)).max(axis=1).sum()
+    assert shortest < timed(walk, speeds).t[-1] <= shortest * 1.1
+
+
+def test_a_straight_leg_stays_straight_in_the_cubics() -> None:
+    trajectory = timed(traverse(MINERVA, [[0, 0], [1.0, -0.5]], deviation=0.05), [1, 1])
+    cubic = CubicHermiteSpline(trajectory.t, trajectory.q, trajectory.velocity)
+    q = cubic(np.linspace(0, trajectory.t[-1], 999))
+    assert_allclose(q[:, 1], -q[:, 0] / 2, atol=1e-12)
+    assert_allclose(trajectory.velocity[[0, -1]], 0)
+
+
+def test_the_robot_rests_at_every_stop() -> None:
+    walk = traverse(MINERVA, [[0, 0], [1, 0], [1, 1]], deviation=0.05)
+    trajectory = timed(walk, [1, 1])
+    at_stops = np.isin(trajectory.rows, walk.stops)
+    assert (trajectory.velocity[at_stops] == 0).all()
+    assert (np.abs(trajectory.velocity[~at_stops]).max(axis=1) > 0.99).all()
+
+
+def test_rows_without_motion_take_no_time() -> None:
+    walk = traverse(MINERVA, [[0, 0], [0, 0], [1, 0]], deviation=0.05)
+    trajectory = timed(walk, [1, 1])
+    assert (np.diff(trajectory.t) > 0).all()
+    times = row_times(walk, trajectory)
+    assert len(times) == len(walk.q)
+    assert times[0] == times[1] == 0
+    assert times[-1] == trajectory.t[-1]
+
+
+def test_a_duration_is_kept_and_a_speed_too() -> None:
+    walk = traverse(MINERVA, [[0, 0], [1, 0.5]], deviation=0.05)
+    trajectory = lasting(MINERVA, walk, 7.5)
+    assert trajectory.t[-1] == pytest.approx(7.5)
+    slow = replace(MINERVA, joints=tuple(replace(j, velocity=0.1) for j in MINERVA.joints))
+    with pytest.raises(ValueError, match=r"7\.5 s is too short: q1"):
+        lasting(slow, walk, 7.5)
+    assert lasting(slow, walk, timed(walk, [0.1, 0.1]).t[-1]).t[-1] > 10
+
+
+@pytest.mark.parametrize("bad", [0, -1, np.inf, np.nan])
+def test_a_duration_is_above_zero(bad) -> None:
+    with pytest.raises(ValueError, match="duration"):
+        lasting(MINERVA, traverse(MINERVA, [[0, 0], [1, 0]]), bad)
+
+
+def test_missing_speeds_are_named() -> None:
+    with pytest.raises(ValueError, match="no `velocity` for q1, q2"):
+        joint_speeds(MINERVA)
+
+
+def sliding_table():
+    return {
+        "schema": 1, "name": "slide", "length_unit": "mm", "angle_unit": "deg",
+        "home": {"a": 0.0, "s": 100.0}, "tool": "t",
+        "joint": [
+            {"name": "a", "type": "revolute", "parent": "0", "frame": "1",
+             "origin": [0, 0, 0], "axis": [0, 1, 0], "velocity": 90},
+            {"name": "s", "type": "prismatic", "parent": "1", "frame": "2",
+             "origin": [0, 0, 0], "axis": [1, 0, 0], "limits": [50, 400], "velocity": 200},
+        ],
+        "point": [{"name": "t", "frame": "2", "at": [10, 0, 0]}],
+    }  # fmt: skip
+
+
+def test_ros_gets_radians_metres_and_whole_nanoseconds() -> None:
+    robot = parse_robot(sliding_table())
+    assert joint_speeds(robot) == pytest.approx([np.pi / 2, 200])
+    walk = traverse(robot, [[0, 100], [1.0, 300]], deviation=1.0)
+    trajectory = timed(walk, joint_speeds(robot))
+    message = ros_trajectory(robot, trajectory)
+    assert message["joint_names"] == ["a", "s"]
+    first, last = message["points"][0], message["points"][-1]
+    assert first == {
+        "positions": [0.0, 0.1], "velocities": [0.0, 0.0],
+        "time_from_start": {"sec": 0, "nanosec": 0},
+    }  # fmt: skip
+    assert last["positions"] == pytest.approx([1.0, 0.3])
+    times = [p["time_from_start"]["sec"] * 10**9 + p["time_from_start"]["nanosec"]
+             for p in message["points"]]  # fmt: skip
+    assert all(b > a for a, b in pairwise(times))
+    assert times[-1] * 1e-9 == pytest.approx(trajectory.t[-1], abs=1e-6)
+    assert times[-1] * 1e-9 >= trajectory.t[-1] - 1e-12
+    assert all(0 <= p["time_from_start"]["nanosec"] < 10**9 for p in message["points"])
+    for speed in np.array([p["velocities"] for p in message["points"]]):
+        assert (np.abs(speed) <= [np.pi / 2 + 1e-9, 0.2 + 1e-9]).all()
+
+
+def test_half_the_speed_takes_twice_the_time() -> None:
+    trajectory = timed(traverse(MINERVA, [[0, 0], [1, 0]]), [1, 1])
+    slow = stretched(trajectory, 2)
+    assert slow.t[-1] == pytest.approx(2 * trajectory.t[-1])
+    assert top_speeds(slow) == pytest.approx(top_speeds(trajectory) / 2)
+
+
+# --- routes by number and what they meet ----------------------------------------------------------
+
+
+REGION = find_region(MINERVA)
+ARCS = [arc for loop in REGION.components[0].loops for arc in loop]
+CORNERS = np.array([vertex.q for vertex in REGION.components[0].vertices])
+
+
+def test_a_closed_route_visits_scaled_vertices_and_returns():
+    route = plan_route(REGION, [3, 1, 2], closed=True, scale=0.5)
+    centre = np.array(Polygon(CORNERS).centroid.coords[0])
+    wanted = centre + 0.5 * (CORNERS[[2, 0, 1, 2]] - centre)
+    assert_allclose(route.path.q[route.path.stops], wanted, atol=1e-12)
+    assert route.stops == ("3", "1", "2", "3")
+    assert route.legs == ("3 to 1", "1 to 2", "2 to 3")
+    assert (route.order, route.along, route.scale) == ((3, 1, 2), "lines", 0.5)
+    assert [route.leg_of(s) for s in (0, 0.9, 1.0, 3.0)] == ["3 to 1", "3 to 1", "1 to 2", "2 to 3"]
+
+
+def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
+    route = plan_route(REGION, [2, -4], along="arcs", closed=True)
+    assert route.legs == ("arc 2", "line to arc 4", "arc 4 backwards", "line to the start")
+    assert route.stops == ("1", "2", "3", "4", "5")
+    ends = [ARCS[1].points[0], ARCS[1].points[-1], ARCS[3].points[-1], ARCS[3].points[0]]
+    assert_allclose(route.path.q[route.path.stops], [*ends, ends[0]], atol=1e-9)
+
+
+def test_arcs_that_meet_need_no_line():
+    whole = range(1, len(ARCS) + 1)
+    route = plan_route(REGION, whole, along="arcs", closed=True)
+    assert route.legs == tuple(f"arc {k}" for k in whole)
+
+
+@pytest.mark.parametrize(
+    ("order", "more", "words"),
+    [
+        ([1, 7], {}, "no vertex 7 in component 0: it has 6, numbered from 1"),
+        ([-1, 2], {}, "no vertex -1"),
+        ([1], {}, "two vertices or more"),
+        ([], {"closed": True}, "two vertices or more"),
+        ([1, 2], {"scale": 0}, "scale must be above 0, found 0"),
+        ([1, 2], {"scale": np.nan}, "scale must be above 0, found nan"),
+        ([1, 2], {"deviation": 0}, "deviation must be above 0"),
+        ([1, 2], {"component": 5}, "no component 5; there are 5"),
+        ([0], {"along": "arcs"}, "no arc 0"),
+        ([1, -7], {"along": "arcs"}, "no arc 7"),
+        ([], {"along": "arcs"}, "an arc or more"),
+        ([1], {"along": "arcs", "component": -1}, "no component -1"),
+        ([1], {"along": "roads"}, "no way along 'roads'; there are lines and arcs"),
+        ([1], {"along": "arcs", "scale": 0.5}, "a scaled arc is none of the region's"),
+    ],
+)
+def test_a_route_that_is_none_is_refused(order, more, words):
+    with pytest.raises(ValueError, match=words):
+        plan_route(REGION, order, **more)
+
+
+def test_a_component_without_vertices_says_so():
+    bare = replace(REGION, found=(replace(REGION.components[0], vertices=()),))
+    with pytest.raises(ValueError, match="it has no vertex"):
+        plan_route(bare, [1, 2])
+
+
+def test_components_count_from_0():
+    assert nth_component(REGION, 4) is REGION.components[4]
+
+
+def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
+    route = plan_route(REGION, [1, 2])
+    turns = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 2))
+    places = MINERVA.frames(turns).position("0", "3", "0")
+    assert np.linalg.norm(places, axis=1).max() <= MINERVA.stretched(MINERVA.tool)
+    assert route.path.deviation <= 1e-4 * MINERVA.stretched(MINERVA.tool)
+
+
+def test_a_held_joint_stays():
+    first, held = replace(MINERVA.joints[0], parent="-1", frame="0"), {0: 0.3}
+    three = replace(MINERVA, joints=(first, *MINERVA.joints), home=np.array([0.3, 0, 0]))
+    route = plan_route(find_region(three, held), [1, 2])
+    assert_allclose(route.path.q[:, 0], 0.3)
+    assert np.ptp(route.path.q[:, 1:]) > 0
+
+
+# --- what it meets --------------------------------------------------------------------------------
+
+
+def test_a_route_is_feasible_where_every_place_of_it_is():
+    """Round the component's corners, by a fine grid and the boundary functions alone."""
+    answers = set()
+    for k in range(1, 7):
+        found = report(plan_route(REGION, [k, k % 6 + 1], scale=0.999))
+        q = found.route.path.at(np.linspace(0, 1, 5001))
+        assert found.feasible == keeps_clear(MINERVA, q).all()
+        answers.add(found.feasible)
+    assert answers == {True, False}
+
+
+def test_the_largest_reach_is_that_of_a_far_finer_path():
+    found = report(plan_route(REGION, [1, 4, 2, 6]))
+    fine = reach(MINERVA, found.route.path.at(np.linspace(0, 3, 30_001))).max()
+    assert fine <= found.largest_reach <= fine + 1e-4
+    assert_allclose(reach(MINERVA, found.farthest.q), found.largest_reach)
+
+
+def test_the_document_follows_its_schema_and_the_lines_say_the_same():
+    route = plan_route(REGION, [1, 3, 2, 4], scale=0.9)
+    found, times = report(route), lasting(MINERVA, route.path, 12)
+    content = json.loads(json.dumps(route_document(found, times)))
+    schema = resources.files("qbound") / "schemas" / "traverse.schema.json"
+    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    lines = list(route_lines(found, times))
+    assert content["order"] == [1, 3, 2, 4]
+    assert content["duration"] == 12
+    assert "12 s" in lines
+    assert lines[0] == "3 legs: 1 to 3, 3 to 2, 2 to 4"
+    for margin in content["margins"]:
+        (line,) = (x for x in lines if x.startswith(f"smallest margin of {margin['boundary']}:"))
+        assert f"{margin['margin']:.6g} {margin['unit']}, on {margin['at']['leg']}" in line
+    crossed = [line for line in lines if line.startswith("the tool crosses")]
+    assert len(crossed) == len(content["self_crossings"]) > 0
+    outside = {line.split()[1] for line in lines if line.startswith("outside:")}
+    assert outside == {m["boundary"] for m in content["margins"] if m["leaves"]}
+
+
+def test_a_route_without_times_has_an_empty_column():
+    route = plan_route(REGION, [1, 2], deviation=1.0)
+    header, *rows = csv.reader(io.StringIO(route_csv(route)))
+    assert header == ["t_s", "q1_rad", "q2_rad", "x_cm", "y_cm", "z_cm"]
+    assert {row[0] for row in rows} == {""}
+    assert_allclose([[float(x) for x in row[1:3]] for row in rows], route.path.q, rtol=0)
+    assert route_document(report(route))["duration"] is None

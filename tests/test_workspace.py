@@ -26,9 +26,8 @@ from qbound.region import (
     solve,
 )
 from qbound.workspace import layers
-from qbound.workspace.areas import area_by_green, find_workspace, overlap
+from qbound.workspace.areas import area_by_green, find_passage, find_workspace, overlap
 from qbound.workspace.layers import crossing_distances, find_fibres
-from qbound.workspace.passage import find_passage
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
 from support.robots import in_centimetres, mirror, random_robot, turned
 

@@ -157,20 +157,20 @@ def distance(q: Floats, functions: Sequence[Function]) -> float:
     """
     slopes = np.array([_slope(function, q) for function in functions])
     inverse = np.linalg.pinv(slopes)
-    ctx.dps = DIGITS
-    true = [arb(float(x)) for x in q]
-    for _ in range(ROUNDS):
-        values = [function(true) for function in functions]
-        for j, row in enumerate(inverse):
-            step = sum((arb(float(x)) * v for x, v in zip(row, values, strict=True)), arb(0))
-            true[j] = (true[j] - step).mid()
-    return hypot(*(float(x - arb(float(old))) for x, old in zip(true, q, strict=True)))
+    with ctx.workdps(DIGITS):
+        true = [arb(float(x)) for x in q]
+        for _ in range(ROUNDS):
+            values = [function(true) for function in functions]
+            for j, row in enumerate(inverse):
+                step = sum((arb(float(x)) * v for x, v in zip(row, values, strict=True)), arb(0))
+                true[j] = (true[j] - step).mid()
+        return hypot(*(float(x - arb(float(old))) for x, old in zip(true, q, strict=True)))
 
 
 def _slope(function: Function, q: Floats) -> list[float]:
-    ctx.dps = DIGITS
     result = []
-    for j in range(len(q)):
-        ends = [[arb(float(x)) + s * STEP * (k == j) for k, x in enumerate(q)] for s in (1, -1)]
-        result.append(float(function(ends[0]) - function(ends[1])) / (2 * STEP))
+    with ctx.workdps(DIGITS):
+        for j in range(len(q)):
+            ends = [[arb(float(x)) + s * STEP * (k == j) for k, x in enumerate(q)] for s in (1, -1)]
+            result.append(float(function(ends[0]) - function(ends[1])) / (2 * STEP))
     return result

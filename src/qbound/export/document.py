@@ -12,8 +12,7 @@ from qbound.region import Component, NoHomeError, Region, Slices, UnresolvedErro
 from qbound.region.outline import Arc
 from qbound.tolerances import ROUNDED_AREA
 from qbound.units import amount, counted, joint_text
-from qbound.workspace.areas import Aspect, PlaceReport, WorkspaceReport, find_workspace
-from qbound.workspace.passage import Passage
+from qbound.workspace.areas import Aspect, Passage, PlaceReport, WorkspaceReport, find_workspace
 from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 

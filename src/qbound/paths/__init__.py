@@ -1,7 +1,7 @@
 """Paths of the arm through a region, margins along them, and their timing.
 
-- `traversal`: vertices or arcs in an order, the joint path and the tool's;
+- `traversal`: vertices or arcs in an order, the joint path and the tool's, and the distance of a
+  path of the tool from the mirror image of another;
 - `encounters`: crossings of a path with itself or with the singular curve, and its margins;
-- `asymmetry`: distance of a path of the tool from the mirror image of another;
 - `trajectory`: the path in time.
 """

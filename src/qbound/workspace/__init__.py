@@ -2,11 +2,10 @@
 
 - `planar`: the arm in its plane: det J, its zeros, inverse kinematics;
 - `layers`: the region as intervals of the first joint, laid over each other on the tool's circles;
-- `areas`: the workspace, its aspects and areas; `passage`: the poses that a region joins.
+- `areas`: the workspace, its aspects and areas, and the poses that a region joins.
 """
 
-from qbound.workspace.areas import Aspect, Workspace, find_workspace, workspace_report
-from qbound.workspace.passage import find_passage
+from qbound.workspace.areas import Aspect, Workspace, find_passage, find_workspace, workspace_report
 from qbound.workspace.planar import (
     NoPlanarWorkspaceError,
     PlanarArm,
